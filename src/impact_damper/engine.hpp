@@ -1,0 +1,69 @@
+// The three engines that can run a scene, each as the options that can change its result.
+// The engines themselves: exact.hpp, restitution.hpp, cem.hpp; the door to all three: simulate.hpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+namespace impact_damper {
+
+// How the wall's damping ratio zeta_m follows from the restitution e (wall.hpp).
+enum class Calibration {
+  fixed_wall,  // the paper's: the primary mass is held still
+  two_body,    // both masses free: the delivered restitution is e exactly
+};
+
+// Which velocity the wall damper of the component element method sees.
+enum class Damper {
+  centred,  // (y_{n+1} - y_{n-1}) / 2h: implicit in the new step, second order
+  lagged,   // (y_n - y_{n-1}) / h: one step behind, explicit
+};
+
+// Where a run ends that nothing else ends. A budget that is used up is a stop reason, never an error.
+struct Budget {
+  std::int64_t max_impacts = 10'000'000;
+  std::int64_t max_half_cycles = 10'000'000;
+  double max_time = 1e7;  // only for scenes without until_time
+
+  bool operator==(const Budget&) const = default;
+};
+
+struct Exact {
+  static constexpr std::string_view name = "exact";
+  Calibration calibration = Calibration::fixed_wall;
+  Budget budget;
+
+  bool operator==(const Exact&) const = default;
+};
+
+struct Restitution {
+  static constexpr std::string_view name = "restitution";
+  // Bounce-down jumps to its accumulation point once the rest of it is so short that the relative
+  // acceleration changes by less than this fraction in it (restitution.hpp). In (0, 1e-3].
+  double accumulation_tolerance = 1e-8;
+  Budget budget;
+
+  bool operator==(const Restitution&) const = default;
+};
+
+struct Cem {
+  static constexpr std::string_view name = "cem";
+  std::optional<double> time_step;  // h, > 0; absent: a hundredth of the nominal contact time
+  Damper damper = Damper::centred;
+  bool locate = false;    // locate touch and release inside the step
+  bool unstable = false;  // run even beyond the stability limit
+  Calibration calibration = Calibration::fixed_wall;
+  Budget budget;
+
+  bool operator==(const Cem&) const = default;
+};
+
+using Engine = std::variant<Exact, Restitution, Cem>;
+
+std::string_view name_of(const Engine& engine);
+std::string_view name_of(Calibration calibration);  // "fixed-wall", "two-body"
+std::string_view name_of(Damper damper);            // "centred", "lagged"
+
+}  // namespace impact_damper

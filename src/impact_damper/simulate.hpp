@@ -1,0 +1,13 @@
+// The door to the engines: a scene, an engine and a wish in, a run out. A pure function.
+#pragma once
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// Runs `scene` with `engine`, recording what `record` asks for.
+// Throws std::invalid_argument naming every problem if the scene, the engine's options or the record
+// are not admitted (an unstable time step of the component element method among them).
+Run simulate(const Scene& scene, const Engine& engine, const Record& record);
+
+}  // namespace impact_damper
