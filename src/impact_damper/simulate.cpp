@@ -16,6 +16,8 @@ Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
   return run_restitution<double>(scene, options, recorder);
 }
 
+Outcome run(const Scene&, Cem&, Recorder&) { throw std::invalid_argument("engine: cem is not built yet"); }
+
 void collect(std::string& all, const std::string& field, const std::string& message) {
   if (!all.empty()) all += '\n';
   all += field + ": " + message;
