@@ -108,6 +108,12 @@ bool read_into(std::string& target, const Json& value) {
   return true;
 }
 
+bool read_into(bool& target, const Json& value) {
+  if (!value.is_boolean()) return false;
+  target = value.get<bool>();
+  return true;
+}
+
 std::string escaped(std::string_view key) {
   std::string token;
   for (const char c : key) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
@@ -377,77 +383,70 @@ std::vector<std::string> ObjectReader::keys() {
   return found;
 }
 
-void ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
-  const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be " + admitted("a number", range) + ", got " + described(*value));
-  }
+bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {
+  refuse(key, "must be " + wanted + ", got " + described(given));
+  return false;
 }
 
-void ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
+bool ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be " + admitted("a whole number", range) + ", got " + described(*value));
-  }
+  return !value || read_into(target, *value, range) || wrong(key, admitted("a number", range), *value);
 }
 
-void ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
+bool ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be null or " + admitted("a number", range) + ", got " + described(*value));
-  }
+  return !value || read_into(target, *value, range) || wrong(key, admitted("a whole number", range), *value);
 }
 
-void ObjectReader::optional(std::string_view key, bool& target) {
+bool ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
   const Json* const value = find(key);
-  if (!value) return;
-  if (value->is_boolean())
-    target = value->get<bool>();
-  else
-    refuse(key, "must be true or false, got " + described(*value));
+  return !value || read_into(target, *value, range) ||
+         wrong(key, admitted("null or a number", range), *value);
 }
 
-void ObjectReader::optional(std::string_view key, std::string& target) {
+bool ObjectReader::optional(std::string_view key, bool& target) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value)) refuse(key, "must be a string, got " + described(*value));
+  return !value || read_into(target, *value) || wrong(key, "true or false", *value);
 }
 
-template <typename Element, typename Read>
-void ObjectReader::array(std::string_view key, std::vector<Element>& target, const std::string& wanted,
-                         Read read) {
+bool ObjectReader::optional(std::string_view key, std::string& target) {
   const Json* const value = find(key);
-  if (!value) return;
-  if (!value->is_array()) return refuse(key, "must be an array, got " + described(*value));
+  return !value || read_into(target, *value) || wrong(key, "a string", *value);
+}
+
+template <typename Element, typename... Range>
+bool ObjectReader::array(std::string_view key, std::vector<Element>& target,
+                         const std::string& wanted_element, const Range&... range) {
+  const Json* const value = find(key);
+  if (!value) return true;
+  if (!value->is_array()) return wrong(key, "an array", *value);
   std::vector<Element> elements(value->size());
   bool all_read = true;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (read(elements[i], (*value)[i])) continue;
+    if (read_into(elements[i], (*value)[i], range...)) continue;
     all_read = false;
     problems_->add(pointer_to(key) + '/' + std::to_string(i),
-                   "must be " + wanted + ", got " + described((*value)[i]));
+                   "must be " + wanted_element + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
+  return all_read;
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
-  array(key, target, admitted("a number", range),
-        [&](double& element, const Json& value) { return read_into(element, value, range); });
+bool ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
+  return array(key, target, admitted("a number", range), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
-  array(key, target, admitted("a whole number", range),
-        [&](std::int64_t& element, const Json& value) { return read_into(element, value, range); });
+bool ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
+  return array(key, target, admitted("a whole number", range), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
+bool ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
                             NumberRange range) {
-  array(key, target, admitted("null or a number", range),
-        [&](std::optional<double>& element, const Json& value) { return read_into(element, value, range); });
+  return array(key, target, admitted("null or a number", range), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::string>& target) {
-  array(key, target, "a string",
-        [](std::string& element, const Json& value) { return read_into(element, value); });
+bool ObjectReader::optional(std::string_view key, std::vector<std::string>& target) {
+  return array(key, target, "a string");
 }
 
 std::optional<std::size_t> ObjectReader::word(std::string_view key,

@@ -89,6 +89,7 @@ struct Record {
   bool impacts = false;
   bool contacts = false;
   bool energy = false;
+  // History by times or by amplitudes, not both in one run.
   std::vector<HistoryWindow> history;          // ascending, not overlapping
   std::vector<AmplitudeWindow> history_below;  // descending amplitudes
 };
