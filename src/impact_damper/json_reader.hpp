@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -26,24 +25,12 @@
 #include <vector>
 
 #include "impact_damper/errors.hpp"
+#include "impact_damper/wording.hpp"
 
 namespace impact_damper {
 
 // The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot).
 std::string read_text(const std::filesystem::path& file);
-
-// The word of `known` nearest to `word`, if it is near enough to be what was meant.
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
-
-// Which numbers a field admits, both limits included unless least_is_admitted is false.
-struct NumberRange {
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
-  bool least_is_admitted = true;
-};
-inline NumberRange within(double least, double most) { return {least, most}; }
-inline NumberRange at_least(double least) { return {least}; }
-inline NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
 class JsonProblems;  // what a document collects while it is read
 
