@@ -18,6 +18,12 @@ class InputError : public std::runtime_error {
   std::vector<std::string> problems_;
 };
 
+// A computation that went astray: a result that is not finite. what() is one line.
+class NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // A file or folder that cannot be read or written. what() is one line that begins with its name.
 class IoError : public std::runtime_error {
  public:

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -19,16 +18,6 @@ using Json = nlohmann::json;
 
 constexpr std::size_t deepest = 64;        // nesting; our own files need 5
 constexpr std::size_t most_problems = 50;  // a column of a million wrong numbers need not be listed
-
-std::string cut(std::string text, std::size_t most = 60) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // one problem stays one line
-  }
-  if (text.size() > most) text = text.substr(0, most) + "...";
-  return text;
-}
-
-std::string in_quotes(std::string_view text) { return '"' + cut(std::string(text)) + '"'; }
 
 std::string described(const Json& value) {
   switch (value.type()) {
@@ -55,25 +44,11 @@ std::string described(const Json& value) {
   return "nothing";
 }
 
-std::string admitted(const std::string& kind, const NumberRange& range) {
-  std::string text = kind;
-  const bool bounded_below = range.least > std::numeric_limits<double>::lowest();
-  const bool bounded_above = range.most < std::numeric_limits<double>::max();
-  if (bounded_below) text += (range.least_is_admitted ? " >= " : " > ") + number_text(range.least);
-  if (bounded_below && bounded_above) text += " and";
-  if (bounded_above) text += " <= " + number_text(range.most);
-  return text;
-}
-
-bool admits(const NumberRange& range, double value) {
-  return (range.least_is_admitted ? value >= range.least : value > range.least) && value <= range.most;
-}
-
 // Each read_into says whether `value` is admitted, and only then writes the target.
 bool read_into(double& target, const Json& value, const NumberRange& range) {
   if (!value.is_number()) return false;
   const double number = value.get<double>();
-  if (!admits(range, number)) return false;
+  if (!range.admits(number)) return false;
   target = number;
   return true;
 }
@@ -97,7 +72,7 @@ bool read_into(std::int64_t& target, const Json& value, const NumberRange& range
     return false;
   }
   const auto number = value.get<std::int64_t>();
-  if (!admits(range, static_cast<double>(number))) return false;
+  if (!range.admits(static_cast<double>(number))) return false;
   target = number;
   return true;
 }
@@ -108,24 +83,16 @@ bool read_into(std::string& target, const Json& value) {
   return true;
 }
 
+bool read_into(bool& target, const Json& value) {
+  if (!value.is_boolean()) return false;
+  target = value.get<bool>();
+  return true;
+}
+
 std::string escaped(std::string_view key) {
   std::string token;
   for (const char c : key) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
   return cut(token);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -298,20 +265,6 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
-  std::optional<std::string_view> found;
-  // Two slips, or one in every three letters of a long word; farther words are not what was meant.
-  std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
-  if (word.size() > 100) return found;
-  for (const std::string_view candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance >= best || distance >= candidate.size()) continue;
-    best = distance;
-    found = candidate;
-  }
-  return found;
-}
-
 JsonDocument::JsonDocument() = default;
 JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;
 JsonDocument& JsonDocument::operator=(JsonDocument&&) noexcept = default;
@@ -377,77 +330,69 @@ std::vector<std::string> ObjectReader::keys() {
   return found;
 }
 
-void ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
-  const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be " + admitted("a number", range) + ", got " + described(*value));
-  }
+bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {
+  refuse(key, "must be " + wanted + ", got " + described(given));
+  return false;
 }
 
-void ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
+bool ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be " + admitted("a whole number", range) + ", got " + described(*value));
-  }
+  return !value || read_into(target, *value, range) || wrong(key, range.describe("a number"), *value);
 }
 
-void ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
+bool ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value, range)) {
-    refuse(key, "must be null or " + admitted("a number", range) + ", got " + described(*value));
-  }
+  return !value || read_into(target, *value, range) || wrong(key, range.describe("a whole number"), *value);
 }
 
-void ObjectReader::optional(std::string_view key, bool& target) {
+bool ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
   const Json* const value = find(key);
-  if (!value) return;
-  if (value->is_boolean())
-    target = value->get<bool>();
-  else
-    refuse(key, "must be true or false, got " + described(*value));
+  return !value || read_into(target, *value, range) || wrong(key, range.describe("null or a number"), *value);
 }
 
-void ObjectReader::optional(std::string_view key, std::string& target) {
+bool ObjectReader::optional(std::string_view key, bool& target) {
   const Json* const value = find(key);
-  if (value && !read_into(target, *value)) refuse(key, "must be a string, got " + described(*value));
+  return !value || read_into(target, *value) || wrong(key, "true or false", *value);
 }
 
-template <typename Element, typename Read>
-void ObjectReader::array(std::string_view key, std::vector<Element>& target, const std::string& wanted,
-                         Read read) {
+bool ObjectReader::optional(std::string_view key, std::string& target) {
   const Json* const value = find(key);
-  if (!value) return;
-  if (!value->is_array()) return refuse(key, "must be an array, got " + described(*value));
+  return !value || read_into(target, *value) || wrong(key, "a string", *value);
+}
+
+template <typename Element, typename... Range>
+bool ObjectReader::array(std::string_view key, std::vector<Element>& target,
+                         const std::string& wanted_element, const Range&... range) {
+  const Json* const value = find(key);
+  if (!value) return true;
+  if (!value->is_array()) return wrong(key, "an array", *value);
   std::vector<Element> elements(value->size());
   bool all_read = true;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (read(elements[i], (*value)[i])) continue;
+    if (read_into(elements[i], (*value)[i], range...)) continue;
     all_read = false;
     problems_->add(pointer_to(key) + '/' + std::to_string(i),
-                   "must be " + wanted + ", got " + described((*value)[i]));
+                   "must be " + wanted_element + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
+  return all_read;
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
-  array(key, target, admitted("a number", range),
-        [&](double& element, const Json& value) { return read_into(element, value, range); });
+bool ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
+  return array(key, target, range.describe("a number"), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
-  array(key, target, admitted("a whole number", range),
-        [&](std::int64_t& element, const Json& value) { return read_into(element, value, range); });
+bool ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
+  return array(key, target, range.describe("a whole number"), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
+bool ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
                             NumberRange range) {
-  array(key, target, admitted("null or a number", range),
-        [&](std::optional<double>& element, const Json& value) { return read_into(element, value, range); });
+  return array(key, target, range.describe("null or a number"), range);
 }
 
-void ObjectReader::optional(std::string_view key, std::vector<std::string>& target) {
-  array(key, target, "a string",
-        [](std::string& element, const Json& value) { return read_into(element, value); });
+bool ObjectReader::optional(std::string_view key, std::vector<std::string>& target) {
+  return array(key, target, "a string");
 }
 
 std::optional<std::size_t> ObjectReader::word(std::string_view key,

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -26,24 +25,12 @@
 #include <vector>
 
 #include "impact_damper/errors.hpp"
+#include "impact_damper/wording.hpp"
 
 namespace impact_damper {
 
 // The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot).
 std::string read_text(const std::filesystem::path& file);
-
-// The word of `known` nearest to `word`, if it is near enough to be what was meant.
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
-
-// Which numbers a field admits, both limits included unless least_is_admitted is false.
-struct NumberRange {
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
-  bool least_is_admitted = true;
-};
-inline NumberRange within(double least, double most) { return {least, most}; }
-inline NumberRange at_least(double least) { return {least}; }
-inline NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
 class JsonProblems;  // what a document collects while it is read
 
@@ -54,33 +41,35 @@ class ObjectReader {
  public:
   // Reads the field `key` into `target`, which keeps its default if the key is missing. Integers are
   // JSON integers: neither 3.0 nor 3e0. Every element of an array obeys `range`. Where the target is
-  // optional, null means absent.
-  void optional(std::string_view key, double& target, NumberRange range = {});
-  void optional(std::string_view key, std::int64_t& target, NumberRange range = {});
-  void optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
-  void optional(std::string_view key, bool& target);
-  void optional(std::string_view key, std::string& target);
-  void optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
-  void optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
-  void optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
-  void optional(std::string_view key, std::vector<std::string>& target);
+  // optional, null means absent. False if there is a value and it is not admitted.
+  bool optional(std::string_view key, double& target, NumberRange range = {});
+  bool optional(std::string_view key, std::int64_t& target, NumberRange range = {});
+  bool optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
+  bool optional(std::string_view key, bool& target);
+  bool optional(std::string_view key, std::string& target);
+  bool optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
+  bool optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
+  bool optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
+  bool optional(std::string_view key, std::vector<std::string>& target);
 
-  // The same for each of these types, a missing key being a problem.
+  // The same for each of these types, a missing key being a problem (and false).
   template <typename Target, typename... Range>
-  void required(std::string_view key, Target& target, Range... range) {
-    if (require(key)) optional(key, target, range...);
+  bool required(std::string_view key, Target& target, Range... range) {
+    return require(key) && optional(key, target, range...);
   }
 
   // One of the words name_of(value) gives for the `admitted` values.
   template <typename Enum>
-  void optional(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
+  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
     std::vector<std::string_view> words;
     for (const Enum value : admitted) words.push_back(name_of(value));
-    if (const auto index = word(key, words)) target = admitted.begin()[*index];
+    const std::optional<std::size_t> index = word(key, words);
+    if (index) target = admitted.begin()[*index];
+    return index || !has(key);
   }
   template <typename Enum>
-  void required(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
-    if (require(key)) optional(key, target, admitted);
+  bool required(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
+    return require(key) && optional(key, target, admitted);
   }
   // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
@@ -110,8 +99,10 @@ class ObjectReader {
   ObjectReader(JsonProblems* problems, std::string pointer, const nlohmann::json* object);
   const nlohmann::json* find(std::string_view key);
   std::string pointer_to(std::string_view key) const;
-  template <typename Element, typename Read>
-  void array(std::string_view key, std::vector<Element>& target, const std::string& wanted, Read read);
+  bool wrong(std::string_view key, const std::string& wanted, const nlohmann::json& given);
+  template <typename Element, typename... Range>
+  bool array(std::string_view key, std::vector<Element>& target, const std::string& wanted_element,
+             const Range&... range);
 
   JsonProblems* problems_;
   std::string pointer_;
