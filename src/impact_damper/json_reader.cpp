@@ -320,6 +320,10 @@ void ObjectReader::refuse(std::string_view key, std::string_view what) {
   problems_->add(pointer_to(key), what);
 }
 
+void ObjectReader::refuse(std::string_view key, std::size_t element, std::string_view what) {
+  problems_->add(pointer_to(key) + '/' + std::to_string(element), what);
+}
+
 std::vector<std::string> ObjectReader::keys() {
   std::vector<std::string> found;
   if (!object_) return found;
@@ -371,8 +375,7 @@ bool ObjectReader::array(std::string_view key, std::vector<Element>& target,
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (read_into(elements[i], (*value)[i], range...)) continue;
     all_read = false;
-    problems_->add(pointer_to(key) + '/' + std::to_string(i),
-                   "must be " + wanted_element + ", got " + described((*value)[i]));
+    refuse(key, i, "must be " + wanted_element + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
   return all_read;

@@ -90,6 +90,7 @@ class ObjectReader {
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
   // is admitted and what was given. For checks that the reader cannot do.
   void refuse(std::string_view key, std::string_view what);
+  void refuse(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
   // Reports the field as missing unless it is there. True if it is there.
   bool require(std::string_view key);
   const std::string& pointer() const { return pointer_; }
