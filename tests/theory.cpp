@@ -159,7 +159,7 @@ TEST_CASE("bounce-down follows the bounces that a small-step integration finds")
   CHECK(bounces.accumulation > bounces.time.back());
   CHECK(bounces.accumulation < pi);
   CHECK(bounces.loss / stuck_release(a).loss == doctest::Approx(1.04).epsilon(0.005));
-  CHECK(bounce_down(0, a).loss == stuck_release(a).loss);
+  CHECK(bounce_down(0, a).loss == doctest::Approx(stuck_release(a).loss).epsilon(1e-15));
 }
 
 TEST_CASE("bounces accumulate in time above the end of bounce-down and not below") {
@@ -176,11 +176,12 @@ TEST_CASE("bounces accumulate in time above the end of bounce-down and not below
         const auto d = [&](double s) {
           return (u - a * std::cos(t)) * s + a * (std::sin(t + s) - std::sin(t));
         };
+        if (d(pi - t) > 0 || u < 1e-6 * a) break;  // no further bounce before x = 0, or stuck
         const double s = first_zero(d, 0, u / (a * std::sin(t)) / 50);
         u = e * -(u + a * (std::cos(t + s) - std::cos(t)));
         t += s;
       }
-      CHECK((t < pi && u < 1e-3 * a) == (factor > 1));
+      CHECK((u < 1e-6 * a) == (factor > 1));
     }
   }
   CHECK(bounce_down_end(0) == 1 / pi);

@@ -89,8 +89,15 @@ struct Record {
   bool impacts = false;
   bool contacts = false;
   bool energy = false;
+  // History by times or by amplitudes, not both in one run.
   std::vector<HistoryWindow> history;          // ascending, not overlapping
   std::vector<AmplitudeWindow> history_below;  // descending amplitudes
+};
+
+// Why and when a scene ended: what an engine returns; all else it tells its observer (recorder.hpp).
+struct Outcome {
+  StopReason stop_reason = StopReason::time;
+  double end_time = 0;
 };
 
 struct Run {

@@ -79,8 +79,8 @@ BounceDown bounce_down(double restitution, double amplitude) {
     double s = pi - t;
     if (!(distance_after(s) < 0)) break;
     for (double next; (next = s - distance_after(s) / speed_after(s)) < s;) s = next;
+    w = -speed_after(s);  // which reads t
     t += s;
-    w = -speed_after(s);
   }
   bounces.loss = squares / (pi * square(a));
   return bounces;

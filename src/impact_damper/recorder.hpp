@@ -1,0 +1,59 @@
+// The observer that every engine talks to: keeps what a Record asks for, as columns.
+//
+// An engine calls it in time order. It asks first what is wanted, and computes nothing else.
+// An engine is a template over its observer: anything with these members may stand in.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+class Recorder {
+ public:
+  explicit Recorder(const Record& record);
+
+  bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
+  bool wants_impacts() const { return wants_.impacts; }
+  bool wants_contacts() const { return wants_.contacts; }
+  bool wants_energy() const { return wants_.energy; }
+
+  // A row ended at `zero_crossing`; impacts told of since the last row are its own.
+  void half_cycle(double begin, double zero_crossing, double peak_time, double amplitude);
+  // An impact on `wall` with y' = relative_velocity just before.
+  void impact(double time, Wall wall, double relative_velocity);
+  void contact(double begin, double end, Wall wall);
+
+  // When the next history sample is wanted; infinity where none is known of yet. A half cycle may open a
+  // window that begins at its own zero crossing, so ask again after each.
+  double next_sample() const { return next_sample_; }
+  void sample(double time, double x, double v, double y, double w);
+
+  EnergyLedger& ledger() { return ledger_; }
+
+  // Moves the columns into `run`.
+  void finish(Run& run);
+
+ private:
+  void advance_window();
+
+  Record wants_;
+  bool wants_half_cycles_;
+  HalfCycles half_cycles_;
+  Impacts impacts_;
+  Contacts contacts_;
+  History history_;
+  EnergyLedger ledger_;
+  std::int64_t row_ = 0;
+  std::int64_t impacts_in_row_ = 0;
+  std::size_t first_impact_in_row_ = 0;
+  std::vector<HistoryWindow> windows_;  // known of and not yet sampled to the end, ascending
+  std::size_t window_ = 0;
+  std::size_t next_below_ = 0;  // of wants_.history_below
+  std::int64_t sample_in_window_ = 0;
+  double next_sample_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace impact_damper
