@@ -45,15 +45,16 @@ struct Damping {
   double a, b;
 };
 const std::vector<Damping> dampings{
-    {0, 1},       {1e-12, 1},  {1e-3, 1},     {0.3, 1},     {0.7, 1},     {0.99, 1},  {1 - 1e-9, 1}, {1 - 1e-15, 1},
-    {1, 1},       {1 + 1e-15, 1}, {1 + 1e-9, 1}, {1.01, 1}, {2, 1},       {10, 1},    {1e3, 1},      {0.02, 0.98},
-    {3, 1e-4},    {1e4, 5e9},  {1.2e5, 5e9},  {0, 1e10},    {0.5, 0.25},  {1.5, 2.25}};
+    {0, 1},        {1e-12, 1},     {1e-3, 1},   {0.3, 1},       {0.7, 1},      {0.99, 1},
+    {1 - 1e-9, 1}, {1 - 1e-15, 1}, {1, 1},      {1 + 1e-15, 1}, {1 + 1e-9, 1}, {1.01, 1},
+    {2, 1},        {10, 1},        {1e3, 1},    {0.02, 0.98},   {3, 1e-4},     {1e4, 5e9},
+    {1.2e5, 5e9},  {0, 1e10},      {0.5, 0.25}, {1.5, 2.25}};
 const std::vector<double> times{1e-8, 1e-6, 1e-4, 0.01, 0.1, 0.49, 0.51, 0.9, 1.5, 3, 7, 25};
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for short times, at any damping", Real,
-                   double, long double) {
+TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for short times, at any damping",
+                   Real, double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   for (const auto& [a, b] : dampings) {
     const Oscillator<Real> oscillator(a, b);
@@ -77,8 +78,8 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
   }
 }
 
-TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argument omega t lets them be", Real, double,
-                   long double) {
+TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argument omega t lets them be", Real,
+                   double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   for (const auto& [a, b] : dampings) {
     const Oscillator<Real> oscillator(a, b);
@@ -145,7 +146,8 @@ TEST_CASE("at resonance without damping the amplitude grows by f0/2 per time") {
   for (double t : {1e-8, 1e-3, 1.0, 10.0, 1e3, 1e5}) {
     const DrivenResponse<double> found = oscillator.respond(forcing, 0, t, oscillator.propagate(t));
     // x = f0/2 (sin t - t cos t), which for short times is f0 t^3/6.
-    const double exact = t < 1e-2 ? 0.05 * t * t * t * (1 - t * t / 10) : 0.15 * (std::sin(t) - t * std::cos(t));
+    const double exact =
+        t < 1e-2 ? 0.05 * t * t * t * (1 - t * t / 10) : 0.15 * (std::sin(t) - t * std::cos(t));
     CHECK(std::abs(found.d - exact) <= 1e-15 * 0.3 * std::min(t * t * t, 1 + t));
     CHECK(std::abs(found.d1 - 0.15 * t * std::sin(t)) <= 1e-15 * 0.3 * std::min(t * t, 1 + t));
   }
@@ -153,11 +155,13 @@ TEST_CASE("at resonance without damping the amplitude grows by f0/2 per time") {
 
 TEST_CASE("a very slow and a very fast force give the static and the inertial response") {
   const Oscillator<double> oscillator(0.05, 1);
-  // f0 sin(omega t), omega -> 0: x'' + 2 a x' + x = f0 omega t, which rises as f0 omega (t - 2 a) + transient.
+  // f0 sin(omega t), omega -> 0: x'' + 2 a x' + x = f0 omega t, which rises as f0 omega (t - 2 a) +
+  // transient.
   const Forcing<double> slow{1.0, 1e-9};
   const double late = oscillator.respond(slow, 0, 900, oscillator.propagate(900)).d;
   CHECK(late == doctest::Approx(1e-9 * (900 - 0.1)).epsilon(1e-12));
-  // omega -> infinity: x'' = f0 sin(omega t) leaves the drift f0/omega t while t << 1, less f0 sin(omega t)/omega^2.
+  // omega -> infinity: x'' = f0 sin(omega t) leaves the drift f0/omega t while t << 1, less f0 sin(omega
+  // t)/omega^2.
   const double t = 1e-4, omega = 1e6;
   const Forcing<double> fast{1.0, omega};
   const double drift = t / omega * (1 - 0.05 * t) - std::sin(omega * t) / (omega * omega);

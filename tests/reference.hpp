@@ -84,7 +84,9 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  double uniform(double least, double most) { return least + (most - least) * (double(bits() >> 11) * 0x1p-53); }
+  double uniform(double least, double most) {
+    return least + (most - least) * (double(bits() >> 11) * 0x1p-53);
+  }
   double log_uniform(double least, double most) { return std::exp(uniform(std::log(least), std::log(most))); }
   bool chance(double probability) { return uniform(0, 1) < probability; }
   double sign() { return chance(0.5) ? 1 : -1; }
