@@ -38,6 +38,11 @@ class Timeline {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(end_) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
+  // When the scene ended: on the dot where a time ended it.
+  double end_time() const {
+    const bool by_time = stopped_ == StopReason::time || stopped_ == StopReason::time_budget;
+    return by_time ? end_ : double(clock_.now());
+  }
   // For how long a bound on a motion may be asked for.
   const Real& span() const { return span_; }
 
