@@ -13,8 +13,8 @@ TEST_CASE("the closed form gives back the restitution it came from") {
     const double z = zeta_m_closed_form(e);
     CHECK(std::exp(-std::numbers::pi * z / std::sqrt((1 - z) * (1 + z))) == doctest::Approx(e).epsilon(1e-9));
   }
-  CHECK(zeta_m_closed_form(1) == 0);
-  CHECK(zeta_m_closed_form(0) == 1);
+  CHECK(zeta_m_closed_form(1.0) == 0);
+  CHECK(zeta_m_closed_form(0.0) == 1);
 }
 
 TEST_CASE("the paper's iterative subroutine finds the closed form's zeta_m to its 1e-8 in at least 100 steps") {

@@ -94,6 +94,12 @@ struct Record {
   std::vector<AmplitudeWindow> history_below;  // descending amplitudes
 };
 
+// Why and when a scene ended: what an engine returns; all else it tells its observer (recorder.hpp).
+struct Outcome {
+  StopReason stop_reason = StopReason::time;
+  double end_time = 0;
+};
+
 struct Run {
   StopReason stop_reason = StopReason::time;
   double end_time = 0;

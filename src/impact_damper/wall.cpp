@@ -26,12 +26,6 @@ double rebound_velocity(double zeta, int steps) {
 
 }  // namespace
 
-double zeta_m_closed_form(double restitution) {
-  if (restitution <= 0) return 1;
-  const double l = -std::log(restitution);
-  return l / std::hypot(std::numbers::pi, l);
-}
-
 IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
   constexpr int steps = 100;
   // The rebound velocity falls from 1 to 0 as zeta goes from 0 to 1, so bisection cannot fail. It starts,
@@ -51,15 +45,6 @@ IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
     ++found.corrections;
   }
   return found;
-}
-
-double zeta_m(const Scene& scene, Calibration calibration) {
-  const double fixed = zeta_m_closed_form(scene.restitution);
-  switch (calibration) {
-    case Calibration::fixed_wall: return fixed;
-    case Calibration::two_body: return fixed / std::sqrt(1 + scene.mass_ratio);
-  }
-  return fixed;
 }
 
 double omega_m(const Scene& scene) { return std::sqrt(scene.wall_stiffness / scene.mass_ratio); }

@@ -1,0 +1,55 @@
+// The elementary functions of the result path, all in one place: whatever a run's numbers go through
+// besides + - * / and sqrt is called from here and nowhere else.
+#pragma once
+
+#include <cmath>
+
+namespace impact_damper {
+
+template <class Real>
+struct SinCos {
+  Real sin, cos;
+};
+
+template <class Real>
+SinCos<Real> sin_cos(const Real& angle) {
+  using std::cos, std::sin;
+  return {sin(angle), cos(angle)};
+}
+
+template <class Real>
+Real exponential(const Real& x) {
+  using std::exp;
+  return exp(x);
+}
+
+template <class Real>
+Real exponential_minus_1(const Real& x) {
+  using std::expm1;
+  return expm1(x);
+}
+
+template <class Real>
+Real logarithm(const Real& x) {
+  using std::log;
+  return log(x);
+}
+
+template <class Real>
+Real pi() {
+  using std::acos;
+  return acos(Real(-1));
+}
+
+template <class Real>
+Real square_root(const Real& x) {
+  using std::sqrt;
+  return sqrt(x);
+}
+
+template <class Real>
+Real absolute(const Real& x) {
+  return x < 0 ? -x : x;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,83 @@
+#include "impact_damper/simulate.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "impact_damper/exact.hpp"
+#include "impact_damper/recorder.hpp"
+#include "impact_damper/restitution.hpp"
+
+namespace impact_damper {
+namespace {
+
+Outcome run(const Scene& scene, Exact& options, Recorder& recorder) { return run_exact<double>(scene, options, recorder); }
+
+Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
+  return run_restitution<double>(scene, options, recorder);
+}
+
+Outcome run(const Scene&, Cem&, Recorder&) { throw std::invalid_argument("engine: cem is not built yet"); }
+
+void collect(std::string& all, const std::string& field, const std::string& message) {
+  if (!all.empty()) all += '\n';
+  all += field + ": " + message;
+}
+
+std::string problems_of(const Scene& scene, const Engine& engine, const Record& record) {
+  std::string all;
+  for (const Problem& problem : problems_of(scene)) collect(all, problem.field, problem.message);
+
+  const Budget& budget = std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
+  if (budget.max_impacts < 0) collect(all, "max_impacts", "must be >= 0");
+  if (budget.max_half_cycles < 1) collect(all, "max_half_cycles", "must be >= 1");
+  if (!(budget.max_time > 0 && budget.max_time <= 1e12)) collect(all, "max_time", "must be > 0 and <= 1e12");
+  if (const auto* options = std::get_if<Restitution>(&engine)) {
+    if (!(options->accumulation_tolerance > 0 && options->accumulation_tolerance <= 1e-3)) {
+      collect(all, "accumulation_tolerance", "must be > 0 and <= 0.001");
+    }
+    if (!(scene.y0 >= 0 && scene.y0 <= 1)) {
+      collect(all, "y0", "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid");
+    }
+  }
+
+  if (!record.history.empty() && !record.history_below.empty()) {
+    collect(all, "history", "either by times or by amplitudes, not both in one run");
+  }
+  double last = 0;
+  for (const HistoryWindow& window : record.history) {
+    if (!(window.begin >= last && window.end > window.begin && window.end <= 1e12 && window.count >= 2)) {
+      collect(all, "history", "each window must begin at or after the end of the one before, end after it begins, "
+                              "and have at least 2 samples");
+      break;
+    }
+    last = window.end;
+  }
+  double above = std::numeric_limits<double>::infinity();
+  for (const AmplitudeWindow& window : record.history_below) {
+    if (!(window.amplitude > 0 && window.amplitude < above && window.length > 0 && window.count >= 2)) {
+      collect(all, "history_below", "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2");
+      break;
+    }
+    above = window.amplitude;
+  }
+  return all;
+}
+
+}  // namespace
+
+Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
+  const std::string problems = problems_of(scene, engine, record);
+  if (!problems.empty()) throw std::invalid_argument(problems);
+
+  Run result;
+  result.scene = scene;
+  result.engine = engine;
+  Recorder recorder(record);
+  const Outcome outcome = std::visit([&](auto& options) { return run(scene, options, recorder); }, result.engine);
+  result.stop_reason = outcome.stop_reason;
+  result.end_time = outcome.end_time;
+  recorder.finish(result);
+  return result;
+}
+
+}  // namespace impact_damper
