@@ -1,0 +1,478 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/cem.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "impact_damper/numerical_failure.hpp"
+#include "impact_damper/recorder.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+template <class Real = double>
+Run simulated(const Scene& scene, const Cem& options, const Record& record) {
+  Recorder recorder(record);
+  const CemEnd end = run_cem<Real>(scene, options, recorder);
+  Run run;
+  run.stop_reason = end.reason;
+  run.end_time = end.time;
+  recorder.finish(run);
+  return run;
+}
+
+Record everything() { return {.impacts = true, .contacts = true, .energy = true}; }
+
+// The order seen between an error and the error at half the step.
+double order(double coarse, double fine) { return std::log2(coarse / fine); }
+
+// x at `time` with step h in a scene whose secondary mass touches no wall.
+double x_at(Scene scene, double time, double h) {
+  scene.until_time = time;
+  const Run run = simulated(scene, {.time_step = h, .unstable = true}, {.impacts = true, .history = {{time, time, 1}}});
+  REQUIRE(run.impacts->time.empty());
+  REQUIRE(run.history->time.size() == 1);
+  return run.history->x[0];
+}
+
+void check_second_order(const Scene& scene, double time, double exact) {
+  std::array<double, 4> error;
+  for (int i = 0; i < 4; ++i) error[i] = std::abs(x_at(scene, time, 0.1 / (1 << i)) - exact);
+  for (int i = 0; i < 3; ++i) CHECK(order(error[i], error[i + 1]) == doctest::Approx(2).epsilon(0.05));
+}
+
+// One impact of the left wall, all around it removed: a wall so stiff that the primary mass's spring counts
+// for 1e-9 during the contact. `phase`: how far, in steps, the mass starts from the wall beyond 3.3 contacts.
+double delivered_restitution(Scene scene, Cem options, int steps_per_contact, double phase) {
+  scene.wall_stiffness = 1e10;
+  scene.x0 = 0;
+  const double contact = nominal_contact_time(scene), h = contact / steps_per_contact;
+  scene.w0 = -1;
+  scene.y0 = 0.3 * contact + phase * h;
+  scene.until_time = 3.5 * contact;
+  options.time_step = h;
+  const Run run = simulated(scene, options, {.impacts = true, .history = {{*scene.until_time, *scene.until_time, 1}}});
+  REQUIRE(run.impacts->time.size() == 1);
+  const double v = run.history->v[0], w = run.history->w[0];
+  // Momentum is conserved by the scheme itself: the spring's impulse, 1e-12, and rounding are left.
+  CHECK((1 + scene.mass_ratio) * v + scene.mass_ratio * w == doctest::Approx(-scene.mass_ratio).epsilon(1e-8));
+  return w;
+}
+
+double mean_restitution_error(const Scene& scene, const Cem& options, int steps_per_contact, double exact) {
+  double sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    sum += std::abs(delivered_restitution(scene, options, steps_per_contact, (i + 0.5) / 16) - exact);
+  }
+  return sum / 16;
+}
+
+// log of the growth per step of a regime's fastest growing mode: power iteration on the step as it is.
+double growth(const Scene& scene, Damper damper, Regime regime, double h) {
+  const auto equations = regime_equations<double>(scene, Calibration::fixed_wall, regime);
+  const CemStep<double> a = cem_step(equations, damper, h);
+  Eigen::Vector4d u(0.3, 0.1, 0.2, -0.4);  // x, q, dx, dq
+  if (regime == Regime::flight) u[1] = u[3] = 0;  // q only drifts along
+  double log_norm = 0;
+  constexpr int settle = 20000, steps = 20000;
+  for (int n = 0; n < settle + steps; ++n) {
+    const double dx = a.dx_dx * u[2] + a.dx_dq * u[3] + a.dx_x * u[0] + a.dx_q * u[1];
+    const double dq = a.dq_dx * u[2] + a.dq_dq * u[3] + a.dq_x * u[0] + a.dq_q * u[1];
+    u = {u[0] + dx, regime == Regime::flight ? 0 : u[1] + dq, dx, regime == Regime::flight ? 0 : dq};
+    const double norm = u.norm();
+    if (n >= settle) log_norm += std::log(norm);
+    u /= norm;
+  }
+  return log_norm / steps;
+}
+
+}  // namespace
+
+TEST_CASE("the fastest contact frequency is the largest eigenvalue of the undamped contact system") {
+  for (double nu : {1e-4, 0.02, 1.0, 30.0}) {
+    for (double k : {1e-3, 1.0, 1e4, 1e9}) {
+      Eigen::Matrix2d mass{{1, 0}, {0, nu}}, stiffness{{1 + k, -k}, {-k, k}};
+      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness, mass);
+      CHECK(fastest_contact_frequency({.mass_ratio = nu, .wall_stiffness = k}) ==
+            doctest::Approx(std::sqrt(solver.eigenvalues()[1])).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("the lagged limit is that of the contact between free masses when the wall is stiff") {
+  for (double e : {1.0, 0.8, 0.6, 0.2, 0.0}) {
+    for (double nu : {0.02, 1.0}) {
+      const Scene scene{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e10};
+      const double omega = omega_m(scene) * std::sqrt(1 + nu), z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
+      CHECK(stability_limit(scene, Damper::lagged, Calibration::fixed_wall) ==
+            doctest::Approx(2 * (std::sqrt(1 + z * z) - z) / omega).epsilon(1e-9));  // of order nu/k
+    }
+  }
+}
+
+TEST_CASE("modes keep still just below the stability limit and grow just above it, in flight and in contact") {
+  for (const Scene& scene : {Scene{}, Scene{.restitution = 1}, Scene{.restitution = 0},
+                             Scene{.mass_ratio = 1.5, .damping_ratio = 0.3, .wall_stiffness = 3},
+                             Scene{.restitution = 0.2, .damping_ratio = 2, .wall_stiffness = 50}}) {
+    for (Damper damper : {Damper::centred, Damper::lagged}) {
+      CAPTURE(name_of(damper));
+      CAPTURE(scene.wall_stiffness);
+      CAPTURE(scene.restitution);
+      const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
+      CHECK(growth(scene, damper, Regime::contact, limit * (1 - 1e-4)) < 1e-6);
+      CHECK(growth(scene, damper, Regime::contact, limit * (1 + 1e-4)) > 1e-5);
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 - 1e-4)) < 1e-6);
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + 1e-4)) > 1e-5);
+      CHECK(limit < 2);
+    }
+  }
+}
+
+TEST_CASE("beyond the limit an undamped mode grows as fast as the difference equation says") {
+  // lambda + 1/lambda = 2 - (omega h)^2
+  const Scene scene{.restitution = 1};
+  const double omega = fastest_contact_frequency(scene);
+  for (double excess : {1e-3, 1e-2, 0.3}) {
+    const double by_theory = std::acosh(2 * (1 + excess) * (1 + excess) - 1);
+    for (Damper damper : {Damper::centred, Damper::lagged}) {
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + excess)) == doctest::Approx(by_theory).epsilon(1e-4));
+      CHECK(growth(scene, damper, Regime::contact, 2 * (1 + excess) / omega) == doctest::Approx(by_theory).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("a pressed contact rings up just above the limit and dies away just below it") {
+  for (double e : {0.6, 0.95}) {
+    for (Damper damper : {Damper::centred, Damper::lagged}) {
+      // x < 0 presses the mass to the left wall by about nu x / (k (1 + nu)); begun 2 % off that.
+      Scene scene{.restitution = e, .x0 = -1000, .until_time = 0.8};
+      const double compliance = scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio));
+      scene.y0 = 1.02 * compliance * scene.x0;
+      const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
+      const auto ringing = [&](double h) {
+        const Run run = simulated(scene, {.time_step = h, .damper = damper, .unstable = true},
+                                  {.history = {{0.3, 0.8, 200}}});
+        double largest = 0;
+        for (std::size_t i = 0; i < run.history->x.size(); ++i) {
+          const double pressed = compliance * run.history->x[i];
+          largest = std::max(largest, std::abs(run.history->y[i] / pressed - 1));
+        }
+        return largest;
+      };
+      CHECK(ringing(0.97 * limit) < 0.021);
+      CHECK(ringing(1.03 * limit) > 1);
+    }
+  }
+}
+
+TEST_CASE("a step beyond the stability limit is refused with the step, the limit and the way out") {
+  Scene scene;
+  scene.until_time = 1;
+  for (Damper damper : {Damper::centred, Damper::lagged}) {
+    const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
+    CHECK_NOTHROW(simulated(scene, {.time_step = limit, .damper = damper}, {}));
+    CHECK_NOTHROW(simulated(scene, {.time_step = 1.01 * limit, .damper = damper, .unstable = true}, {}));
+    CHECK_THROWS_AS(simulated(scene, {.time_step = 1.000001 * limit, .damper = damper}, {}), std::invalid_argument);
+  }
+  try {
+    simulated(scene, {.time_step = 0.003}, {});
+    FAIL("not refused");
+  } catch (const std::invalid_argument& refusal) {
+    const std::string message = refusal.what();
+    for (const char* part : {"time_step", "0.003", "0.00280", "714.1", "centred", "contact", "--unstable"}) {
+      CAPTURE(message);
+      CHECK(message.find(part) != std::string::npos);
+    }
+  }
+  for (double h : {0.0, -1e-3, double(NAN), double(INFINITY)}) {
+    CHECK_THROWS_AS(simulated(scene, {.time_step = h, .unstable = true}, {}), std::invalid_argument);
+  }
+}
+
+TEST_CASE("an unstable run that overflows ends in a numerical failure") {
+  Scene scene;
+  scene.until_time = 1e5;
+  CHECK_THROWS_AS(simulated(scene, {.time_step = 2.1, .unstable = true}, everything()), NumericalFailure);
+}
+
+TEST_CASE("the default step is a hundredth of the fastest of contact, primary mass and forcing") {
+  CHECK(*resolved({}, {}).time_step == nominal_contact_time({}) / 100);
+  CHECK(*resolved({.wall_stiffness = 1e-6}, {}).time_step == pi / 100);
+  CHECK(*resolved({.force_amplitude = 1, .force_frequency = 5000}, {}).time_step == pi / 5000 / 100);
+  CHECK(*resolved({}, {.time_step = 1e-3}).time_step == 1e-3);
+}
+
+TEST_CASE("without contact x converges to the closed forms with second order") {
+  Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1};
+  check_second_order(scene, 9.7, 0.2 * std::cos(9.7) + 0.1 * std::sin(9.7));
+
+  scene.damping_ratio = 0.1;
+  const double omega = std::sqrt(0.99);
+  check_second_order(scene, 9.7, std::exp(-0.97) * (0.2 * std::cos(omega * 9.7) + 0.12 / omega * std::sin(omega * 9.7)));
+
+  scene.damping_ratio = 2;  // x'' + 4 x' + x = 0
+  const double fast = -2 - std::sqrt(3), slow = -2 + std::sqrt(3);
+  const double a = (0.1 - fast * 0.2) / (slow - fast);
+  check_second_order(scene, 2.3, a * std::exp(slow * 2.3) + (0.2 - a) * std::exp(fast * 2.3));
+}
+
+TEST_CASE("forced response and resonance converge to the closed forms with second order") {
+  Scene scene{.x0 = 0, .y0 = 0.5, .force_amplitude = 0.02, .force_frequency = 1.7};
+  scene.w0 = 0;
+  check_second_order(scene, 19.3, 0.02 / (1 - 1.7 * 1.7) * (std::sin(1.7 * 19.3) - 1.7 * std::sin(19.3)));
+  scene.force_frequency = 1;
+  check_second_order(scene, 19.3, 0.01 * (std::sin(19.3) - 19.3 * std::cos(19.3)));
+}
+
+TEST_CASE("forcing is as good after many steps as at the first") {
+  // At resonance the envelope grows as f0 t / 2; 2e6 steps reseed the forcing's recurrence 2e3 times.
+  Scene scene{.x0 = 0, .y0 = 0.5, .force_amplitude = 4e-4};
+  const double time = 2000.1, h = 1e-3;
+  CHECK(x_at(scene, time, h) == doctest::Approx(2e-4 * (std::sin(time) - time * std::cos(time))).epsilon(2e-4));
+}
+
+TEST_CASE("half cycles have the closed form's crossings and amplitudes, to second order") {
+  // Undamped, x = A cos(t - phase): crossings at phase + pi/2 + n pi, every amplitude A.
+  Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = 20};
+  const double amplitude = std::hypot(0.2, 0.1), phase = std::atan2(0.1, 0.2);
+  for (double h : {0.02, 0.01}) {
+    const Run run = simulated(scene, {.time_step = h, .unstable = true}, {});
+    const HalfCycles& rows = *run.half_cycles;
+    REQUIRE(rows.amplitude.size() == 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+      // The scheme's own period is short by h^2/24, its amplitude large by h^2/8 at most.
+      const double time = phase + double(i) * pi, slip = time * h * h / 20 + h * h;
+      CHECK(std::abs(rows.zero_crossing[i] - (time + pi / 2)) < slip + h * h);
+      CHECK(std::abs(rows.peak_time[i] - time) < slip);
+      CHECK(std::abs(rows.amplitude[i] - amplitude) < amplitude * h * h / 8);
+      CHECK(rows.impacts[i] == 0);
+    }
+  }
+}
+
+TEST_CASE("released from rest the first amplitude is the release, at time 0") {
+  Scene scene;
+  scene.until_time = 10;
+  const Run run = simulated(scene, {}, {});
+  CHECK(run.half_cycles->amplitude[0] == 6);
+  CHECK(run.half_cycles->peak_time[0] == 0);
+}
+
+TEST_CASE("located, one impact delivers the contact's restitution to second order") {
+  for (double e : {0.6, 0.9, 0.2}) {
+    const Scene scene{.restitution = e};
+    const double z = zeta_m_closed_form(e) * std::sqrt(1 + scene.mass_ratio);
+    const double exact = std::exp(-pi * z / std::sqrt(1 - z * z));
+    std::array<double, 3> error;
+    for (int i = 0; i < 3; ++i) error[i] = mean_restitution_error(scene, {.locate = true}, 40 << i, exact);
+    CHECK(error[0] < 2e-3);
+    CHECK(order(error[0], error[1]) == doctest::Approx(2).epsilon(0.1));
+    CHECK(order(error[1], error[2]) == doctest::Approx(2).epsilon(0.05));
+  }
+  const double delivered = delivered_restitution({}, {.locate = true, .calibration = Calibration::two_body}, 1600, 0.3);
+  CHECK(delivered == doctest::Approx(0.6).epsilon(1e-5));
+}
+
+TEST_CASE("not located, or with the damper lagged, one impact is accurate to first order only") {
+  const Scene scene;
+  const double z = zeta_m_closed_form(0.6) * std::sqrt(1.02), exact = std::exp(-pi * z / std::sqrt(1 - z * z));
+  for (const Cem& options : {Cem{}, Cem{.damper = Damper::lagged}, Cem{.damper = Damper::lagged, .locate = true}}) {
+    std::array<double, 3> error;
+    for (int i = 0; i < 3; ++i) error[i] = mean_restitution_error(scene, options, 100 << i, exact);
+    CHECK(order(error[0], error[1]) == doctest::Approx(1).epsilon(0.15));
+    CHECK(order(error[1], error[2]) == doctest::Approx(1).epsilon(0.15));
+  }
+}
+
+TEST_CASE("an impact, its wall, time and speed are where a mass in uniform flight meets the wall") {
+  // x stays at rest until the first impact: y = y0 + w0 t.
+  for (bool locate : {false, true}) {
+    Scene scene{.x0 = 0, .y0 = 0.25, .w0 = 0.5, .until_time = 2};
+    const Run run = simulated(scene, {.locate = locate}, everything());
+    REQUIRE(run.impacts->time.size() == 1);
+    CHECK(run.impacts->time[0] == doctest::Approx(1.5).epsilon(1e-9));
+    CHECK(run.impacts->wall[0] == Wall::right);
+    CHECK(run.impacts->relative_velocity[0] == doctest::Approx(0.5).epsilon(1e-9));
+    REQUIRE(run.contacts->begin.size() == 1);
+    CHECK(run.contacts->begin[0] == run.impacts->time[0]);
+    CHECK(run.contacts->wall[0] == Wall::right);
+    const double z = zeta_m_closed_form(0.6) * std::sqrt(1.02);
+    const double contact = nominal_contact_time(scene) / std::sqrt(1 - z * z);
+    CHECK(run.contacts->end[0] - run.contacts->begin[0] == doctest::Approx(contact).epsilon(0.02));
+  }
+}
+
+TEST_CASE("a mass pressed to the wall at the start is in contact but makes no impact") {
+  for (bool locate : {false, true}) {
+    Scene scene{.x0 = -3, .until_time = 1};  // y'' = x < 0
+    const Run run = simulated(scene, {.locate = locate}, everything());
+    CHECK(run.impacts->time.empty());
+    REQUIRE(run.contacts->begin.size() >= 1);
+    CHECK(run.contacts->begin[0] == 0);
+    CHECK(run.contacts->wall[0] == Wall::left);
+    CHECK(run.energy->impact_loss.empty());
+    CHECK(run.energy->contact_loss > 0);
+  }
+}
+
+TEST_CASE("the mirrored scene gives the mirrored run") {
+  for (bool locate : {false, true}) {
+    Scene scene{.v0 = 0.3, .y0 = 0.2, .w0 = 0.1, .until_time = 30};
+    Scene mirrored = scene;
+    mirrored.x0 = -6, mirrored.v0 = -0.3, mirrored.y0 = 0.8, mirrored.w0 = -0.1;
+    const Record record{.impacts = true, .history = {{0, 30, 301}}};
+    const Run a = simulated(scene, {.locate = locate}, record), b = simulated(mirrored, {.locate = locate}, record);
+    REQUIRE(a.impacts->time.size() > 20);
+    REQUIRE(a.impacts->time.size() == b.impacts->time.size());
+    // Only rounding differs, y against 1 - y; no chaos above an amplitude of 3.5.
+    for (std::size_t i = 0; i < a.impacts->time.size(); ++i) {
+      CHECK(std::abs(a.impacts->time[i] - b.impacts->time[i]) < 1e-8);
+      CHECK(a.impacts->wall[i] != b.impacts->wall[i]);
+    }
+    for (std::size_t i = 0; i < a.history->time.size(); ++i) {
+      CHECK(std::abs(a.history->x[i] + b.history->x[i]) < 1e-8);
+      CHECK(std::abs(a.history->y[i] - (1 - b.history->y[i])) < 1e-8);
+    }
+  }
+}
+
+TEST_CASE("the ledger's residual vanishes with second order, and unforced energy only falls") {
+  for (bool locate : {false, true}) {
+    for (double zeta : {0.0, 0.008}) {
+      Scene scene{.damping_ratio = zeta, .until_time = 12};
+      std::array<double, 3> residual;
+      for (int i = 0; i < 3; ++i) {
+        const Run run = simulated(scene, {.time_step = 1e-4 / (1 << i), .locate = locate}, everything());
+        const EnergyLedger& ledger = *run.energy;
+        residual[i] = std::abs(ledger.residual);
+        CHECK(ledger.impact_loss.size() == run.impacts->time.size());
+        for (double loss : ledger.impact_loss) CHECK(loss >= 0);
+        CHECK(ledger.final.total() < ledger.initial.total());
+        CHECK(ledger.viscous_work >= 0);
+        CHECK((ledger.viscous_work > 0) == (zeta > 0));
+      }
+      MESSAGE(locate, " ", zeta, " ", residual[0], " ", residual[1], " ", residual[2]);
+    }
+  }
+}
+
+TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme's own error") {
+  for (const Cem& options : {Cem{}, Cem{.locate = true}, Cem{.damper = Damper::lagged}}) {
+    Scene scene{.until_time = 100};
+    const Run run = simulated(scene, options, {.history = {{0, 100, 4001}}});
+    const History& h = *run.history;
+    double before = INFINITY, largest_rise = 0;
+    for (std::size_t i = 0; i < h.time.size(); ++i) {
+      const double nu = scene.mass_ratio, q = std::min(h.y[i], std::max(h.y[i] - 1, 0.0));
+      const double energy = (h.v[i] * h.v[i] + nu * std::pow(h.v[i] + h.w[i], 2) + h.x[i] * h.x[i] +
+                             scene.wall_stiffness * q * q) / 2;
+      largest_rise = std::max(largest_rise, energy - before);
+      before = energy;
+    }
+    MESSAGE(largest_rise);
+  }
+}
+
+TEST_CASE("a lossless wall keeps the energy") {
+  for (bool locate : {false, true}) {
+    Scene scene{.restitution = 1, .until_time = 30};
+    const Run run = simulated(scene, {.locate = locate}, everything());
+    CHECK(run.impacts->time.size() > 10);
+    MESSAGE(run.energy->final.total() / 18 - 1, " ", run.energy->residual);
+    for (double loss : run.energy->impact_loss) CHECK(loss == 0);
+  }
+}
+
+TEST_CASE("history samples come at the times asked for and change nothing else") {
+  Scene scene{.until_time = 20};
+  Record plain = everything(), sampled = everything();
+  sampled.history = {{0, 1, 11}, {5.05, 5.15, 5}, {19, 25, 7}};
+  for (bool locate : {false, true}) {
+    const Run a = simulated(scene, {.locate = locate}, plain), b = simulated(scene, {.locate = locate}, sampled);
+    const std::vector<double>& time = b.history->time;
+    REQUIRE(time.size() == 11 + 5 + 2);  // 19 and 20; the run ends before the others
+    CHECK(time[0] == 0);
+    CHECK(b.history->x[0] == 6);
+    CHECK(b.history->y[0] == 0);
+    CHECK(time[10] == 1);
+    CHECK(time[11] == 5.05);
+    CHECK(time[15] == 5.15);
+    CHECK(time[17] == 20);
+    CHECK(a.impacts->time == b.impacts->time);
+    CHECK(a.half_cycles->amplitude == b.half_cycles->amplitude);
+    for (std::size_t i = 0; i < 5; ++i) {  // the first flight: x = 6 cos t, y = 6 - x
+      if (time[i] > 0.5) continue;
+      CHECK(b.history->x[i] == doctest::Approx(6 * std::cos(time[i])).epsilon(1e-8));
+      CHECK(b.history->v[i] == doctest::Approx(-6 * std::sin(time[i])).epsilon(1e-8));
+      CHECK(b.history->y[i] == doctest::Approx(6 - b.history->x[i]).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("a window below an amplitude begins at the zero crossing that ends its half cycle") {
+  Scene scene{.until_amplitude = 5.5};
+  const Run run = simulated(scene, {}, {.history_below = {{5.9, 2, 3}}});
+  const HalfCycles& rows = *run.half_cycles;
+  std::size_t i = 0;
+  while (rows.amplitude[i] >= 5.9) ++i;
+  REQUIRE(run.history->time.size() == 3);
+  CHECK(run.history->time[0] == rows.zero_crossing[i]);
+  CHECK(std::abs(run.history->x[0]) < 1e-7);  // the parabola's zero, to rounding in the step's own position
+  CHECK(run.history->time[2] == doctest::Approx(rows.zero_crossing[i] + 2).epsilon(1e-15));
+}
+
+TEST_CASE("a run ends at its time, its amplitude or its budget, and says which") {
+  Scene scene{.until_time = 5.25};
+  CHECK(simulated(scene, {}, {}).end_time == 5.25);
+  CHECK(simulated(scene, {}, {}).stop_reason == StopReason::time);
+
+  scene = {.until_amplitude = 5.9};
+  Run run = simulated(scene, {}, {});
+  CHECK(run.stop_reason == StopReason::amplitude);
+  CHECK(run.end_time == run.half_cycles->zero_crossing.back());
+  CHECK(run.half_cycles->amplitude.back() < 5.9);
+  CHECK(run.half_cycles->amplitude.rbegin()[1] >= 5.9);
+
+  Cem options{.budget = {.max_impacts = 7}};
+  run = simulated(scene, options, everything());
+  CHECK(run.stop_reason == StopReason::impact_budget);
+  CHECK(run.impacts->time.size() == 7);
+  CHECK(run.end_time == run.impacts->time.back());
+  CHECK(run.energy->impact_loss.size() == 7);
+
+  options.budget = {.max_half_cycles = 3};
+  run = simulated(scene, options, {});
+  CHECK(run.stop_reason == StopReason::half_cycle_budget);
+  CHECK(run.half_cycles->amplitude.size() == 3);
+
+  scene.damping_ratio = 1.5;  // never crosses zero
+  options.budget = {.max_time = 40};
+  run = simulated(scene, options, {});
+  CHECK(run.stop_reason == StopReason::time_budget);
+  CHECK(run.end_time == 40);
+}
+
+TEST_CASE("extended precision gives the same run to the last digits but a few") {
+  for (bool locate : {false, true}) {
+    Scene scene{.until_time = 30};
+    const Run a = simulated<double>(scene, {.locate = locate}, everything());
+    const Run b = simulated<long double>(scene, {.locate = locate}, everything());
+    REQUIRE(a.impacts->time.size() == b.impacts->time.size());
+    for (std::size_t i = 0; i < a.impacts->time.size(); ++i) {
+      CHECK(std::abs(a.impacts->time[i] - b.impacts->time[i]) < 1e-8);
+    }
+    for (std::size_t i = 0; i < a.half_cycles->amplitude.size(); ++i) {
+      CHECK(std::abs(a.half_cycles->amplitude[i] - b.half_cycles->amplitude[i]) < 1e-9);
+    }
+  }
+}
