@@ -195,8 +195,10 @@ int run(const CLI::App& app) {
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments);
   arguments.finish();
+  const std::optional<std::string> file = arguments.text("--output");
+  if (file) require_writable(*file);
   const std::string text = run_text(simulate_as_asked(scene, engine, record));
-  if (const std::optional<std::string> file = arguments.text("--output")) {
+  if (file) {
     write_file(*file, text);
   } else {
     write_standard_output(text);
