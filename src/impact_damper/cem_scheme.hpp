@@ -43,7 +43,7 @@ RegimeEquations<Real> regime_equations(const Scene& scene, Calibration calibrati
   RegimeEquations<Real> equations{.nu = scene.mass_ratio, .zeta = scene.damping_ratio, .c = 0, .omega_2 = 0};
   if (regime == Regime::flight) return equations;
   equations.omega_2 = Real(scene.wall_stiffness) / equations.nu;
-  equations.c = 2 * square_root(equations.omega_2) * Real(zeta_m(scene, calibration));
+  equations.c = 2 * square_root(equations.omega_2) * zeta_m<Real>(scene, calibration);
   return equations;
 }
 
