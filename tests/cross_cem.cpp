@@ -28,7 +28,8 @@ Distance distance(const Scene& scene, const Cem& options, const Run& exact) {
   }
   REQUIRE(run.half_cycles->amplitude.size() == exact.half_cycles->amplitude.size());
   for (std::size_t i = 0; i < run.half_cycles->amplitude.size(); ++i) {
-    far.amplitude = std::max(far.amplitude, std::abs(run.half_cycles->amplitude[i] - exact.half_cycles->amplitude[i]));
+    far.amplitude =
+        std::max(far.amplitude, std::abs(run.half_cycles->amplitude[i] - exact.half_cycles->amplitude[i]));
   }
   far.energy = std::abs(run.energy->final.total() - exact.energy->final.total());
   return far;
@@ -47,16 +48,25 @@ void check_order(const Scene& scene, Cem options, double expected, double tolera
   CHECK(std::abs(order(coarse.energy, fine.energy) - expected) < tolerance);
 }
 
-// Bounce-down and stuck, from an amplitude of 6 down to 5.3: no chaos, each stuck phase forgets the one before.
+// Bounce-down and stuck, from an amplitude of 6 down to 5.3: no chaos, each stuck phase forgets the one
+// before.
 const Scene bounce_down{.until_time = 160};
 
-const Scene forced{.mass_ratio = 0.1, .restitution = 0.3, .damping_ratio = 0.02, .x0 = 3, .y0 = 0.4,
-                   .force_amplitude = 0.5, .force_frequency = 0.9, .until_time = 15};
-const Scene overlapping{.restitution = 0.2, .damping_ratio = 1.2, .x0 = -4, .y0 = -0.01, .w0 = 0.5, .until_time = 4};
+const Scene forced{.mass_ratio = 0.1,
+                   .restitution = 0.3,
+                   .damping_ratio = 0.02,
+                   .x0 = 3,
+                   .y0 = 0.4,
+                   .force_amplitude = 0.5,
+                   .force_frequency = 0.9,
+                   .until_time = 15};
+const Scene overlapping{
+    .restitution = 0.2, .damping_ratio = 1.2, .x0 = -4, .y0 = -0.01, .w0 = 0.5, .until_time = 4};
 
 }  // namespace
 
-TEST_CASE("with located events the component element method converges to the exact engine with second order") {
+TEST_CASE(
+    "with located events the component element method converges to the exact engine with second order") {
   for (const Scene& scene : {bounce_down, forced, overlapping}) check_order(scene, {.locate = true}, 2, 0.15);
 }
 
@@ -86,7 +96,9 @@ TEST_CASE("unlocated it converges with first order, in the mean over neighbourin
   }
 }
 
-TEST_CASE("with the default step a decay to 5.3 has the exact engine's amplitudes to three digits, located to five") {
+TEST_CASE(
+    "with the default step a decay to 5.3 has the exact engine's amplitudes to three digits, located to "
+    "five") {
   const Run exact = simulate(bounce_down, Exact{}, looked_at(160));
   CHECK(distance(bounce_down, {}, exact).amplitude < 2e-3);
   CHECK(distance(bounce_down, {.locate = true}, exact).amplitude < 5e-6);

@@ -137,9 +137,9 @@ class CemEngine {
   const bool peaks_;  // somebody looks at amplitudes
   const State<Real> initial_;
 
-  Moment before_{}, now_{};  // the last step went from the one to the other
-  Real origin_ = 0;          // time of step 0
-  std::int64_t step_ = 0;    // number of now_
+  Moment before_{}, now_{};   // the last step went from the one to the other
+  Real origin_ = 0;           // time of step 0
+  std::int64_t step_ = 0;     // number of now_
   std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;
@@ -156,7 +156,7 @@ class CemEngine {
 };
 
 // Runs the scene for an observer with the members of Recorder. Checks the step first: throws
-// std::invalid_argument with the problem; throws NumericalFailure where the numbers overflow.
+// std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
 template <class Real = double, class Observer>
 Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
   const Cem complete = resolved(scene, options);

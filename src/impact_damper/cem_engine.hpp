@@ -314,7 +314,8 @@ void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
     ledger.viscous_work = double(viscous_work_);
     ledger.forcing_work = double(forcing_work_);
     const double largest = std::max(largest_energy_, std::abs(ledger.forcing_work));
-    const Real open = (ledger.initial.total() + forcing_work_) - (ledger.final.total() + losses_ + viscous_work_);
+    const Real open =
+        (ledger.initial.total() + forcing_work_) - (ledger.final.total() + losses_ + viscous_work_);
     ledger.residual = largest > 0 ? double(open) / largest : 0.0;
   }
   end_ = Outcome{reason, double(time)};

@@ -58,8 +58,8 @@ template <class Real>
 CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, const Real& h) {
   const auto& [nu, zeta, c, omega_2] = equations;
   const bool centred = damper == Damper::centred;
-  const Real ahead = centred ? h * c / 2 : Real(0);   // the wall damper's share of the left side,
-  const Real behind = centred ? h * c / 2 : h * c;    // and of the right
+  const Real ahead = centred ? h * c / 2 : Real(0);  // the wall damper's share of the left side,
+  const Real behind = centred ? h * c / 2 : h * c;   // and of the right
   const Real outer = h * zeta, h_2 = h * h, spring = h_2 * omega_2;
   const Real determinant = (1 + outer) * (1 + ahead) + nu * ahead;
   // The inverse of M + h C/2, times h^2 for the forces.

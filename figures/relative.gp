@@ -1,0 +1,49 @@
+# Figures 1-3: the secondary mass as its cavity sees it, and below it what the cavity does meanwhile.
+eval require("motion", 100)
+eval require("impacts", 1)
+stats table index "motion" using 1:2 nooutput
+from = STATS_min_x; to = STATS_max_x; reach = 1.15 * (STATS_max_y > -STATS_min_y ? STATS_max_y : -STATS_min_y)
+
+set multiplot
+set xrange [from:to]
+set lmargin at screen 0.115
+set rmargin at screen 0.975
+
+set tmargin at screen 0.875
+set bmargin at screen 0.385
+set format x ""
+set xtics 2 nomirror
+set mxtics 2
+set ytics ("0" 0, "0.5" 0.5, "1" 1)
+set yrange [-0.14:1.14]
+set ylabel "relative displacement y" offset 1,0
+set object 1 rectangle from from,-0.14 to to,0 fc rgb pale fs solid noborder behind
+set object 2 rectangle from from,1 to to,1.14 fc rgb pale fs solid noborder behind
+set label 1 "right wall" at graph 0.01, first 1.07 left font ",11" textcolor rgb grey front
+set label 2 "left wall" at graph 0.01, first -0.075 left font ",11" textcolor rgb grey front
+set arrow 1 from from,0 to to,0 nohead lc rgb black lw 2.2 front
+set arrow 2 from from,1 to to,1 nohead lc rgb black lw 2.2 front
+unset key
+if (has("stuck")) {
+  plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6, \
+       table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion, \
+       table index "stuck" using 1:3:($2-$1):(0) with vectors nohead lc rgb orange lw 6
+} else {
+  plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6, \
+       table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion
+}
+
+unset title
+unset object
+unset label
+unset arrow
+set tmargin at screen 0.355
+set bmargin at screen 0.13
+set format x "%g"
+set xlabel "dimensionless time t"
+set ylabel "cavity x" offset 1,0
+set yrange [-reach:reach]
+set ytics autofreq
+set arrow 3 from from,0 to to,0 nohead lc rgb grey lw 0.6
+plot table index "motion" using 1:2 with lines lc rgb black lw 1.4
+unset multiplot

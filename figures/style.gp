@@ -1,0 +1,29 @@
+# What all figures share; read before the figure's own script (see draw), which finds these variables:
+# table, output, title, parameters, folder.
+set encoding utf8
+set terminal svg size 720,500 enhanced font "DejaVu Sans,15" linewidth 1 rounded background "white"
+set output output
+
+# The colours of Okabe and Ito, told apart by all; every line also differs in dash and mark, so that a black
+# and white copy reads as well. Line type 1 is the base scene in every figure it appears in.
+black = "#000000"; blue = "#0072B2"; vermillion = "#D55E00"; green = "#009E73"; purple = "#CC79A7"
+orange = "#E69F00"; grey = "#6E6E6E"; pale = "#E4E4E4"
+set style line 1 lc rgb black      lw 1.8 dt 1           pt 7 ps 0.5
+set style line 2 lc rgb blue       lw 1.8 dt (9,3)       pt 4 ps 0.6
+set style line 3 lc rgb vermillion lw 1.8 dt (9,3,2,3)   pt 8 ps 0.7
+set style line 4 lc rgb green      lw 1.8 dt (3,2.5)     pt 6 ps 0.6
+# Theory: thin, without marks.
+set style line 9 lc rgb purple     lw 1.3 dt 1
+set style line 10 lc rgb grey      lw 0.8 dt 1
+
+set border 31 lw 1
+set tics in scale 0.8,0.4 font ",13"
+set key noopaque samplen 3.2 spacing 1.15 font ",13" width -1
+set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.5
+
+# Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
+require(block, least) = sprintf( \
+  "stats table index '%s' using 1:2 nooutput; if (STATS_records < %d || STATS_invalid > 0) { exit message 'block %s of '.table.' is short or not finite' status 1 }", \
+  block, least, block)
+# Whether an optional block is there.
+has(block) = 0 + system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0

@@ -1,0 +1,68 @@
+#include "arguments.hpp"
+
+#include "impact_damper/number_text.hpp"
+
+namespace impact_damper::cli {
+
+bool Arguments::given(const std::string& option) const { return app_.count(option) > 0; }
+
+std::vector<std::string> Arguments::texts(const std::string& option) const {
+  return app_.get_option(option)->results();
+}
+
+std::optional<std::string> Arguments::text(const std::string& option) const {
+  if (!given(option)) return std::nullopt;
+  return texts(option).back();
+}
+
+std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
+  const std::optional<std::string> given_text = text(option);
+  if (!given_text) return std::nullopt;
+  const std::optional<double> value = parse_number(*given_text);
+  if (value && range.admits(*value)) return value;
+  refuse(option, "must be " + range.describe("a finite number") + ", got " + in_quotes(*given_text));
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> Arguments::whole_number(const std::string& option, NumberRange range) {
+  const std::optional<std::string> given_text = text(option);
+  if (!given_text) return std::nullopt;
+  const std::optional<std::int64_t> value = parse_integer(*given_text);
+  if (value && range.admits(static_cast<double>(*value))) return value;
+  refuse(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> Arguments::word(const std::string& option,
+                                           const std::vector<std::string_view>& words) {
+  const std::optional<std::string> given_text = text(option);
+  if (!given_text) return std::nullopt;
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (*given_text == words[i]) return i;
+    list += (i == 0 ? "" : ", ") + std::string(words[i]);
+  }
+  refuse(option, "must be one of " + list + ", got " + in_quotes(*given_text));
+  return std::nullopt;
+}
+
+void Arguments::refuse(const std::string& option, const std::string& what) {
+  problems_ += (problems_.empty() ? "" : "\n") + option + ": " + what;
+}
+
+void Arguments::finish() const {
+  if (!problems_.empty()) throw UsageError(problems_);
+}
+
+std::optional<Triple> parse_triple(std::string_view text) {
+  const std::size_t first = text.find(':');
+  const std::size_t second = first == text.npos ? text.npos : text.find(':', first + 1);
+  if (second == text.npos) return std::nullopt;
+  const auto a = parse_number(text.substr(0, first));
+  const auto b = parse_number(text.substr(first + 1, second - first - 1));
+  const auto count = parse_integer(text.substr(second + 1));
+  if (!a || !b || !count) return std::nullopt;
+  return Triple{*a, *b, *count};
+}
+
+}  // namespace impact_damper::cli

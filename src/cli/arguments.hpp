@@ -1,0 +1,54 @@
+// What was given on the command line, checked: every problem is found and named in one go.
+//
+// Options are declared without a type (`app.add_option("--x0", help)`), because the parser's own conversion
+// lets nan pass and saturates large integers; their text is converted here.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/json_reader.hpp"
+
+namespace impact_damper::cli {
+
+// A command line that is not admitted: what() has one line for each problem.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Arguments {
+ public:
+  explicit Arguments(const CLI::App& app) : app_(app) {}
+
+  // Absent if the option was not given, or was given and is not admitted: then it is noted for finish().
+  std::optional<std::string> text(const std::string& option) const;
+  std::vector<std::string> texts(const std::string& option) const;
+  std::optional<double> number(const std::string& option, NumberRange range = {});
+  std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
+  std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);
+  bool given(const std::string& option) const;
+
+  // Notes a problem: "what is admitted, what was given".
+  void refuse(const std::string& option, const std::string& what);
+  // Throws UsageError if anything was noted.
+  void finish() const;
+
+ private:
+  const CLI::App& app_;
+  std::string problems_;
+};
+
+// The numbers A:B:N of `text`, for options that ask for samples: two finite numbers and a count.
+struct Triple {
+  double first = 0, second = 0;
+  std::int64_t count = 0;
+};
+std::optional<Triple> parse_triple(std::string_view text);
+
+}  // namespace impact_damper::cli

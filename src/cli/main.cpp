@@ -1,0 +1,104 @@
+// The program: hands the command line to one subcommand and turns what goes wrong into one line for each
+// problem on stderr and an exit code.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <array>
+#include <iostream>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/errors.hpp"
+#include "impact_damper/provenance.hpp"
+
+namespace {
+
+using namespace impact_damper;
+
+enum Exit { done = 0, check_failed = 1, usage = 2, bad_input = 3, numerical_failure = 4, input_output = 5 };
+
+// `head` stands before each problem; those of files begin with the file's name and need none.
+int fail(Exit code, const std::string& head, const std::string& problems) {
+  std::istringstream lines(problems);
+  for (std::string line; std::getline(lines, line);) std::cerr << head + line + '\n';
+  return code;
+}
+
+// One line for each argument that nobody asked for, with the option or subcommand it was meant to be.
+std::string unknown_arguments(const CLI::App& program, const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  if (&program == &command) {
+    for (const CLI::App* each : program.get_subcommands({})) names.push_back(each->get_name());
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  std::string lines;
+  for (const std::string& argument : program.remaining(true)) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const auto meant = nearest(name, known);
+    lines += (lines.empty() ? "" : "\n") + std::string("unknown argument ") + in_quotes(argument) +
+             (meant ? ", did you mean " + std::string(*meant) + "?" : "");
+  }
+  return lines;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{
+      "The impact damped simple harmonic oscillator: simulate it, and hold the results against the paper.",
+      "impact-damper"};
+  program.set_version_flag("--version", "impact-damper " + std::string(provenance().version) + " (" +
+                                            std::string(provenance().commit) + ")");
+  program.get_formatter()->column_width(36);
+  program.require_subcommand(0, 1);
+  program.footer(
+      "impact-damper SUBCOMMAND --help says more about each.\n\n"
+      "Exit codes: 0 done, 1 a check failed, 2 the command line is not admitted, 3 an input file's content "
+      "is\n"
+      "not admitted, 4 numerical failure, 5 a file cannot be read or written.");
+
+  const std::array commands{
+      cli::scenes_command(program),
+  };
+
+  const auto head = [&] {
+    const auto parsed = program.get_subcommands();
+    return program.get_name() + (parsed.empty() ? "" : ' ' + parsed.front()->get_name()) + ": ";
+  };
+  const auto command_of = [&]() -> const CLI::App& {
+    const auto parsed = program.get_subcommands();
+    return parsed.empty() ? program : *parsed.front();
+  };
+
+  try {
+    program.parse(argc, argv);
+    for (const cli::Command& command : commands) {
+      if (command.arguments->parsed()) return command.act();
+    }
+    throw cli::UsageError("a subcommand must be given, see impact-damper --help");
+  } catch (const CLI::Success& asked_for_help_or_version) {
+    return program.exit(asked_for_help_or_version);
+  } catch (const CLI::ExtrasError&) {
+    return fail(usage, head(), unknown_arguments(program, command_of()));
+  } catch (const CLI::ParseError& error) {
+    return fail(usage, head(), error.what());
+  } catch (const cli::UsageError& error) {
+    return fail(usage, head(), error.what());
+  } catch (const InputError& error) {
+    return fail(bad_input, {}, error.what());
+  } catch (const IoError& error) {
+    return fail(input_output, {}, error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(usage, head(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(numerical_failure, head(), "out of memory");
+  } catch (const std::exception& error) {
+    return fail(numerical_failure, head(), error.what());
+  }
+}

@@ -1,0 +1,83 @@
+// `scenes`: what there is to run, as an aligned table.
+#include <algorithm>
+#include <filesystem>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/errors.hpp"
+#include "impact_damper/file_output.hpp"
+#include "impact_damper/number_text.hpp"
+#include "impact_damper/scene_file.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Row = std::vector<std::string>;
+
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".json") files.push_back(entry->path());
+  }
+  if (error) throw IoError(folder.string() + ": cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += row[i];
+      if (i + 1 < row.size()) text.append(widths[i] - row[i].size() + 2, ' ');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+int list_scenes(const fs::path& folder) {
+  Row titles{"scene"};
+  for (const SceneField& field : scene_fields) titles.emplace_back(field.name);
+  titles.insert(titles.end(), {"until_time", "until_amplitude"});
+  std::vector<Row> rows{titles};
+  std::vector<std::string> problems;
+  for (const fs::path& file : scene_files(folder)) {
+    try {
+      const Scene scene = read_scene(file);
+      Row row{file.stem().string()};
+      for (const SceneField& field : scene_fields) row.push_back(number_text(scene.*field.member));
+      for (const auto& stop : {scene.until_time, scene.until_amplitude}) {
+        row.push_back(stop ? number_text(*stop) : "-");
+      }
+      rows.push_back(row);
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+  write_standard_output(aligned(rows));
+  return 0;
+}
+
+}  // namespace
+
+Command scenes_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("scenes", "List the scenes of a folder, each with its numbers.");
+  app->add_option("FOLDER", "folder of scene files (*.json); default data/scenes")->type_name("");
+  app->footer(
+      "Columns are the keys of a scene file; everything is dimensionless (impact-damper run --help).\n\n"
+      "Examples:\n"
+      "  impact-damper scenes\n"
+      "  impact-damper scenes my/scenes");
+  return {app, [app] { return list_scenes(Arguments(*app).text("FOLDER").value_or("data/scenes")); }};
+}
+
+}  // namespace impact_damper::cli

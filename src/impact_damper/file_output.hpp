@@ -1,0 +1,19 @@
+// Files are written whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace impact_damper {
+
+// Makes `text` the content of `file`: written under a temporary name in the same folder, then renamed.
+// A file that already holds these bytes is left alone, time stamp included, so that whatever is made
+// from it stays up to date; returns whether it was written. Symbolic links are followed; a device or
+// pipe (/dev/null) is written to directly. Throws IoError, leaving nothing behind, if the folder does
+// not exist, `file` is a directory, or the place cannot be written.
+bool write_file(const std::filesystem::path& file, std::string_view text);
+
+// The same for standard output: a full disk behind it is an IoError too.
+void write_standard_output(std::string_view text);
+
+}  // namespace impact_damper

@@ -1,0 +1,56 @@
+// The averaged loss factor, from the peaks of successive half cycles.
+//
+// The loss factor is taken per radian, eta = dE / (2 pi E) = -2 A'(t) / A(t) with A the amplitude envelope:
+// only then is it 2 zeta for viscous damping alone, which the paper subtracts, and only then do the paper's
+// ordinates come out; the "2 dx/x per cycle" of its text is 2 pi times as much.
+//
+// A'/A at a peak comes from a parabola in time, fitted by least squares to that peak and to as many before
+// as behind it. The fit is not free of bias: on an exponential envelope A = exp(-zeta t) with peaks a time p
+// apart it gives 2 zeta (1 + c (zeta p)^2 + ...), c = (3 n^2 + 3 n - 1) / 30 with n = half_cycles / 2
+// (c = 89/30 for n = 5: 0.2 % at zeta = 0.008). That is the price of the smoothing.
+#pragma once
+
+#include <vector>
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+struct LossFactorOptions {
+  int half_cycles = 10;  // that the parabola spans: even, 10 to 18, on half_cycles + 1 peaks
+};
+
+// One row per peak that has half_cycles/2 peaks on either side of it, in the order of time: n peaks give
+// n - half_cycles rows, or none.
+struct LossFactor {
+  std::vector<double> amplitude;  // the parabola's value at the middle peak, by epsilon
+  std::vector<double> time;       // of the middle peak, by 1/Omega_n
+  std::vector<double> eta;        // -2 A'/A there, per radian
+};
+
+// `peak_time` strictly ascending, `amplitude` positive, of equal length. Throws std::invalid_argument if
+// the columns or the options are not admitted.
+LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
+                                const LossFactorOptions& options = {});
+
+// The same from a run's half cycles. A row whose peak does not lie behind the one before it (a run that
+// starts on its way out of a peak of no height) is no peak and is left out.
+LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorOptions& options = {});
+
+// eta / nu: "specific total loss factor".
+inline double specific_loss(double eta, double mass_ratio) { return eta / mass_ratio; }
+
+// (eta - 2 zeta) / nu: "specific secondary mass loss factor", what the impacts alone take out.
+inline double specific_secondary_loss(double eta, double damping_ratio, double mass_ratio) {
+  return (eta - 2 * damping_ratio) / mass_ratio;
+}
+
+// A (eta - 2 zeta) / nu, and that by 1 - e (e < 1): the ordinates of Figures 12, 13 and 14.
+inline double amplitude_times_loss(double amplitude, double specific) { return amplitude * specific; }
+inline double loss_by_restitution(double ordinate, double restitution) { return ordinate / (1 - restitution); }
+
+// One of these ordinates for every row of `loss`, with the scene's nu, zeta and e.
+enum class LossOrdinate { eta, specific, specific_secondary, amplitude_times, by_restitution };
+std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrdinate which);
+
+}  // namespace impact_damper

@@ -1,0 +1,72 @@
+// The regimes a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and its
+// end, regular impacting, impact failure. Rows are those of Run::half_cycles; "row 0" ran from the release
+// to the first zero crossing and is less than a half cycle, so no rule counts on it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+struct RegimeOptions {
+  // A compliant contact is stuck if it outlasts this many nominal contact times. A full period of the
+  // contact is two: a mass that has not left the wall after one whole oscillation no longer bounces.
+  double stuck_contact_times = 2;
+  // Bounce-down needs this many successive half cycles with a stuck phase. In the chaotic ranges a mass may
+  // meet the wall at a standstill once, even twice; it does not do so regularly.
+  std::int64_t bounce_down_half_cycles = 4;
+  // Half cycles of equal impact count that make a regular window.
+  std::int64_t window_half_cycles = 8;
+  // Impacts are missed when this many successive half cycles bring fewer impacts than half cycles. One is
+  // too few: an impact that slips across a zero crossing empties a half cycle and fills its neighbour.
+  std::int64_t failure_half_cycles = 3;
+};
+
+// The contacts in which the secondary mass sticks to a wall: all that a restitution run recorded, the
+// lasting ones of a compliant run. Needs contacts.
+Contacts stuck_contacts(const Run& run, const RegimeOptions& options = {});
+
+// A stuck interval, or the part of one that lies in a half cycle, in the coordinates of Figure 15.
+struct StuckPhases {
+  std::vector<double> amplitude;             // of the half cycle
+  std::vector<double> begin_deg, end_deg;    // as Impacts::phase_deg, 0 <= begin < end <= 180
+};
+// Needs half_cycles and contacts. Row 0, which no zero crossing began, gives none.
+StuckPhases stuck_phases(const Run& run, const RegimeOptions& options = {});
+
+// End of bounce-down: the amplitude of the last half cycle of the first unbroken series of half cycles, at
+// least bounce_down_half_cycles long, in each of which the mass sticks. Absent if there is no such series,
+// and if the run ends in it. Needs half_cycles and contacts.
+std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& options = {});
+
+// Impact failure: the amplitude of a half cycle without an impact,
+struct ImpactFailure {
+  // the first that no neighbour makes up for: of the failure_half_cycles half cycles that it is the middle
+  // of, it leaves fewer impacts than half cycles;
+  std::optional<double> first_missed;
+  // the first from which on, to the end of the run, every failure_half_cycles successive half cycles bring
+  // fewer impacts than half cycles: impacting has ceased to be regular for good.
+  std::optional<double> for_good;
+};
+// Amplitudes. Needs half_cycles.
+ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
+
+// A maximal series of at least window_half_cycles half cycles with the same number of impacts, at least one.
+struct RegularWindow {
+  std::int64_t impacts = 0;       // per half cycle
+  std::size_t first = 0, last = 0;  // rows, both included
+  double upper = 0, lower = 0;    // amplitudes of these rows
+};
+// In the order of time. Needs half_cycles.
+std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& options = {});
+
+// The longest regular window with `impacts` impacts per half cycle, the earlier of two equals.
+std::optional<RegularWindow> longest_window(const std::vector<RegularWindow>& windows, std::int64_t impacts);
+
+// The row whose amplitude first lies below `amplitude`. Absent if none does.
+std::optional<std::size_t> first_row_below(const HalfCycles& half_cycles, double amplitude);
+
+}  // namespace impact_damper

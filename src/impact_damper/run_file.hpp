@@ -1,0 +1,28 @@
+// Runs as JSON files, schema "impact-damper/run/1": the scene, the engine with every option that can
+// change the result, why and when the run ended, the recorded sections as columns, and provenance.
+//
+// Equal runs make equal bytes, but for "provenance". Numbers are written so that they read back with the
+// same bits; each column stands on a line of its own; a section that was not recorded is not there.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+inline constexpr std::string_view run_schema = "impact-damper/run/1";
+
+// The run as the text of its file. Throws NumericalError naming the column that holds a number which is
+// not finite: JSON has none, and no result has one.
+std::string run_text(const Run& run);
+
+// The run out of a file or a text, strictly: every key known and given, columns of a section equally
+// long, times ascending, sums equal to their parts. Throws IoError if `file` cannot be read, InputError
+// naming everything that is not admitted.
+Run read_run(const std::filesystem::path& file);
+Run parse_run(const std::string& name, const std::string& text);
+
+}  // namespace impact_damper

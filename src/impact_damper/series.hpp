@@ -1,0 +1,33 @@
+// The figure stage: from the runs of a figure's scenes to the table the figure draws. Everything that is
+// computed for a figure is computed here; its script only draws.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "impact_damper/catalogue.hpp"
+#include "impact_damper/run.hpp"
+#include "impact_damper/table.hpp"
+
+namespace impact_damper {
+
+struct FigureRun {
+  std::filesystem::path file;  // where it was read from, for messages
+  Run run;
+};
+using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
+
+// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes. Blocks by kind:
+//
+//   motion       "motion" (time, x, x + 1, z = x + y, y), "impacts", and "stuck" if the mass sticks
+//   decay        "curve-1" ... in the order of the figure's curves (time, amplitude)
+//   loss_factor  "curve-1" ... (amplitude, ordinate); theory, where it has a closed form for the
+//                ordinate: "one-impact-1" ..., "bounce-down-1" ... (if within the axes)
+//   phase        "impacts", "stuck", "windows", and theory: "one-impact", "bounces", "accumulation"
+//
+// Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
+// history, enough half cycles, the amplitude Figure::down_to; or if a drawn value is not finite.
+Table figure_table(const Figure& figure, const FigureRuns& runs);
+
+}  // namespace impact_damper

@@ -1,0 +1,101 @@
+// Figures 8-14: the averaged loss factor over amplitude, and the closed forms it is held against.
+#include <algorithm>
+#include <cmath>
+
+#include "impact_damper/loss_factor.hpp"
+#include "impact_damper/series_blocks.hpp"
+#include "impact_damper/theory.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::string meaning(LossOrdinate which) {
+  switch (which) {
+    case LossOrdinate::eta:
+      return "eta = -2 A'/A, per radian";
+    case LossOrdinate::specific:
+      return "eta / nu";
+    case LossOrdinate::specific_secondary:
+      return "(eta - 2 zeta) / nu";
+    case LossOrdinate::amplitude_times:
+      return "A (eta - 2 zeta) / nu, A by epsilon";
+    case LossOrdinate::by_restitution:
+      return "A (eta - 2 zeta) / (nu (1 - e)), A by epsilon";
+  }
+  return "";
+}
+
+// The ordinate that a specific loss eta/nu of the impacts alone amounts to at zeta = 0.
+double theory_ordinate(LossOrdinate which, double amplitude, double specific, const Scene& scene) {
+  return ordinate({.amplitude = {amplitude}, .time = {0}, .eta = {specific * scene.mass_ratio}}, scene, which)[0];
+}
+
+constexpr int theory_points = 120;
+
+// Equally spaced in the logarithm, both ends included.
+double amplitude_at(int i, double from, double to) {
+  if (i == 0) return from;
+  if (i == theory_points) return to;
+  return from * std::pow(to / from, static_cast<double>(i) / theory_points);
+}
+
+TableBlock theory_block(const std::string& name, const std::string& legend, LossOrdinate which) {
+  return {.name = name,
+          .notes = {"closed form for nu -> 0, zeta = 0"},
+          .columns = {{"amplitude", "peak amplitude A, by epsilon", {}}, {legend, meaning(which), {}}}};
+}
+
+}  // namespace
+
+void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
+                    const std::string& name, const std::string& legend, Table& table) {
+  const HalfCycles& rows = half_cycles_of(figure, source);
+  const int span = curve.loss_factor.half_cycles;
+  const LossFactor loss = averaged_loss_factor(rows, curve.loss_factor);
+  if (loss.eta.size() < 2) {
+    throw unusable(figure, source.file,
+                   "is too short: " + std::to_string(rows.amplitude.size()) +
+                       " half cycles, the averaging needs at least " + std::to_string(span + 2));
+  }
+  table.blocks.push_back(
+      {.name = name,
+       .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles"},
+       .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", loss.amplitude},
+                   {legend, meaning(*figure.ordinate), ordinate(loss, source.run.scene, *figure.ordinate)}}});
+}
+
+void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table) {
+  const LossOrdinate which = *figure.ordinate;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Scene& scene = sources[i]->run.scene;
+    // The closed forms are for zeta = 0 and for a rebound; below e = 1 only.
+    if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
+    const std::string number = std::to_string(i + 1);
+    const double e = scene.restitution;
+
+    TableBlock one = theory_block("one-impact-" + number, "one impact per half cycle", which);
+    const double fold = fold_amplitude(e), unequal = equal_spacing_amplitude(e);
+    for (int k = 0; k <= theory_points; ++k) {
+      const double amplitude = amplitude_at(k, fold, unequal);
+      const auto motion = single_impact(e, amplitude);
+      if (!motion) continue;  // the fold itself, by rounding
+      one.columns[0].values.push_back(amplitude);
+      one.columns[1].values.push_back(theory_ordinate(which, amplitude, motion->loss, scene));
+    }
+    table.blocks.push_back(std::move(one));
+
+    const double largest = scene.x0;
+    if (e > 0.95) continue;
+    const double end = bounce_down_end(e);
+    if (!(end < largest)) continue;
+    TableBlock stuck = theory_block("bounce-down-" + number, "bounce-down", which);
+    for (int k = 0; k <= theory_points; ++k) {
+      const double amplitude = amplitude_at(k, end, largest);
+      stuck.columns[0].values.push_back(amplitude);
+      stuck.columns[1].values.push_back(theory_ordinate(which, amplitude, bounce_down(e, amplitude).loss, scene));
+    }
+    table.blocks.push_back(std::move(stuck));
+  }
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,118 @@
+// Closed forms for this very system, that the program is held against and that figures draw beside it.
+//
+// Throughout: e restitution, b = (1 - e)/(1 + e), A peak amplitude of the primary mass by epsilon, loss
+// factors per radian and divided by the mass ratio, zeta = 0. "nu -> 0" means that the primary mass moves
+// as x = -A cos(t + const) and loses an amplitude of order nu per cycle; errors are then of relative order
+// nu. Derivations are sketched at each function; tests/theory.cpp holds each against a small computation
+// that does not use it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace impact_damper {
+
+double asymmetry(double restitution);  // b = (1 - e)/(1 + e), 0 for e = 1, 1 for e = 0
+
+// --- One impact per half cycle, equally spaced, nu -> 0 ---------------------------------------------------
+// The mass flies at constant absolute speed V for half a period, pi. It leaves the left wall where the
+// wall is at -A cos(theta), moving at A sin(theta); by symmetry the right wall is met where it is at
+// 1 + A cos(theta): pi V = 1 + 2 A cos(theta). The impact turns -V into V: V - v = e (V + v), so the wall's
+// speed is v = A sin(theta) = b V. Eliminating theta leaves a quadratic in V, whose larger root is stable.
+struct SingleImpact {
+  double speed = 0;      // V, absolute, by epsilon Omega_n
+  double theta = 0;      // radian behind the wall's extreme position, 0 to pi
+  double phase_deg = 0;  // 90 + theta in degrees: as the paper counts it, from the zero crossing
+  double loss = 0;       // eta / nu = 4 b V^2 / (pi A^2): each impact costs nu 2 b V^2, a cycle has two
+};
+// Absent below the fold. e in [0, 1), A > 0.
+std::optional<SingleImpact> single_impact(double restitution, double amplitude);
+// A = b / sqrt(pi^2 + 4 b^2), where the two roots meet: impact failure.
+double fold_amplitude(double restitution);
+// A = b / pi: V/A is largest where theta = 90 degrees, and then eta/nu = (4/pi) (1 + e)/(1 - e).
+double peak_loss_amplitude(double restitution);
+double peak_loss(double restitution);
+// A where equal spacing becomes unstable (a multiplier of the map from impact to impact passes -1):
+// A cos(theta) = 2/(pi^2 - 4), V = pi/(pi^2 - 4), whatever e.
+// Linearised at the fixed point the map from one departure (phase, speed) to the next is
+//   d phase' = e d phase - g d speed,  d speed' = e d speed + (1 + e) c d phase',
+// g = pi (1 + e)/(2 V), c = A cos(theta): determinant e^2, trace 2 e - (1 + e) c g.
+double equal_spacing_amplitude(double restitution);
+
+// A = 1/2: below it a mass at rest in the middle of its travel is met by neither wall (2 A < 1), so an idle
+// state coexists with the impacting one.
+inline constexpr double idle_amplitude = 0.5;
+
+// --- Bounce-down that ends stuck, nu -> 0 -----------------------------------------------------------------
+// Released at x = 0 by a wall of speed A, the mass flies straight while x = A sin(t): the far wall is met
+// where A (t* - sin t*) = 1, at relative speed w = A (1 - cos t*).
+struct StuckRelease {
+  double time = 0;   // t*, in (0, pi]
+  double speed = 0;  // w, relative, at the far wall
+  double loss = 0;   // eta/nu = w^2 / (pi A^2): nu w^2 / 2 is lost in each half cycle. Exact for e = 0
+};
+// A >= 1/pi (the far wall is met before x returns to 0).
+StuckRelease stuck_release(double amplitude);
+
+// The same with the bounces that follow: under the falling relative acceleration A sin(t) each flight of
+// the mass from the far wall is a bounce at a known speed, and each bounce loses nu (1 - e^2) w^2 / 2.
+struct BounceDown {
+  std::vector<double> time;   // of the bounces at the far wall, from release; the first is t*
+  std::vector<double> speed;  // relative speed at which the wall is met
+  bool sticks = false;        // they accumulate before x returns to 0
+  double accumulation = 0;    // where they do, if they do
+  double loss = 0;            // eta/nu per radian of the losses listed (and of the rest, if they accumulate)
+};
+// Follows at most 1000 bounces; they count as accumulated once the rest would last less than 1e-10.
+BounceDown bounce_down(double restitution, double amplitude);
+// The amplitude at which the bounces accumulate just as x returns to 0, by bisection to rounding:
+// 2.05 for e = 0.4, 5.23 for 0.6, 21.6 for 0.8. e in [0, 0.95].
+double bounce_down_end(double restitution);
+
+// Under a constant relative acceleration a > 0 into the wall and a first rebound speed w0 >= 0 the bounces
+// accumulate after T = sum of 2 w0 e^n / a = 2 w0 / (a (1 - e)).
+double accumulation_time(double restitution, double acceleration, double rebound_speed);
+
+// --- One impact, any nu -----------------------------------------------------------------------------------
+// y' = w becomes -e w and (1 + nu) v + nu w is conserved.
+struct ImpactOutcome {
+  double v = 0, w = 0;  // primary velocity and relative velocity afterwards
+  double loss = 0;      // nu (1 - e^2) w^2 / (2 (1 + nu)), by K epsilon^2
+};
+ImpactOutcome impact(double mass_ratio, double restitution, double v, double w);
+
+// --- Two equal impacts per cycle under a force f0 sin(omega t), any nu, zeta = 0, rigid walls --------------
+// Masri and Caughey's kind of solution. Seconds from a departure from the left wall, T = pi/omega:
+//   x = C sin(omega t + tau) - nu V sin(t - T/2) / cos(T/2),  z = x(0) + V t,  0 < t < T,
+// C = f0/(1 - omega^2); the free part is fixed by x(t + T) = -x(t) and by the jumps -2 nu V of x'. Meeting
+// the right wall asks for a V = 1 - 2 C sin(tau), a = pi/omega + 2 nu tan(T/2), the restitution for
+// cos(tau) = q V / C, q = b (1 + nu)/omega; tau eliminated, V solves a quadratic.
+struct ForcedTwoImpact {
+  double speed = 0;  // V > 0, absolute
+  double tau = 0;    // phase of the force at the departure from the left wall, radian, in (-pi, pi]
+  // The state in which a scene with this force starts at its time 0 on this motion.
+  double x0 = 0, v0 = 0, y0 = 0, w0 = 0;
+  bool within_walls = false;         // 0 < y < 1 strictly inside the flight: without it there is no such motion
+  double largest_multiplier = 0;     // modulus, of the map from half period to half period: stable if < 1
+};
+// Both roots with V > 0, the faster first; none below |C| = q / sqrt(a^2 + 4 q^2), at resonance, and where
+// cos(T/2) = 0 (omega an odd fraction of 1).
+std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitution, double force_amplitude,
+                                               double force_frequency);
+
+// --- What a wall delivers ---------------------------------------------------------------------------------
+// Damping ratio z in [0, 1) of q'' + 2 z q' + q = 0 during a contact that a unit velocity begins.
+double restitution_by_displacement(double z);  // until q = 0: exp(-pi z / sqrt(1 - z^2))
+double restitution_by_force(double z);         // until q'' = 0: exp(-2 z arccos(z) / sqrt(1 - z^2))
+// With the paper's zeta_m, which a fixed wall calibrates, on a free primary mass: z = zeta_m sqrt(1 + nu).
+double delivered_restitution(double restitution, double mass_ratio);
+double delivered_restitution_without_pull(double restitution, double mass_ratio);
+
+// --- Central differences ----------------------------------------------------------------------------------
+// Largest stable omega h of q'' + 2 z omega q' + omega^2 q = 0. Centred damping: 2 at any z. Velocity one
+// step behind: the root -1 of lambda^2 + (s^2 + 2 z s - 2) lambda + 1 - 2 z s is reached at s^2 + 4 z s = 4,
+// s = 2 (sqrt(1 + z^2) - z).
+double stable_step_centred();
+double stable_step_lagged(double z);
+
+}  // namespace impact_damper

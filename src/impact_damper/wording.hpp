@@ -1,0 +1,32 @@
+// The words in which bad input is refused, the same for files and command lines.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace impact_damper {
+
+// Which numbers are admitted, both limits included unless least_is_admitted is false. NaN never is.
+struct NumberRange {
+  double least = std::numeric_limits<double>::lowest();
+  double most = std::numeric_limits<double>::max();
+  bool least_is_admitted = true;
+
+  bool admits(double value) const;
+  std::string describe(std::string_view kind) const;  // "a number" -> "a number >= 0 and <= 1"
+};
+inline NumberRange within(double least, double most) { return {least, most}; }
+inline NumberRange at_least(double least) { return {least}; }
+inline NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
+
+// `text` on one line, shortened to `most` characters.
+std::string cut(std::string_view text, std::size_t most = 60);
+std::string in_quotes(std::string_view text);  // cut, between double quotes
+
+// The word of `known` nearest to `word`, if it is near enough to be what was meant.
+std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
+
+}  // namespace impact_damper

@@ -1,0 +1,25 @@
+# Writes OUTPUT from INPUT with the commit filled in. Run at every build, because the commit changes without
+# CMake being run; the file is only touched when its content changes, so an unchanged build stays idle.
+set(commit unknown)
+find_program(git git)
+if(git)
+  # The folder above may be another project's repository: only the source's own commit counts.
+  execute_process(COMMAND ${git} rev-parse --show-toplevel WORKING_DIRECTORY ${SOURCE}
+                  OUTPUT_VARIABLE top OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  file(REAL_PATH "${SOURCE}" source)
+  if(top STREQUAL source)
+    execute_process(COMMAND ${git} rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE}
+                    OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
+                    RESULT_VARIABLE failed)
+    if(failed)
+      set(commit unknown)
+    else()
+      execute_process(COMMAND ${git} diff --quiet HEAD -- src CMakeLists.txt WORKING_DIRECTORY ${SOURCE}
+                      RESULT_VARIABLE changed ERROR_QUIET)
+      if(changed)
+        string(APPEND commit -dirty)
+      endif()
+    endif()
+  endif()
+endif()
+configure_file(${INPUT} ${OUTPUT} @ONLY)

@@ -1,0 +1,72 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/file_output.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+
+#include "impact_damper/errors.hpp"
+#include "impact_damper/json_reader.hpp"
+
+using namespace impact_damper;
+namespace fs = std::filesystem;
+
+namespace {
+
+// An empty folder that goes away with the test.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("impact-damper-" + std::to_string(::getpid()));
+  Folder() { fs::create_directory(path); }
+  ~Folder() { fs::remove_all(path); }
+  auto files() const { return std::distance(fs::directory_iterator(path), fs::directory_iterator()); }
+};
+
+}  // namespace
+
+TEST_CASE("a file is written whole, and nothing else is left in its folder") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt";
+  CHECK(write_file(file, "one"));
+  CHECK(read_text(file) == "one");
+  CHECK(write_file(file, "two"));
+  CHECK(read_text(file) == "two");
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a file that already has the bytes keeps its time stamp") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt";
+  write_file(file, "same");
+  const auto long_ago = fs::last_write_time(file) - std::chrono::hours(1);
+  fs::last_write_time(file, long_ago);
+  CHECK(!write_file(file, "same"));
+  CHECK(fs::last_write_time(file) == long_ago);
+  CHECK(write_file(file, "diff"));
+  CHECK(fs::last_write_time(file) != long_ago);
+}
+
+TEST_CASE("permissions stay, and a link stays a link") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt", link = folder.path / "link.txt";
+  write_file(file, "one");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("a.txt", link);
+  CHECK(write_file(link, "two"));
+  CHECK(fs::is_symlink(link));
+  CHECK(read_text(file) == "two");
+  CHECK(fs::status(file).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+}
+
+TEST_CASE("what cannot be written is refused and leaves nothing behind") {
+  const Folder folder;
+  CHECK_THROWS_WITH_AS(write_file(folder.path, "x"), doctest::Contains("is a directory"), IoError);
+  CHECK_THROWS_WITH_AS(write_file(folder.path / "no" / "a.txt", "x"), doctest::Contains("No such file"),
+                       IoError);
+  CHECK_THROWS_AS(write_file("", "x"), IoError);
+  CHECK_THROWS_WITH_AS(write_file("/dev/full", "x"), doctest::Contains("No space left"), IoError);
+  CHECK_THROWS_AS(write_file(folder.path / std::string(255, 'a'), "x"), IoError);
+  CHECK(fs::is_character_file("/dev/full"));
+  CHECK(folder.files() == 0);
+}

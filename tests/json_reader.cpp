@@ -1,0 +1,174 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/json_reader.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+
+using namespace impact_damper;
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+// The problems that reading `text` with `read` ends in.
+template <typename Read>
+Lines problems(const std::string& text, Read read) {
+  try {
+    JsonDocument document = JsonDocument::parse("f.json", text);
+    ObjectReader root = document.root();
+    read(root);
+    document.finish();
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+Lines problems(const std::string& text) {
+  return problems(text, [](ObjectReader& root) { root.keys(); });
+}
+
+enum class Colour { red, green };
+std::string_view name_of(Colour colour) { return colour == Colour::red ? "red" : "green"; }
+
+}  // namespace
+
+TEST_CASE("every type is read as it was written") {
+  JsonDocument document = JsonDocument::parse("f.json", R"({
+    "number": -0.0, "whole": -9223372036854775808, "text": "a/b", "flag": true, "colour": "green",
+    "numbers": [1, 2.5, 1e300], "maybe": [null, 3], "none": null, "inner": {"x": 1}, "list": [{"x": 2}, {"x": 3}]})");
+  ObjectReader root = document.root();
+  double number = 1;
+  std::int64_t whole = 0;
+  std::string text;
+  bool flag = false;
+  Colour colour = Colour::red;
+  std::vector<double> numbers, empty{1};
+  std::vector<std::optional<double>> maybe;
+  std::optional<double> none = 1, missing = 2;
+  root.required("number", number);
+  root.required("whole", whole);
+  root.required("text", text);
+  root.required("flag", flag);
+  root.required("colour", colour, {Colour::red, Colour::green});
+  root.required("numbers", numbers, above(0));
+  root.required("maybe", maybe);
+  root.required("none", none);
+  root.optional("missing", missing);
+  root.optional("empty", empty);
+  double x = 0;
+  root.required_object("inner").required("x", x);
+  CHECK(x == 1);
+  for (ObjectReader item : root.required_objects("list")) item.required("x", x, within(2, 3));
+  CHECK(x == 3);
+  CHECK_NOTHROW(document.finish());
+  CHECK(std::signbit(number));
+  CHECK(whole == std::numeric_limits<std::int64_t>::min());
+  CHECK(text == "a/b");
+  CHECK(flag);
+  CHECK(colour == Colour::green);
+  CHECK(numbers == std::vector<double>{1, 2.5, 1e300});
+  CHECK(maybe == std::vector<std::optional<double>>{std::nullopt, 3});
+  CHECK(!none);
+  CHECK(missing == 2.0);
+  CHECK(empty.size() == 1);
+}
+
+TEST_CASE("all problems of a file are found in one reading") {
+  const Lines found = problems(
+      R"({"restitutoin": 0.6, "x": "6", "n": -5, "m": 18446744073709551615, "r": 3.0, "deep": {"a": [1, null]}, "q/~": 1})",
+      [](ObjectReader& root) {
+        double x = 0, missing = 0;
+        std::int64_t n = 0, m = 0, r = 0;
+        std::vector<double> a;
+        root.optional("restitution", x);
+        root.required("x", x, within(0, 1));
+        root.required("n", n, at_least(0));
+        root.required("m", m);
+        root.required("r", r);
+        root.required("missing", missing);
+        root.required_object("deep").required("a", a);
+      });
+  CHECK(found == Lines{
+                     "f.json: /x: must be a number >= 0 and <= 1, got the string \"6\"",
+                     "f.json: /n: must be a whole number >= 0, got -5",
+                     "f.json: /m: must be a whole number, got 18446744073709551615",
+                     "f.json: /r: must be a whole number, got 3",
+                     "f.json: /missing: missing, a value must be given",
+                     "f.json: /deep/a/1: must be a number, got null",
+                     "f.json: /q~1~0: unknown key, admitted are: deep, m, missing, n, r, restitution, x",
+                     "f.json: /restitutoin: unknown key, did you mean \"restitution\"?",
+                 });
+}
+
+TEST_CASE("a duplicate key is found wherever it is") {
+  CHECK(problems(R"({"a": 1, "b": 2, "a": 1})") ==
+        Lines{"f.json: /a: duplicate key, admitted is one value for each key"});
+  CHECK(problems(R"({"list": [0, {"a": {}, "a": 2}], "list": 0})") ==
+        Lines{"f.json: /list/1/a: duplicate key, admitted is one value for each key",
+              "f.json: /list: duplicate key, admitted is one value for each key"});
+}
+
+TEST_CASE("what is not JSON is refused with line and column") {
+  const auto only = [](const std::string& text) {
+    const Lines found = problems(text);
+    REQUIRE(found.size() == 1);
+    return found[0];
+  };
+  CHECK(only("{\n  \"a\": nan}").starts_with("f.json: line 2, column 9: syntax error"));
+  CHECK(only("").starts_with("f.json: line 1, column 1: syntax error"));
+  CHECK(only("{} {}").starts_with("f.json: line 1, column 4: syntax error"));
+  CHECK(only("{\"a\": 1e999}").starts_with("f.json: line 1, column 11: number overflow"));
+  CHECK(only("{\"a\": 1,}").starts_with("f.json: line 1, column 9: syntax error"));
+  CHECK(only("{\"a\": -}").find("invalid number") != std::string::npos);
+  CHECK(only("{\"a\": \"\n\"}").find('\n') == std::string::npos);
+  CHECK(only("[1]") == "f.json: must be an object, got an array");
+}
+
+TEST_CASE("nesting is admitted to 64 levels and refused beyond, however deep") {
+  const auto nested = [](std::size_t levels) {
+    return "{\"a\":" + std::string(levels - 1, '[') + std::string(levels - 1, ']') + "}";
+  };
+  CHECK(problems(nested(64)).empty());
+  const Lines refused{"f.json: nested too deeply, admitted are 64 levels"};
+  CHECK(problems(nested(65)) == refused);
+  CHECK(problems("{\"a\":" + std::string(1'000'000, '[')) == refused);
+}
+
+TEST_CASE("a million wrong numbers make a short report") {
+  std::string text = "{\"a\": [null";
+  for (int i = 1; i < 1000; ++i) text += ",null";
+  const Lines found = problems(text + "]}", [](ObjectReader& root) {
+    std::vector<double> a;
+    root.required("a", a);
+    CHECK(a.empty());
+  });
+  CHECK(found.size() == 51);
+  CHECK(found.back() == "f.json: and 950 more problems");
+}
+
+TEST_CASE("the word that was meant is named only if it is near") {
+  const std::vector<std::string_view> known{"mass_ratio", "restitution", "x0"};
+  CHECK(nearest("mas_ratio", known) == "mass_ratio");
+  CHECK(nearest("mass-ratio", known) == "mass_ratio");
+  CHECK(nearest("x1", known) == "x0");
+  CHECK(!nearest("omega", known));
+  CHECK(!nearest("q", {"x"}));
+}
+
+TEST_CASE("a missing object is one problem, not one for each of its fields") {
+  CHECK(
+      problems("{\"a\": 3}", [](ObjectReader& root) {
+        double x = 0;
+        root.required_object("scene").required("x", x);
+        root.required_object("a").required("x", x);
+      }) == Lines{"f.json: /scene: missing, a value must be given", "f.json: /a: must be an object, got 3"});
+}
+
+TEST_CASE("what cannot be read is said to be so") {
+  CHECK_THROWS_AS(JsonDocument::read("no such file.json"), IoError);
+  CHECK_THROWS_WITH_AS(JsonDocument::read(std::filesystem::temp_directory_path()),
+                       doctest::Contains("is a directory"), IoError);
+}

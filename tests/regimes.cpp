@@ -1,0 +1,120 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/regimes.hpp"
+
+#include <doctest/doctest.h>
+
+#include "impact_damper/wall.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// Half cycles one unit of time long, row i ending at i + 1, amplitudes falling from 10 by 0.1.
+Run rows_with_impacts(std::vector<std::int64_t> impacts) {
+  Run run;
+  run.engine = Exact{};
+  run.half_cycles.emplace();
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    run.half_cycles->zero_crossing.push_back(static_cast<double>(i) + 1);
+    run.half_cycles->peak_time.push_back(static_cast<double>(i) + 0.5);
+    run.half_cycles->amplitude.push_back(10 - 0.1 * static_cast<double>(i));
+  }
+  run.half_cycles->impacts = std::move(impacts);
+  return run;
+}
+double amplitude_of(std::size_t row) { return 10 - 0.1 * static_cast<double>(row); }
+
+// Sticks to the wall in the last tenth of each of these rows.
+Run rows_sticking(std::size_t count, const std::vector<std::size_t>& rows) {
+  Run run = rows_with_impacts(std::vector<std::int64_t>(count, 9));
+  run.contacts.emplace();
+  for (std::size_t row : rows) {
+    run.contacts->begin.push_back(static_cast<double>(row) + 0.9);
+    run.contacts->end.push_back(static_cast<double>(row) + 1.0);
+    run.contacts->wall.push_back(Wall::left);
+  }
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("a compliant contact is stuck once it outlasts a full period, a rigid one always") {
+  Run run = rows_with_impacts({1, 1});
+  const double nominal = nominal_contact_time(run.scene);
+  run.contacts = Contacts{{0.1, 0.3, 1.2}, {0.1 + nominal, 0.3 + 1.99 * nominal, 1.2 + 2.01 * nominal},
+                          {Wall::left, Wall::right, Wall::left}};
+  CHECK(stuck_contacts(run).begin == std::vector<double>{1.2});
+  run.engine = Restitution{};
+  CHECK(stuck_contacts(run).begin.size() == 3);
+}
+
+TEST_CASE("stuck intervals are cut at the zero crossings and given in degrees") {
+  Run run = rows_with_impacts({1, 1, 1, 1});
+  run.engine = Restitution{};
+  run.contacts = Contacts{{0.5, 1.5, 2.25}, {0.75, 2.125, 9}, {Wall::left, Wall::right, Wall::left}};
+  const StuckPhases phases = stuck_phases(run);
+  CHECK(phases.begin_deg == std::vector<double>{90, 0, 45, 0});
+  CHECK(phases.end_deg == std::vector<double>{180, 22.5, 180, 180});
+  CHECK(phases.amplitude == std::vector<double>{amplitude_of(1), amplitude_of(2), amplitude_of(2), amplitude_of(3)});
+}
+
+TEST_CASE("bounce-down ends with the first unbroken series of stuck half cycles") {
+  CHECK(end_of_bounce_down(rows_sticking(20, {1, 2, 3, 4, 5, 6})) == amplitude_of(6));
+  // Row 0 counts for nothing, and a stuck phase met by chance later on neither.
+  CHECK(end_of_bounce_down(rows_sticking(20, {0, 1, 2, 3, 4, 9, 12})) == amplitude_of(4));
+  CHECK(end_of_bounce_down(rows_sticking(20, {2, 5, 6, 9})) == std::nullopt);
+  CHECK(end_of_bounce_down(rows_sticking(20, {2, 5, 6, 9, 10, 11, 12, 13})) == amplitude_of(13));
+  CHECK(end_of_bounce_down(rows_sticking(6, {1, 2, 3, 4, 5})) == std::nullopt);
+  CHECK(end_of_bounce_down(rows_sticking(6, {})) == std::nullopt);
+}
+
+TEST_CASE("an impact that slips across a zero crossing is not missed") {
+  CHECK(impact_failure(rows_with_impacts({1, 1, 2, 0, 1, 1, 0, 2, 1})).first_missed == std::nullopt);
+  CHECK(impact_failure(rows_with_impacts({0, 1, 1, 1, 1})).first_missed == std::nullopt);
+  const ImpactFailure once = impact_failure(rows_with_impacts({1, 2, 0, 1, 1, 0, 1, 1, 1, 1}));
+  CHECK(once.first_missed == amplitude_of(5));
+  CHECK(once.for_good == std::nullopt);
+}
+
+TEST_CASE("impact failure is for good where no three half cycles bring three impacts any more") {
+  const ImpactFailure failure = impact_failure(rows_with_impacts({1, 1, 0, 1, 1, 1, 1, 0, 1, 0, 0, 1, 0, 0}));
+  CHECK(failure.first_missed == amplitude_of(2));
+  CHECK(failure.for_good == amplitude_of(7));
+  CHECK(impact_failure(rows_with_impacts({1, 0})).for_good == std::nullopt);
+  CHECK(impact_failure(rows_with_impacts({})).for_good == std::nullopt);
+  CHECK(impact_failure(rows_with_impacts({1, 0, 0, 0, 3})).for_good == std::nullopt);
+}
+
+TEST_CASE("regular windows are maximal series of equal counts") {
+  const std::vector<RegularWindow> windows = regular_windows(
+      rows_with_impacts({3, 3, 3, 3, 3, 3, 3, 3, 3, 2, 1, 2, 2, 2, 2, 2, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  REQUIRE(windows.size() == 1);
+  CHECK(windows[0].impacts == 3);
+  CHECK(windows[0].first == 1);
+  CHECK(windows[0].last == 8);
+  CHECK(windows[0].upper == amplitude_of(1));
+  CHECK(windows[0].lower == amplitude_of(8));
+  RegimeOptions shorter;
+  shorter.window_half_cycles = 7;
+  CHECK(regular_windows(rows_with_impacts({3, 2, 2, 2, 2, 2, 2, 2}), shorter).size() == 1);
+}
+
+TEST_CASE("the longest window of a count is chosen, the earlier of two equals") {
+  const std::vector<RegularWindow> windows{{2, 1, 9, 5, 4}, {1, 10, 30, 4, 3}, {2, 31, 39, 3, 2}};
+  CHECK(longest_window(windows, 2)->first == 1);
+  CHECK(longest_window(windows, 1)->first == 10);
+  CHECK(!longest_window(windows, 3));
+}
+
+TEST_CASE("the first half cycle below an amplitude is found, or its absence") {
+  const Run run = rows_with_impacts({1, 1, 1});
+  CHECK(first_row_below(*run.half_cycles, 9.95) == 1u);
+  CHECK(first_row_below(*run.half_cycles, 11) == 0u);
+  CHECK(!first_row_below(*run.half_cycles, 1));
+}
+
+TEST_CASE("a rule that lacks its columns says which") {
+  Run run;
+  CHECK_THROWS_AS(regular_windows(run), std::invalid_argument);
+  CHECK_THROWS_AS(stuck_contacts(run), std::invalid_argument);
+}

@@ -1,0 +1,238 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/run_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "impact_damper/errors.hpp"
+#include "impact_damper/scene_file.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+Engine lagged_cem() {
+  Cem engine;
+  engine.time_step = 1e-4;
+  engine.damper = Damper::lagged;
+  return engine;
+}
+
+Engine two_body_exact() {
+  Exact engine;
+  engine.calibration = Calibration::two_body;
+  return engine;
+}
+
+Engine restitution_on_a_budget() {
+  Restitution engine;
+  engine.accumulation_tolerance = 1e-5;
+  engine.budget = {3, 4, 5.5};
+  return engine;
+}
+
+Run full_run(Engine engine = lagged_cem()) {
+  Run run;
+  run.stop_reason = StopReason::impact_budget;
+  run.end_time = 7.25;
+  run.scene.mass_ratio = 0.1;
+  run.scene.until_amplitude = 0.01;
+  run.engine = engine;
+  run.half_cycles = HalfCycles{{1.5, 4.6}, {0, 3}, {6, 5.9}, {3, 0}};
+  run.impacts = Impacts{{1, 2, 5},
+                        {Wall::right, Wall::left, Wall::right},
+                        {0.1 + 0.2, -1e-300, 5e-324},
+                        {std::nullopt, 1.0 / 3, std::nullopt},
+                        {6.0, 5.9, std::nullopt}};
+  run.contacts = Contacts{{1, 2}, {1.125, 2}, {Wall::right, Wall::left}};
+  run.energy = EnergyLedger{{1, 2, 3, 4}, {0.1, 0.2, 0.3, 0.7}, {0.1, 0.2, 0.3}, 4, 5, 6, 7, 8, -1e-16};
+  run.history = History{{0, 1}, {6, -0.0}, {0, -1}, {0, 0.5}, {1.7976931348623157e308, -1}};
+  return run;
+}
+
+std::string without_provenance(const std::string& text) {
+  return text.substr(0, text.find("\"provenance\""));
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  const std::size_t place = text.find(old);
+  REQUIRE(place != std::string::npos);
+  return text.replace(place, old.size(), by);
+}
+
+Lines problems(const std::string& text) {
+  try {
+    parse_run("r.json", text);
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a run file has the keys of the schema, in its order, each column on one line") {
+  CHECK(without_provenance(run_text(full_run())) == R"({
+ "schema": "impact-damper/run/1",
+ "scene": {"mass_ratio": 0.1, "restitution": 0.6, "damping_ratio": 0, "wall_stiffness": 10000, "x0": 6, "v0": 0, "y0": 0, "w0": 0, "force_amplitude": 0, "force_frequency": 1, "until_time": null, "until_amplitude": 0.01},
+ "engine": {"name": "cem", "time_step": 1e-04, "damper": "lagged", "locate": false, "unstable": false, "calibration": "fixed-wall", "max_impacts": 10000000, "max_half_cycles": 10000000, "max_time": 1e+07},
+ "stop_reason": "impact_budget",
+ "end_time": 7.25,
+ "half_cycles": {
+  "zero_crossing": [1.5,4.6],
+  "peak_time": [0,3],
+  "amplitude": [6,5.9],
+  "impacts": [3,0]
+ },
+ "impacts": {
+  "time": [1,2,5],
+  "wall": [1,0,1],
+  "relative_velocity": [0.30000000000000004,-1e-300,5e-324],
+  "phase_deg": [null,0.3333333333333333,null],
+  "amplitude": [6,5.9,null]
+ },
+ "contacts": {
+  "begin": [1,2],
+  "end": [1.125,2],
+  "wall": [1,0]
+ },
+ "energy": {
+  "initial": {"kinetic": 1, "spring": 2, "wall": 3, "total": 6, "paper": 4},
+  "final": {"kinetic": 0.1, "spring": 0.2, "wall": 0.3, "total": 0.6000000000000001, "paper": 0.7},
+  "impact_loss": [0.1,0.2,0.3],
+  "impact_loss_total": 0.6000000000000001,
+  "contact_loss": 4,
+  "bounce_downs": 5,
+  "bounce_down_loss": 6,
+  "viscous_work": 7,
+  "forcing_work": 8,
+  "residual": -1e-16
+ },
+ "history": {
+  "time": [0,1],
+  "x": [6,-0.0],
+  "v": [0,-1],
+  "y": [0,0.5],
+  "w": [1.7976931348623157e+308,-1]
+ },
+ )");
+}
+
+TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
+  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), Engine(Cem{})}) {
+    Run run = full_run(engine);
+    CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
+    CHECK(parse_run("r.json", run_text(run)).engine == engine);
+    CHECK(parse_run("r.json", run_text(run)).scene == run.scene);
+    run.half_cycles.reset();
+    run.impacts.reset();
+    run.contacts.reset();
+    run.energy.reset();
+    run.history = History{};
+    CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
+    CHECK(!parse_run("r.json", run_text(run)).impacts);
+    CHECK(parse_run("r.json", run_text(run)).history);
+  }
+}
+
+TEST_CASE("every bit of a number survives the file") {
+  std::mt19937_64 bits(7);
+  Run run = full_run();
+  run.impacts.reset();
+  std::vector<double>& x = run.history->x;
+  x.clear();
+  while (x.size() < 20'000) {
+    const double value = std::bit_cast<double>(bits());
+    if (std::isfinite(value)) x.push_back(value);
+  }
+  run.history->time.assign(x.size(), 0.5);
+  run.history->v = run.history->y = run.history->w = run.history->time;
+  const std::vector<double> back = parse_run("r.json", run_text(run)).history->x;
+  REQUIRE(back.size() == x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    CHECK(std::bit_cast<std::uint64_t>(back[i]) == std::bit_cast<std::uint64_t>(x[i]));
+  }
+}
+
+TEST_CASE("a number that is not finite is never written") {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Run run = full_run();
+    run.history->v[1] = bad;
+    CHECK_THROWS_WITH_AS(run_text(run), doctest::Contains("\"v\""), NumericalError);
+  }
+}
+
+TEST_CASE("a run file that was changed by hand is refused with the place and the reason") {
+  const std::string text = run_text(full_run());
+  const auto only = [&](const std::string& old, const std::string& by) {
+    CAPTURE(old);
+    const Lines found = problems(replaced(text, old, by));
+    REQUIRE(found.size() == 1);
+    return found[0];
+  };
+  CHECK(only("run/1", "run/2") ==
+        "r.json: /schema: must be one of \"impact-damper/run/1\", got the string \"impact-damper/run/2\"");
+  CHECK(only("\"x0\": 6, ", "") == "r.json: /scene/x0: missing, a value must be given");
+  CHECK(only("0.1,", "-0.1,").starts_with("r.json: /scene/mass_ratio: must be > 0"));
+  CHECK(only("\"cem\"", "\"CEM\"") ==
+        "r.json: /engine/name: must be one of \"exact\", \"restitution\", \"cem\", got the string \"CEM\"");
+  CHECK(only("\"max_impacts\": 10000000", "\"max_impacts\": -5") ==
+        "r.json: /engine/max_impacts: must be a whole number >= 1, got -5");
+  CHECK(only("[3,0]", "[3]") ==
+        "r.json: /half_cycles/impacts: must be as long as the section's first column, 2, got a length of 1");
+  CHECK(only("[3,0]", "[3,0.0]") == "r.json: /half_cycles/impacts/1: must be a whole number >= 0, got 0");
+  CHECK(only("[1,2,5]", "[1,2,1.5]") ==
+        "r.json: /impacts/time/2: must not be below the one before it, 2, got 1.5");
+  CHECK(only("[1,0,1]", "[1,0,2]") == "r.json: /impacts/wall/2: must be a whole number >= 0 and <= 1, got 2");
+  CHECK(only("[null,0.3333333333333333,null]", "[null,181,null]") ==
+        "r.json: /impacts/phase_deg/1: must be null or a number >= 0 and <= 180, got 181");
+  CHECK(only("[1.125,2]", "[1.125,1.5]") ==
+        "r.json: /contacts/end/1: must not be before its begin, 2, got 1.5");
+  CHECK(only("\"total\": 6,", "\"total\": 7,") ==
+        "r.json: /energy/initial/total: must be the sum of its parts, 6, got 7");
+  CHECK(only("\"impact_loss_total\": 0.6000000000000001", "\"impact_loss_total\": 0.6")
+            .starts_with("r.json: /energy/impact_loss_total: must be the sum of its parts"));
+  CHECK(only("\"history\"", "\"histroy\"") == "r.json: /histroy: unknown key, did you mean \"history\"?");
+  CHECK(only("\"residual\"", "\"viscous_work\": 7, \"residual\"") ==
+        "r.json: /energy/viscous_work: duplicate key, admitted is one value for each key");
+  CHECK(only(" \"stop_reason\": \"impact_budget\",", "") ==
+        "r.json: /stop_reason: missing, a value must be given");
+}
+
+TEST_CASE("a scene file names what differs from the defaults") {
+  const Scene scene =
+      parse_scene("s.json", R"({"mass_ratio": 0.04, "until_amplitude": 0.01, "description": "d"})");
+  Scene expected;
+  expected.mass_ratio = 0.04;
+  expected.until_amplitude = 0.01;
+  CHECK(scene == expected);
+  CHECK(parse_scene("s.json", scene_text(scene)) == scene);
+}
+
+TEST_CASE("a scene file's problems are reported together") {
+  try {
+    parse_scene("s.json",
+                R"({"mass_ratio": -1, "x0": "6", "restitution": 1.5, "omega": 1, "until_time": "t"})");
+    FAIL("read what is not admitted");
+  } catch (const InputError& error) {
+    CHECK(
+        error.problems() ==
+        Lines{
+            "s.json: /x0: must be a number, got the string \"6\"",
+            "s.json: /until_time: must be null or a number, got the string \"t\"",
+            "s.json: /mass_ratio: must be > 0 and <= 1e+06, got -1",
+            "s.json: /restitution: must be >= 0 and <= 1, got 1.5",
+            "s.json: /omega: unknown key, admitted are: damping_ratio, description, force_amplitude, "
+            "force_frequency, mass_ratio, restitution, until_amplitude, until_time, v0, w0, wall_stiffness, "
+            "x0, y0"});
+  }
+  CHECK_THROWS_WITH_AS(parse_scene("s.json", "{}"),
+                       "s.json: /until_time: until_time, until_amplitude or both must be given", InputError);
+}
