@@ -50,7 +50,7 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
 
 // How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
 std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
-  const std::optional<double> amplitude = impact_failure(run).for_good;
+  const std::optional<double> amplitude = impact_failure(run).first_missed;
   if (!amplitude) return loss.eta.size();
   const std::vector<double>& rows = run.half_cycles->amplitude;
   const auto failure = static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
