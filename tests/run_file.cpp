@@ -184,7 +184,7 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
   CHECK(only("\"cem\"", "\"CEM\"") ==
         "r.json: /engine/name: must be one of \"exact\", \"restitution\", \"cem\", got the string \"CEM\"");
   CHECK(only("\"max_impacts\": 10000000", "\"max_impacts\": -5") ==
-        "r.json: /engine/max_impacts: must be a whole number >= 1, got -5");
+        "r.json: /engine/max_impacts: must be a whole number >= 0, got -5");
   CHECK(only("[3,0]", "[3]") ==
         "r.json: /half_cycles/impacts: must be as long as the section's first column, 2, got a length of 1");
   CHECK(only("[3,0]", "[3,0.0]") == "r.json: /half_cycles/impacts/1: must be a whole number >= 0, got 0");
