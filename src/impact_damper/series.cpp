@@ -43,17 +43,26 @@ std::string equation(const Scene& scene, Varied varied) {
   return "";
 }
 
-struct EngineText {
+// In words, for the line under the title, and with all options, for the header.
+struct EngineWords {
+  std::string operator()(const Exact&) const { return "exact engine"; }
+  std::string operator()(const Restitution&) const { return "restitution model"; }
+  std::string operator()(const Cem& cem) const {
+    return "component element method" + (cem.time_step ? ", step " + number_text(*cem.time_step) : "");
+  }
+};
+
+struct EngineOptions {
   std::string operator()(const Exact& exact) const {
-    return "exact, calibration=" + std::string(name_of(exact.calibration));
+    return "exact calibration=" + std::string(name_of(exact.calibration));
   }
   std::string operator()(const Restitution& restitution) const {
-    return "restitution, accumulation_tolerance=" + number_text(restitution.accumulation_tolerance);
+    return "restitution accumulation_tolerance=" + number_text(restitution.accumulation_tolerance);
   }
   std::string operator()(const Cem& cem) const {
-    return "cem, time_step=" + (cem.time_step ? number_text(*cem.time_step) : "contact/100") +
-           ", damper=" + std::string(name_of(cem.damper)) + ", locate=" + (cem.locate ? "true" : "false") +
-           ", calibration=" + std::string(name_of(cem.calibration));
+    return "cem" + (cem.time_step ? " time_step=" + number_text(*cem.time_step) : "") +
+           " damper=" + std::string(name_of(cem.damper)) + " locate=" + (cem.locate ? "true" : "false") +
+           " calibration=" + std::string(name_of(cem.calibration));
   }
 };
 
@@ -66,7 +75,7 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   }
   // The exact engine is the house's own answer; a figure made with another one says so.
   if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
-    text += "; engine: " + std::visit(EngineText{}, runs[0]->run.engine);
+    text += "; " + std::visit(EngineWords{}, runs[0]->run.engine);
   }
   return text;
 }
@@ -122,9 +131,11 @@ Table figure_table(const Figure& figure, const FigureRuns& runs) {
   Table table;
   table.header = {"Figure " + figure.number + ": " + figure.title,
                   "Parameters: " + subtitle(figure, sources),
-                  "Engine: " + std::visit(EngineText{}, sources[0]->run.engine), "Script: " + figure.script};
+                  "Script: " + figure.script};
   for (const std::string& scene : scenes_of(figure)) {
-    table.header.push_back("Scene " + scene + ": " + scene_text(runs.at(scene).run.scene));
+    const Run& run = runs.at(scene).run;
+    table.header.push_back("Scene " + scene + ": " + scene_text(run.scene));
+    table.header.push_back("  engine: " + std::visit(EngineOptions{}, run.engine));
   }
   switch (figure.table) {
     case TableKind::motion:

@@ -139,14 +139,17 @@ class Timeline {
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
   template <class Motion>
   void find_peaks(const Motion& motion, Real from, const Real& until) {
+    const Jet<Real> v = motion.derivative_of_x(1, side_, from, span_).whole;
+    bool rising = v.g > 0 || (v.g == 0 && v.g1 > 0);  // away from zero
     for (;;) {
-      const Real rising = side_ * motion.at(from).v >= 0 ? side_ : -side_;
+      const Real sign = rising ? side_ : -side_;
       const auto turn = first_root<Real>(
-          [&](const Real& t) { return std::array{motion.derivative_of_x(1, rising, t, span_)}; }, from, until, span_,
+          [&](const Real& t) { return std::array{motion.derivative_of_x(1, sign, t, span_)}; }, from, until, span_,
           motion.resolution());
       if (!turn) return;
-      if (rising == side_) notice_peak(motion, turn->time);
-      from = turn->time > from ? turn->time : from + std::numeric_limits<Real>::epsilon() * motion.resolution();
+      if (rising) notice_peak(motion, turn->time);
+      rising = !rising;
+      from = turn->time;
     }
   }
   template <class Motion>

@@ -1,0 +1,6 @@
+styles = "2 1 3"
+theory = "1 2 3"
+set logscale y
+set yrange [4e-4:0.3]
+set ylabel "loss factor η"
+load folder."/loss.gp"
