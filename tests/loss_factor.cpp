@@ -7,7 +7,7 @@
 #include <numbers>
 
 using namespace impact_damper;
-constexpr double half_turn = std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 
 namespace {
 struct Peaks {
@@ -17,7 +17,7 @@ struct Peaks {
 Peaks viscous(double zeta, int count) {
   Peaks peaks;
   for (int i = 0; i < count; ++i) {
-    peaks.time.push_back(i * half_turn / std::sqrt(1 - zeta * zeta));
+    peaks.time.push_back(i * pi / std::sqrt(1 - zeta * zeta));
     peaks.amplitude.push_back(6 * std::exp(-zeta * peaks.time.back()));
   }
   return peaks;
@@ -30,7 +30,7 @@ TEST_CASE("a viscous oscillator has the loss factor 2 zeta, with the bias of the
       const Peaks peaks = viscous(zeta, 40);
       const LossFactor loss = averaged_loss_factor(peaks.time, peaks.amplitude, {half_cycles});
       REQUIRE(loss.eta.size() == 40 - static_cast<std::size_t>(half_cycles));
-      const double n = half_cycles / 2, p = zeta * half_turn;
+      const double n = half_cycles / 2, p = zeta * pi;
       const double bias = (3 * n * n + 3 * n - 1) / 30 * p * p;
       // What is left is of fourth order in the decay over half the window, n p.
       for (double eta : loss.eta) CHECK(std::abs(eta / (2 * zeta) - 1 - bias) < std::pow(n * p, 4) + 1e-10);
@@ -62,7 +62,7 @@ TEST_CASE("noise that a parabola of eleven points cannot hold is taken out as th
   // value = sum (89 - 5 i^2) A_i / 429.
   Peaks peaks;
   for (int i = 0; i < 11; ++i) {
-    peaks.time.push_back(half_turn * i);
+    peaks.time.push_back(pi * i);
     peaks.amplitude.push_back(1 + 0.1 * std::cos(5.0 * i * i));
   }
   double slope = 0, value = 0;
@@ -74,7 +74,7 @@ TEST_CASE("noise that a parabola of eleven points cannot hold is taken out as th
   const LossFactor loss = averaged_loss_factor(peaks.time, peaks.amplitude);
   REQUIRE(loss.eta.size() == 1);
   CHECK(loss.amplitude[0] == doctest::Approx(value).epsilon(1e-14));
-  CHECK(loss.eta[0] == doctest::Approx(-2 * slope / (half_turn * value)).epsilon(1e-13));
+  CHECK(loss.eta[0] == doctest::Approx(-2 * slope / (pi * value)).epsilon(1e-13));
   CHECK(loss.time[0] == peaks.time[5]);
 }
 

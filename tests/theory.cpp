@@ -11,7 +11,7 @@
 #include "impact_damper/wall.hpp"
 
 using namespace impact_damper;
-constexpr double half_turn = std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 
 namespace {
 
@@ -41,7 +41,7 @@ Departure fly(double e, double amplitude, Departure from) {
   const double t = first_zero(to_right, 0, 1e-3);
   const double wall = amplitude * std::sin(from.phase + t);
   const double rebound = e * (from.speed - wall) - wall;
-  return {std::fmod(from.phase + t + half_turn, 2 * half_turn), rebound};
+  return {std::fmod(from.phase + t + pi, 2 * pi), rebound};
 }
 
 }  // namespace
@@ -57,8 +57,8 @@ TEST_CASE("one impact per half cycle is a fixed point of the impact map") {
       CHECK(std::abs(next.speed - motion->speed) < 1e-12);
       // Loss: 2 impacts per cycle of nu (1 - e^2) w^2 / 2 each, by 2 pi times the energy A^2 / 2.
       const double w = motion->speed + amplitude * std::sin(motion->theta);
-      CHECK(motion->loss == doctest::Approx((1 - e * e) * w * w / (half_turn * amplitude * amplitude)).epsilon(1e-13));
-      CHECK(motion->phase_deg == doctest::Approx(90 + motion->theta * 180 / half_turn));
+      CHECK(motion->loss == doctest::Approx((1 - e * e) * w * w / (pi * amplitude * amplitude)).epsilon(1e-13));
+      CHECK(motion->phase_deg == doctest::Approx(90 + motion->theta * 180 / pi));
     }
   }
 }
@@ -127,7 +127,7 @@ TEST_CASE("a mass released by a wall at x = 0 meets the far wall as stated") {
     for (int i = 0; i <= steps; ++i)
       speed += (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2) * a * std::sin(t * i / steps) * t / steps / 3;
     CHECK(release.speed == doctest::Approx(speed).epsilon(1e-9));
-    CHECK(release.loss == doctest::Approx(speed * speed / (half_turn * a * a)).epsilon(1e-8));
+    CHECK(release.loss == doctest::Approx(speed * speed / (pi * a * a)).epsilon(1e-8));
   }
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("bounce-down follows the bounces that a small-step integration finds")
     u = -e * velocity;
   }
   CHECK(bounces.accumulation > bounces.time.back());
-  CHECK(bounces.accumulation < half_turn);
+  CHECK(bounces.accumulation < pi);
   CHECK(bounces.loss / stuck_release(a).loss == doctest::Approx(1.04).epsilon(0.005));
   CHECK(bounce_down(0, a).loss == doctest::Approx(stuck_release(a).loss).epsilon(1e-15));
 }
@@ -172,11 +172,11 @@ TEST_CASE("bounces accumulate in time above the end of bounce-down and not below
       const double a = factor * end;
       double t = stuck_release(a).time, u = e * stuck_release(a).speed;
       int bounce = 0;
-      for (; bounce < 60 && t < half_turn; ++bounce) {
+      for (; bounce < 60 && t < pi; ++bounce) {
         const auto d = [&](double s) {
           return (u - a * std::cos(t)) * s + a * (std::sin(t + s) - std::sin(t));
         };
-        if (d(half_turn - t) > 0 || u < 1e-6 * a) break;  // no further bounce before x = 0, or stuck
+        if (d(pi - t) > 0 || u < 1e-6 * a) break;  // no further bounce before x = 0, or stuck
         const double s = first_zero(d, 0, u / (a * std::sin(t)) / 50);
         u = e * -(u + a * (std::cos(t + s) - std::cos(t)));
         t += s;
@@ -184,7 +184,7 @@ TEST_CASE("bounces accumulate in time above the end of bounce-down and not below
       CHECK((u < 1e-6 * a) == (factor > 1));
     }
   }
-  CHECK(bounce_down_end(0) == 1 / half_turn);
+  CHECK(bounce_down_end(0) == 1 / pi);
 }
 
 TEST_CASE("bounces under constant acceleration take the sum of their flights") {
@@ -221,7 +221,7 @@ TEST_CASE("the forced two-impact solution repeats itself when it is stepped thro
       // period of the force the state must be back.
       double x = motion.x0, v = motion.v0, z = motion.x0 + motion.y0, u = motion.v0 + motion.w0, t = 0;
       const int steps = 200000;
-      const double h = 2 * half_turn / c.omega / steps;
+      const double h = 2 * pi / c.omega / steps;
       const auto step = [&](double by) {
         v += by / 2 * (c.f0 * std::sin(c.omega * t) - x);
         x += by * v;
@@ -255,7 +255,7 @@ TEST_CASE("the forced two-impact solution repeats itself when it is stepped thro
 
 TEST_CASE("the forced solution exists down to the stated force, and not at resonance") {
   const double nu = 0.02, e = 0.6, omega = 0.9;
-  const double a = half_turn / omega + 2 * nu * std::tan(half_turn / omega / 2), q = asymmetry(e) * (1 + nu) / omega;
+  const double a = pi / omega + 2 * nu * std::tan(pi / omega / 2), q = asymmetry(e) * (1 + nu) / omega;
   const double least = q / std::hypot(a, 2 * q) * (1 - omega * omega);
   CHECK(forced_two_impact(nu, e, least * 0.999999, omega).empty());
   CHECK(forced_two_impact(nu, e, least * 1.000001, omega).size() == 2);

@@ -8,7 +8,7 @@
 
 namespace impact_damper {
 namespace {
-constexpr double half_turn = std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 double square(double x) { return x * x; }
 }  // namespace
 
@@ -16,38 +16,38 @@ double asymmetry(double restitution) { return (1 - restitution) / (1 + restituti
 
 std::optional<SingleImpact> single_impact(double restitution, double amplitude) {
   const double b = asymmetry(restitution), a = amplitude;
-  const double denominator = square(half_turn) + 4 * square(b);
-  const double discriminant = square(half_turn) - denominator * (1 - 4 * square(a));
+  const double denominator = square(pi) + 4 * square(b);
+  const double discriminant = square(pi) - denominator * (1 - 4 * square(a));
   if (!(discriminant >= 0)) return std::nullopt;
   SingleImpact motion;
-  motion.speed = (half_turn + std::sqrt(discriminant)) / denominator;
-  motion.theta = std::atan2(b * motion.speed, (half_turn * motion.speed - 1) / 2);
-  motion.phase_deg = 90 + motion.theta * 180 / half_turn;
-  motion.loss = 4 * b * square(motion.speed / a) / half_turn;
+  motion.speed = (pi + std::sqrt(discriminant)) / denominator;
+  motion.theta = std::atan2(b * motion.speed, (pi * motion.speed - 1) / 2);
+  motion.phase_deg = 90 + motion.theta * 180 / pi;
+  motion.loss = 4 * b * square(motion.speed / a) / pi;
   return motion;
 }
 
 double fold_amplitude(double restitution) {
   const double b = asymmetry(restitution);
-  return b / std::sqrt(square(half_turn) + 4 * square(b));
+  return b / std::sqrt(square(pi) + 4 * square(b));
 }
 
-double peak_loss_amplitude(double restitution) { return asymmetry(restitution) / half_turn; }
+double peak_loss_amplitude(double restitution) { return asymmetry(restitution) / pi; }
 
-double peak_loss(double restitution) { return 4 / (half_turn * asymmetry(restitution)); }
+double peak_loss(double restitution) { return 4 / (pi * asymmetry(restitution)); }
 
 double equal_spacing_amplitude(double restitution) {
-  return std::hypot(2.0, asymmetry(restitution) * half_turn) / (square(half_turn) - 4);
+  return std::hypot(2.0, asymmetry(restitution) * pi) / (square(pi) - 4);
 }
 
 StuckRelease stuck_release(double amplitude) {
   // t - sin t = 1/A: convex and rising on [0, pi], so Newton's steps from pi fall onto the root from above.
   StuckRelease release;
-  double t = half_turn;
+  double t = pi;
   for (double next; (next = t - (t - std::sin(t) - 1 / amplitude) / (1 - std::cos(t))) < t;) t = next;
   release.time = t;
   release.speed = 2 * amplitude * square(std::sin(t / 2));
-  release.loss = square(release.speed / amplitude) / half_turn;
+  release.loss = square(release.speed / amplitude) / pi;
   return release;
 }
 
@@ -63,7 +63,7 @@ BounceDown bounce_down(double restitution, double amplitude) {
     bounces.speed.push_back(w);
     const double u = e * w;
     const double rest = accumulation_time(e, a * std::sin(t), u);
-    if (rest <= short_rest * std::min(1.0, half_turn - t)) {
+    if (rest <= short_rest * std::min(1.0, pi - t)) {
       bounces.sticks = true;
       bounces.accumulation = t + rest;
       squares += square(w);
@@ -76,18 +76,18 @@ BounceDown bounce_down(double restitution, double amplitude) {
     const auto distance_after = [&](double s) {
       return u * s + a * (std::cos(t) * (std::sin(s) - s) - 2 * std::sin(t) * square(std::sin(s / 2)));
     };
-    double s = half_turn - t;
+    double s = pi - t;
     if (!(distance_after(s) < 0)) break;
     for (double next; (next = s - distance_after(s) / speed_after(s)) < s;) s = next;
     w = -speed_after(s);  // which reads t
     t += s;
   }
-  bounces.loss = squares / (half_turn * square(a));
+  bounces.loss = squares / (pi * square(a));
   return bounces;
 }
 
 double bounce_down_end(double restitution) {
-  double low = 1 / half_turn;
+  double low = 1 / pi;
   if (bounce_down(restitution, low).sticks) return low;
   double high = 2 * low;
   while (!bounce_down(restitution, high).sticks) {
@@ -108,7 +108,7 @@ ImpactOutcome impact(double mass_ratio, double restitution, double v, double w) 
   return {v + nu * (1 + e) * w / (1 + nu), -e * w, nu * (1 - e * e) * square(w) / (2 * (1 + nu))};
 }
 
-double restitution_by_displacement(double z) { return std::exp(-half_turn * z / std::sqrt((1 - z) * (1 + z))); }
+double restitution_by_displacement(double z) { return std::exp(-pi * z / std::sqrt((1 - z) * (1 + z))); }
 
 double restitution_by_force(double z) {
   return std::exp(-2 * z * std::acos(z) / std::sqrt((1 - z) * (1 + z)));

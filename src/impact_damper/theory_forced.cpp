@@ -9,7 +9,7 @@
 namespace impact_damper {
 namespace {
 
-constexpr double half_turn = std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 
 struct Parameters {
   double nu, e, omega, c;  // c = f0 / (1 - omega^2)
@@ -30,7 +30,7 @@ Departure next_departure(const Parameters& p, const Departure& from, double flig
     t -= (x0 + u * t - x - 1) / (u - v);
   }
   const ImpactOutcome after = impact(p.nu, p.e, v, u - v);
-  return {-x, -after.v, phase + p.omega * t - half_turn, -(after.v + after.w)};
+  return {-x, -after.v, phase + p.omega * t - pi, -(after.v + after.w)};
 }
 
 double largest_multiplier(const Parameters& p, const Departure& fixed, double flight_time) {
@@ -49,7 +49,7 @@ double largest_multiplier(const Parameters& p, const Departure& fixed, double fl
 std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitution, double force_amplitude,
                                                double force_frequency) {
   const double nu = mass_ratio, omega = force_frequency;
-  const double period_half = half_turn / omega, cosine = std::cos(period_half / 2);
+  const double period_half = pi / omega, cosine = std::cos(period_half / 2);
   const double c = force_amplitude / ((1 - omega) * (1 + omega));
   if (!std::isfinite(c) || c == 0 || std::abs(cosine) < 1e-12) return {};
   const double a = period_half + 2 * nu * std::tan(period_half / 2);
