@@ -206,6 +206,36 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
         "r.json: /stop_reason: missing, a value must be given");
 }
 
+TEST_CASE("whatever happens to a run file's bytes, it is read or refused with at least one line") {
+  const std::string text = run_text(full_run());
+  std::mt19937_64 random(3);
+  int refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::string damaged = text;
+    for (std::uint64_t change = random() % 3; change < 3; ++change) {
+      const std::size_t place = random() % damaged.size();
+      switch (random() % 3) {
+        case 0:
+          damaged[place] = static_cast<char>(random());
+          break;
+        case 1:
+          damaged.erase(place, random() % 20);
+          break;
+        case 2:
+          damaged.insert(place, text.substr(random() % text.size(), random() % 20));
+          break;
+      }
+    }
+    try {
+      parse_run("r.json", damaged);
+    } catch (const InputError& error) {
+      ++refused;
+      CHECK(!error.problems().empty());
+    }
+  }
+  CHECK(refused > 4000);  // what survives are changed digits and names in provenance
+}
+
 TEST_CASE("a scene file names what differs from the defaults") {
   const Scene scene =
       parse_scene("s.json", R"({"mass_ratio": 0.04, "until_amplitude": 0.01, "description": "d"})");

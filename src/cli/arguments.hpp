@@ -30,6 +30,7 @@ class Arguments {
   // Absent if the option was not given, or was given and is not admitted: then it is noted for finish().
   std::optional<std::string> text(const std::string& option) const;
   std::vector<std::string> texts(const std::string& option) const;
+  std::optional<std::string> file(const std::string& option);  // its name
   std::optional<double> number(const std::string& option, NumberRange range = {});
   std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
   std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);

@@ -29,7 +29,7 @@ NumberRange range_of(const SceneField& field) {
 }
 
 Scene scene_of(Arguments& arguments) {
-  const std::optional<std::string> file = arguments.text("--scene");
+  const std::optional<std::string> file = arguments.file("--scene");
   Scene scene = file ? read_scene(*file) : Scene{};
   bool all_read = true;
   const auto override_with = [&](std::string_view field, auto& target) {
@@ -194,8 +194,8 @@ int run(const CLI::App& app) {
   const Scene scene = scene_of(arguments);
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments);
+  const std::optional<std::string> file = arguments.file("--output");
   arguments.finish();
-  const std::optional<std::string> file = arguments.text("--output");
   if (file) require_writable(*file);
   const std::string text = run_text(simulate_as_asked(scene, engine, record));
   if (file) {
@@ -278,17 +278,16 @@ void add_output_options(CLI::App& app) {
 }  // namespace
 
 Command run_command(CLI::App& program) {
-  CLI::App* const app = program.add_subcommand(
-      "run",
-      "Simulate a scene: a primary mass on a spring, and a secondary mass that travels\n"
-      "between the walls of a cavity in it. The result is a run file (JSON).\n\n"
-      "Everything is dimensionless: lengths by the free travel between the walls, times\n"
-      "by 1/Omega_n = sqrt(M/K), velocities by their quotient, forces by the force that\n"
-      "moves the primary spring by the free travel.\n");
+  CLI::App* const app =
+      program.add_subcommand("run", "Simulate a scene and write what happens as a run file.");
   add_scene_options(*app);
   add_engine_options(*app);
   add_output_options(*app);
   app->footer(
+      "A scene is a primary mass on a spring, and a secondary mass that travels between the walls\n"
+      "of a cavity in it. Everything is dimensionless: lengths by the free travel between the\n"
+      "walls, times by 1/Omega_n = sqrt(M/K), velocities by their quotient, forces by the force\n"
+      "that moves the primary spring by the free travel.\n\n"
       "Examples:\n"
       "  impact-damper run --until-amplitude 0.1 -o run.json\n"
       "  impact-damper run --scene data/scenes/my.json --engine cem --time-step 1e-4 -o cem.json\n"
