@@ -7,7 +7,7 @@
 #include <numbers>
 
 using namespace impact_damper;
-using std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 
 namespace {
 struct Peaks {

@@ -64,7 +64,10 @@ int main(int argc, char** argv) {
       "not admitted, 4 numerical failure, 5 a file cannot be read or written.");
 
   const std::array commands{
+      cli::run_command(program),
       cli::scenes_command(program),
+      cli::series_command(program),
+      cli::figures_command(program),
   };
 
   const auto head = [&] {

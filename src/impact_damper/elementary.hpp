@@ -36,7 +36,7 @@ Real logarithm(const Real& x) {
 }
 
 template <class Real>
-Real pi() {
+Real half_turn() {
   using std::acos;
   return acos(Real(-1));
 }

@@ -16,6 +16,7 @@
 // Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
+
 #include "impact_damper/timeline.hpp"
 
 namespace impact_damper {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "impact_damper/cem.hpp"
 #include "impact_damper/exact.hpp"
 #include "impact_damper/recorder.hpp"
 #include "impact_damper/restitution.hpp"
@@ -16,7 +17,10 @@ Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
   return run_restitution<double>(scene, options, recorder);
 }
 
-Outcome run(const Scene&, Cem&, Recorder&) { throw std::invalid_argument("engine: cem is not built yet"); }
+Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
+  options = resolved(scene, options);
+  return run_cem<double>(scene, options, recorder);
+}
 
 void collect(std::string& all, const std::string& field, const std::string& message) {
   if (!all.empty()) all += '\n';

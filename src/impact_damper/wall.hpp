@@ -16,7 +16,7 @@ namespace impact_damper {
 template <class Real>
 Real zeta_m_closed_form(const Real& restitution) {
   if (restitution <= 0) return 1;
-  const Real l = -logarithm(restitution), p = pi<Real>();
+  const Real l = -logarithm(restitution), p = half_turn<Real>();
   return l / square_root(Real(p * p + l * l));
 }
 
