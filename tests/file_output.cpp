@@ -2,9 +2,11 @@
 #include "impact_damper/file_output.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <string>
 
 #include "impact_damper/errors.hpp"
@@ -69,4 +71,20 @@ TEST_CASE("what cannot be written is refused and leaves nothing behind") {
   CHECK_THROWS_AS(write_file(folder.path / std::string(255, 'a'), "x"), IoError);
   CHECK(fs::is_character_file("/dev/full"));
   CHECK(folder.files() == 0);
+}
+
+TEST_CASE("a disk that fills up while writing leaves the old file and no temporary one") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt";
+  write_file(file, "old");
+  // A limit on the size of files stands in for the full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit tight{1000, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &tight);
+  CHECK_THROWS_WITH_AS(write_file(file, std::string(100'000, 'x')), doctest::Contains("too large"), IoError);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  CHECK(read_text(file) == "old");
+  CHECK(folder.files() == 1);
 }

@@ -184,7 +184,7 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
   CHECK(only("\"cem\"", "\"CEM\"") ==
         "r.json: /engine/name: must be one of \"exact\", \"restitution\", \"cem\", got the string \"CEM\"");
   CHECK(only("\"max_impacts\": 10000000", "\"max_impacts\": -5") ==
-        "r.json: /engine/max_impacts: must be a whole number >= 1, got -5");
+        "r.json: /engine/max_impacts: must be a whole number >= 0, got -5");
   CHECK(only("[3,0]", "[3]") ==
         "r.json: /half_cycles/impacts: must be as long as the section's first column, 2, got a length of 1");
   CHECK(only("[3,0]", "[3,0.0]") == "r.json: /half_cycles/impacts/1: must be a whole number >= 0, got 0");
@@ -204,6 +204,36 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
         "r.json: /energy/viscous_work: duplicate key, admitted is one value for each key");
   CHECK(only(" \"stop_reason\": \"impact_budget\",", "") ==
         "r.json: /stop_reason: missing, a value must be given");
+}
+
+TEST_CASE("whatever happens to a run file's bytes, it is read or refused with at least one line") {
+  const std::string text = run_text(full_run());
+  std::mt19937_64 random(3);
+  int refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::string damaged = text;
+    for (std::uint64_t change = random() % 3; change < 3; ++change) {
+      const std::size_t place = random() % damaged.size();
+      switch (random() % 3) {
+        case 0:
+          damaged[place] = static_cast<char>(random());
+          break;
+        case 1:
+          damaged.erase(place, random() % 20);
+          break;
+        case 2:
+          damaged.insert(place, text.substr(random() % text.size(), random() % 20));
+          break;
+      }
+    }
+    try {
+      parse_run("r.json", damaged);
+    } catch (const InputError& error) {
+      ++refused;
+      CHECK(!error.problems().empty());
+    }
+  }
+  CHECK(refused > 4000);  // what survives are changed digits and names in provenance
 }
 
 TEST_CASE("a scene file names what differs from the defaults") {

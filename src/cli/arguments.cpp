@@ -15,6 +15,13 @@ std::optional<std::string> Arguments::text(const std::string& option) const {
   return texts(option).back();
 }
 
+std::optional<std::string> Arguments::file(const std::string& option) {
+  const std::optional<std::string> name = text(option);
+  if (!name || !name->empty()) return name;
+  refuse(option, "must be a file name, got \"\"");
+  return std::nullopt;
+}
+
 std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;

@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,9 +30,18 @@ class Arguments {
   // Absent if the option was not given, or was given and is not admitted: then it is noted for finish().
   std::optional<std::string> text(const std::string& option) const;
   std::vector<std::string> texts(const std::string& option) const;
+  std::optional<std::string> file(const std::string& option);  // its name
   std::optional<double> number(const std::string& option, NumberRange range = {});
   std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
   std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);
+  // The same for an enumeration whose words name_of(value) gives.
+  template <typename Enum>
+  Enum choice(const std::string& option, std::initializer_list<Enum> admitted, Enum otherwise) {
+    std::vector<std::string_view> words;
+    for (const Enum value : admitted) words.push_back(name_of(value));
+    const std::optional<std::size_t> index = word(option, words);
+    return index ? admitted.begin()[*index] : otherwise;
+  }
   bool given(const std::string& option) const;
 
   // Notes a problem: "what is admitted, what was given".

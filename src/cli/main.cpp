@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
       "not admitted, 4 numerical failure, 5 a file cannot be read or written.");
 
   const std::array commands{
+      cli::run_command(program),
       cli::scenes_command(program),
   };
 

@@ -39,13 +39,23 @@ bool holds(const fs::path& file, std::string_view text) {
 
 }  // namespace
 
+void require_writable(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::is_directory(status)) refuse(file, "is a directory");
+  fs::path folder = file.parent_path();
+  if (folder.empty()) folder = ".";
+  const fs::path& place = fs::exists(status) ? file : folder;
+  if (::access(place.c_str(), W_OK) != 0) refuse(file, std::strerror(errno));
+  if (!fs::exists(status) && !fs::is_directory(folder)) refuse(file, std::strerror(ENOTDIR));
+}
+
 bool write_file(const fs::path& file, std::string_view text) {
   std::error_code error;
   fs::path place = file;
+  require_writable(file);
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status)) {
-    if (fs::is_directory(status)) refuse(file, "is a directory");
-    if (::access(file.c_str(), W_OK) != 0) refuse(file, std::strerror(errno));
     if (!fs::is_regular_file(status)) {
       write_directly(file, file, text);
       return true;

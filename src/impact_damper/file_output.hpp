@@ -13,7 +13,11 @@ namespace impact_damper {
 // not exist, `file` is a directory, or the place cannot be written.
 bool write_file(const std::filesystem::path& file, std::string_view text);
 
-// The same for standard output: a full disk behind it is an IoError too.
+// Throws the IoError that write_file would if it is plain beforehand: `file` is a directory, or its folder
+// is missing or not writable. Before a long computation.
+void require_writable(const std::filesystem::path& file);
+
+// The same as write_file for standard output: a full disk behind it is an IoError too.
 void write_standard_output(std::string_view text);
 
 }  // namespace impact_damper

@@ -84,9 +84,9 @@ Engine read_engine(ObjectReader object) {
   std::visit(
       [&](auto& options) {
         options = read_options(object, options);
-        object.required("max_impacts", options.budget.max_impacts, at_least(1));
+        object.required("max_impacts", options.budget.max_impacts, at_least(0));
         object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
-        object.required("max_time", options.budget.max_time, above(0));
+        object.required("max_time", options.budget.max_time, NumberRange{0, 1e12, false});
       },
       engine);
   return engine;
