@@ -1,9 +1,10 @@
 # Figures 4-6: both walls of the cavity and, between them, the secondary mass, as someone at rest sees them.
 eval require("motion", 100)
 eval require("impacts", 1)
-stats table index "motion" using 1:2 nooutput
-from = STATS_min_x; to = STATS_max_x
-reach = STATS_max_y > -STATS_min_y ? STATS_max_y : -STATS_min_y
+stats table index "motion" using 1 name "time" nooutput
+stats table index "motion" using 2 nooutput
+from = time_min; to = time_max
+reach = STATS_max > -STATS_min ? STATS_max : -STATS_min
 
 set xrange [from:to]
 set yrange [-reach - 0.15:1 + reach + 0.32]

@@ -1,3 +1,4 @@
+from = 0.03
 styles = "2 1 3"
 theory = "1 2 3"
 set logscale y

@@ -1,3 +1,4 @@
+from = 0.03
 styles = "1 2 3 4"
 theory = "1"
 set logscale y

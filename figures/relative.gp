@@ -1,8 +1,9 @@
 # Figures 1-3: the secondary mass as its cavity sees it, and below it what the cavity does meanwhile.
 eval require("motion", 100)
 eval require("impacts", 1)
-stats table index "motion" using 1:2 nooutput
-from = STATS_min_x; to = STATS_max_x; reach = 1.15 * (STATS_max_y > -STATS_min_y ? STATS_max_y : -STATS_min_y)
+stats table index "motion" using 1 name "time" nooutput
+stats table index "motion" using 2 nooutput
+from = time_min; to = time_max; reach = 1.15 * (STATS_max > -STATS_min ? STATS_max : -STATS_min)
 
 set multiplot
 set xrange [from:to]
@@ -23,16 +24,13 @@ set label 1 "right wall" at graph 0.01, first 1.07 left font ",11" textcolor rgb
 set label 2 "left wall" at graph 0.01, first -0.075 left font ",11" textcolor rgb grey front
 set arrow 1 from from,0 to to,0 nohead lc rgb black lw 2.2 front
 set arrow 2 from from,1 to to,1 nohead lc rgb black lw 2.2 front
-unset key
-if (has("stuck")) {
-  plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6, \
-       table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion, \
-       table index "stuck" using 1:3:($2-$1):(0) with vectors nohead lc rgb orange lw 6
-} else {
-  plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6, \
-       table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion
-}
+set key at graph 0.985, first 1.07 right center horizontal width 1 font ",11"
+stuck = !has("stuck") ? "" : \
+  'table index "stuck" using 1:3:($2-$1):(0) with vectors nohead lc rgb orange lw 6 title "stuck",'
+eval 'plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6 notitle,'.stuck.\
+  'table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion title "impacts"'
 
+unset key
 unset title
 unset object
 unset label

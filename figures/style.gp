@@ -1,7 +1,9 @@
 # What all figures share; read before the figure's own script (see draw), which finds these variables:
 # table, output, title, parameters, folder.
 set encoding utf8
-set terminal svg size 720,500 enhanced font "DejaVu Sans,15" linewidth 1 rounded background "white"
+canvas(width, height) = sprintf( \
+  'set terminal svg size %d,%d enhanced font "DejaVu Sans,15" linewidth 1 rounded background "white"', width, height)
+eval canvas(720, 500)
 set output output
 
 # The colours of Okabe and Ito, told apart by all; every line also differs in dash and mark, so that a black
@@ -22,8 +24,10 @@ set key noopaque samplen 3.2 spacing 1.15 font ",13" width -1
 set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.5
 
 # Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
+# One column at a time: for two, gnuplot also fits a line and complains about short blocks.
 require(block, least) = sprintf( \
-  "stats table index '%s' using 1:2 nooutput; if (STATS_records < %d || STATS_invalid > 0) { exit message 'block %s of '.table.' is short or not finite' status 1 }", \
+  "do for [c=1:2] { stats table index '%s' using c nooutput;".\
+  " if (STATS_records < %d || STATS_invalid > 0) { exit message 'block %s of '.table.' is short or not finite' status 1 } }", \
   block, least, block)
 # Whether an optional block is there.
-has(block) = 0 + system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0
+has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0

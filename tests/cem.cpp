@@ -11,22 +11,22 @@
 #include <numbers>
 #include <string>
 
-#include "impact_damper/numerical_failure.hpp"
+#include "impact_damper/errors.hpp"
 #include "impact_damper/recorder.hpp"
 
 using namespace impact_damper;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 template <class Real = double>
 Run simulated(const Scene& scene, const Cem& options, const Record& record) {
   Recorder recorder(record);
-  const CemEnd end = run_cem<Real>(scene, options, recorder);
+  const Outcome end = run_cem<Real>(scene, options, recorder);
   Run run;
-  run.stop_reason = end.reason;
-  run.end_time = end.time;
+  run.stop_reason = end.stop_reason;
+  run.end_time = end.end_time;
   recorder.finish(run);
   return run;
 }
@@ -39,7 +39,8 @@ double order(double coarse, double fine) { return std::log2(coarse / fine); }
 // x at `time` with step h in a scene whose secondary mass touches no wall.
 double x_at(Scene scene, double time, double h) {
   scene.until_time = time;
-  const Run run = simulated(scene, {.time_step = h, .unstable = true}, {.impacts = true, .history = {{time, time, 1}}});
+  const Run run =
+      simulated(scene, {.time_step = h, .unstable = true}, {.impacts = true, .history = {{time, time, 1}}});
   REQUIRE(run.impacts->time.empty());
   REQUIRE(run.history->time.size() == 1);
   return run.history->x[0];
@@ -51,37 +52,55 @@ void check_second_order(const Scene& scene, double time, double exact) {
   for (int i = 0; i < 3; ++i) CHECK(order(error[i], error[i + 1]) == doctest::Approx(2).epsilon(0.05));
 }
 
-// One impact of the left wall, all around it removed: a wall so stiff that the primary mass's spring counts
-// for 1e-9 during the contact. `phase`: how far, in steps, the mass starts from the wall beyond 3.3 contacts.
-double delivered_restitution(Scene scene, Cem options, int steps_per_contact, double phase) {
+// One impact of the left wall and nothing else: a wall so stiff that the primary mass's spring counts for
+// 1e-9 during the contact. `phase`: where in a step the touch comes.
+struct OneImpact {
+  Scene scene;
+  double step = 0;
+};
+OneImpact one_impact(Scene scene, double steps_per_contact, double phase) {
   scene.wall_stiffness = 1e10;
   scene.x0 = 0;
-  const double contact = nominal_contact_time(scene), h = contact / steps_per_contact;
   scene.w0 = -1;
+  const double contact = nominal_contact_time(scene), h = contact / steps_per_contact;
   scene.y0 = 0.3 * contact + phase * h;
   scene.until_time = 3.5 * contact;
+  return {scene, h};
+}
+
+double delivered_restitution(const Scene& start, Cem options, double steps_per_contact, double phase) {
+  const auto [scene, h] = one_impact(start, steps_per_contact, phase);
   options.time_step = h;
-  const Run run = simulated(scene, options, {.impacts = true, .history = {{*scene.until_time, *scene.until_time, 1}}});
+  const Run run =
+      simulated(scene, options, {.impacts = true, .history = {{*scene.until_time, *scene.until_time, 1}}});
   REQUIRE(run.impacts->time.size() == 1);
   const double v = run.history->v[0], w = run.history->w[0];
   // Momentum is conserved by the scheme itself: the spring's impulse, 1e-12, and rounding are left.
-  CHECK((1 + scene.mass_ratio) * v + scene.mass_ratio * w == doctest::Approx(-scene.mass_ratio).epsilon(1e-8));
+  CHECK((1 + scene.mass_ratio) * v + scene.mass_ratio * w ==
+        doctest::Approx(-scene.mass_ratio).epsilon(1e-8));
   return w;
 }
 
-double mean_restitution_error(const Scene& scene, const Cem& options, int steps_per_contact, double exact) {
+// Over touches and releases at all phases of a step: the error is erratic in both if they are not located.
+double mean_over_phases(int steps_per_contact, const std::function<double(double, double)>& error) {
   double sum = 0;
   for (int i = 0; i < 16; ++i) {
-    sum += std::abs(delivered_restitution(scene, options, steps_per_contact, (i + 0.5) / 16) - exact);
+    for (int j = 0; j < 8; ++j) sum += std::abs(error(steps_per_contact + j / 8.0, (i + 0.5) / 16));
   }
-  return sum / 16;
+  return sum / (16 * 8);
+}
+
+double mean_restitution_error(const Scene& scene, const Cem& options, int steps_per_contact, double exact) {
+  return mean_over_phases(steps_per_contact, [&](double steps, double phase) {
+    return delivered_restitution(scene, options, steps, phase) - exact;
+  });
 }
 
 // log of the growth per step of a regime's fastest growing mode: power iteration on the step as it is.
 double growth(const Scene& scene, Damper damper, Regime regime, double h) {
   const auto equations = regime_equations<double>(scene, Calibration::fixed_wall, regime);
   const CemStep<double> a = cem_step(equations, damper, h);
-  Eigen::Vector4d u(0.3, 0.1, 0.2, -0.4);  // x, q, dx, dq
+  Eigen::Vector4d u(0.3, 0.1, 0.2, -0.4);         // x, q, dx, dq
   if (regime == Regime::flight) u[1] = u[3] = 0;  // q only drifts along
   double log_norm = 0;
   constexpr int settle = 20000, steps = 20000;
@@ -120,7 +139,8 @@ TEST_CASE("the lagged limit is that of the contact between free masses when the 
   }
 }
 
-TEST_CASE("modes keep still just below the stability limit and grow just above it, in flight and in contact") {
+TEST_CASE(
+    "modes keep still just below the stability limit and grow just above it, in flight and in contact") {
   for (const Scene& scene : {Scene{}, Scene{.restitution = 1}, Scene{.restitution = 0},
                              Scene{.mass_ratio = 1.5, .damping_ratio = 0.3, .wall_stiffness = 3},
                              Scene{.restitution = 0.2, .damping_ratio = 2, .wall_stiffness = 50}}) {
@@ -129,10 +149,12 @@ TEST_CASE("modes keep still just below the stability limit and grow just above i
       CAPTURE(scene.wall_stiffness);
       CAPTURE(scene.restitution);
       const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
-      CHECK(growth(scene, damper, Regime::contact, limit * (1 - 1e-4)) < 1e-6);
-      CHECK(growth(scene, damper, Regime::contact, limit * (1 + 1e-4)) > 1e-5);
-      CHECK(growth(scene, damper, Regime::flight, 2 * (1 - 1e-4)) < 1e-6);
-      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + 1e-4)) > 1e-5);
+      // What is left below is the beat of a bounded mode over the 2e4 steps; growth above is 1e-3 or, damped,
+      // nearly.
+      CHECK(growth(scene, damper, Regime::contact, limit * (1 - 1e-3)) < 1e-4);
+      CHECK(growth(scene, damper, Regime::contact, limit * (1 + 1e-3)) > 5e-4);
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 - 1e-3)) < 1e-4);
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + 1e-3)) > 5e-4);
       CHECK(limit < 2);
     }
   }
@@ -145,8 +167,10 @@ TEST_CASE("beyond the limit an undamped mode grows as fast as the difference equ
   for (double excess : {1e-3, 1e-2, 0.3}) {
     const double by_theory = std::acosh(2 * (1 + excess) * (1 + excess) - 1);
     for (Damper damper : {Damper::centred, Damper::lagged}) {
-      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + excess)) == doctest::Approx(by_theory).epsilon(1e-4));
-      CHECK(growth(scene, damper, Regime::contact, 2 * (1 + excess) / omega) == doctest::Approx(by_theory).epsilon(1e-4));
+      CHECK(growth(scene, damper, Regime::flight, 2 * (1 + excess)) ==
+            doctest::Approx(by_theory).epsilon(1e-4));
+      CHECK(growth(scene, damper, Regime::contact, 2 * (1 + excess) / omega) ==
+            doctest::Approx(by_theory).epsilon(1e-4));
     }
   }
 }
@@ -182,14 +206,15 @@ TEST_CASE("a step beyond the stability limit is refused with the step, the limit
     const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
     CHECK_NOTHROW(simulated(scene, {.time_step = limit, .damper = damper}, {}));
     CHECK_NOTHROW(simulated(scene, {.time_step = 1.01 * limit, .damper = damper, .unstable = true}, {}));
-    CHECK_THROWS_AS(simulated(scene, {.time_step = 1.000001 * limit, .damper = damper}, {}), std::invalid_argument);
+    CHECK_THROWS_AS(simulated(scene, {.time_step = 1.000001 * limit, .damper = damper}, {}),
+                    std::invalid_argument);
   }
   try {
     simulated(scene, {.time_step = 0.003}, {});
     FAIL("not refused");
   } catch (const std::invalid_argument& refusal) {
     const std::string message = refusal.what();
-    for (const char* part : {"time_step", "0.003", "0.00280", "714.1", "centred", "contact", "--unstable"}) {
+    for (const char* part : {"time_step", "0.003", "0.00280055", "714.143", "centred", "contact", "--unstable"}) {
       CAPTURE(message);
       CHECK(message.find(part) != std::string::npos);
     }
@@ -202,7 +227,7 @@ TEST_CASE("a step beyond the stability limit is refused with the step, the limit
 TEST_CASE("an unstable run that overflows ends in a numerical failure") {
   Scene scene;
   scene.until_time = 1e5;
-  CHECK_THROWS_AS(simulated(scene, {.time_step = 2.1, .unstable = true}, everything()), NumericalFailure);
+  CHECK_THROWS_AS(simulated(scene, {.time_step = 2.1, .unstable = true}, everything()), NumericalError);
 }
 
 TEST_CASE("the default step is a hundredth of the fastest of contact, primary mass and forcing") {
@@ -218,7 +243,8 @@ TEST_CASE("without contact x converges to the closed forms with second order") {
 
   scene.damping_ratio = 0.1;
   const double omega = std::sqrt(0.99);
-  check_second_order(scene, 9.7, std::exp(-0.97) * (0.2 * std::cos(omega * 9.7) + 0.12 / omega * std::sin(omega * 9.7)));
+  check_second_order(scene, 9.7,
+                     std::exp(-0.97) * (0.2 * std::cos(omega * 9.7) + 0.12 / omega * std::sin(omega * 9.7)));
 
   scene.damping_ratio = 2;  // x'' + 4 x' + x = 0
   const double fast = -2 - std::sqrt(3), slow = -2 + std::sqrt(3);
@@ -238,7 +264,8 @@ TEST_CASE("forcing is as good after many steps as at the first") {
   // At resonance the envelope grows as f0 t / 2; 2e6 steps reseed the forcing's recurrence 2e3 times.
   Scene scene{.x0 = 0, .y0 = 0.5, .force_amplitude = 4e-4};
   const double time = 2000.1, h = 1e-3;
-  CHECK(x_at(scene, time, h) == doctest::Approx(2e-4 * (std::sin(time) - time * std::cos(time))).epsilon(2e-4));
+  CHECK(x_at(scene, time, h) ==
+        doctest::Approx(2e-4 * (std::sin(time) - time * std::cos(time))).epsilon(2e-4));
 }
 
 TEST_CASE("half cycles have the closed form's crossings and amplitudes, to second order") {
@@ -279,14 +306,17 @@ TEST_CASE("located, one impact delivers the contact's restitution to second orde
     CHECK(order(error[0], error[1]) == doctest::Approx(2).epsilon(0.1));
     CHECK(order(error[1], error[2]) == doctest::Approx(2).epsilon(0.05));
   }
-  const double delivered = delivered_restitution({}, {.locate = true, .calibration = Calibration::two_body}, 1600, 0.3);
+  const double delivered =
+      delivered_restitution({}, {.locate = true, .calibration = Calibration::two_body}, 1600, 0.3);
   CHECK(delivered == doctest::Approx(0.6).epsilon(1e-5));
 }
 
 TEST_CASE("not located, or with the damper lagged, one impact is accurate to first order only") {
   const Scene scene;
-  const double z = zeta_m_closed_form(0.6) * std::sqrt(1.02), exact = std::exp(-pi * z / std::sqrt(1 - z * z));
-  for (const Cem& options : {Cem{}, Cem{.damper = Damper::lagged}, Cem{.damper = Damper::lagged, .locate = true}}) {
+  const double z = zeta_m_closed_form(0.6) * std::sqrt(1.02),
+               exact = std::exp(-pi * z / std::sqrt(1 - z * z));
+  for (const Cem& options :
+       {Cem{}, Cem{.damper = Damper::lagged}, Cem{.damper = Damper::lagged, .locate = true}}) {
     std::array<double, 3> error;
     for (int i = 0; i < 3; ++i) error[i] = mean_restitution_error(scene, options, 100 << i, exact);
     CHECK(order(error[0], error[1]) == doctest::Approx(1).epsilon(0.15));
@@ -331,7 +361,8 @@ TEST_CASE("the mirrored scene gives the mirrored run") {
     Scene mirrored = scene;
     mirrored.x0 = -6, mirrored.v0 = -0.3, mirrored.y0 = 0.8, mirrored.w0 = -0.1;
     const Record record{.impacts = true, .history = {{0, 30, 301}}};
-    const Run a = simulated(scene, {.locate = locate}, record), b = simulated(mirrored, {.locate = locate}, record);
+    const Run a = simulated(scene, {.locate = locate}, record),
+              b = simulated(mirrored, {.locate = locate}, record);
     REQUIRE(a.impacts->time.size() > 20);
     REQUIRE(a.impacts->time.size() == b.impacts->time.size());
     // Only rounding differs, y against 1 - y; no chaos above an amplitude of 3.5.
@@ -346,22 +377,39 @@ TEST_CASE("the mirrored scene gives the mirrored run") {
   }
 }
 
-TEST_CASE("the ledger's residual vanishes with second order, and unforced energy only falls") {
-  for (bool locate : {false, true}) {
-    for (double zeta : {0.0, 0.008}) {
-      Scene scene{.damping_ratio = zeta, .until_time = 12};
+TEST_CASE("over one impact the ledger's residual is of second order, located or not") {
+  for (const Cem& options : {Cem{}, Cem{.locate = true}, Cem{.damper = Damper::lagged}}) {
+    const auto residual = [&](double steps, double phase) {
+      const auto [scene, h] = one_impact({}, steps, phase);
+      Cem with_step = options;
+      with_step.time_step = h;
+      return simulated(scene, with_step, everything()).energy->residual;
+    };
+    std::array<double, 3> error;
+    for (int i = 0; i < 3; ++i) error[i] = mean_over_phases(100 << i, residual);
+    CHECK(order(error[0], error[1]) == doctest::Approx(2).epsilon(0.1));
+    CHECK(order(error[1], error[2]) == doctest::Approx(2).epsilon(0.1));
+  }
+}
+
+TEST_CASE("over a decay with located events the ledger closes with second order") {
+  for (double zeta : {0.0, 0.008}) {
+    for (double force : {0.0, 0.3}) {
+      const Scene scene{
+          .damping_ratio = zeta, .force_amplitude = force, .force_frequency = 0.8, .until_time = 12};
       std::array<double, 3> residual;
       for (int i = 0; i < 3; ++i) {
-        const Run run = simulated(scene, {.time_step = 1e-4 / (1 << i), .locate = locate}, everything());
+        const Run run = simulated(scene, {.time_step = 1e-4 / (1 << i), .locate = true}, everything());
         const EnergyLedger& ledger = *run.energy;
         residual[i] = std::abs(ledger.residual);
         CHECK(ledger.impact_loss.size() == run.impacts->time.size());
         for (double loss : ledger.impact_loss) CHECK(loss >= 0);
-        CHECK(ledger.final.total() < ledger.initial.total());
-        CHECK(ledger.viscous_work >= 0);
         CHECK((ledger.viscous_work > 0) == (zeta > 0));
+        CHECK((ledger.forcing_work != 0) == (force != 0));
       }
-      MESSAGE(locate, " ", zeta, " ", residual[0], " ", residual[1], " ", residual[2]);
+      CHECK(residual[0] < 1e-5);
+      CHECK(order(residual[0], residual[1]) == doctest::Approx(2).epsilon(0.1));
+      CHECK(order(residual[1], residual[2]) == doctest::Approx(2).epsilon(0.1));
     }
   }
 }
@@ -375,11 +423,14 @@ TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme
     for (std::size_t i = 0; i < h.time.size(); ++i) {
       const double nu = scene.mass_ratio, q = std::min(h.y[i], std::max(h.y[i] - 1, 0.0));
       const double energy = (h.v[i] * h.v[i] + nu * std::pow(h.v[i] + h.w[i], 2) + h.x[i] * h.x[i] +
-                             scene.wall_stiffness * q * q) / 2;
+                             scene.wall_stiffness * q * q) /
+                            2;
       largest_rise = std::max(largest_rise, energy - before);
       before = energy;
     }
-    MESSAGE(largest_rise);
+    // In contact the scheme's energy swings about the true one by (omega_c h)^2 / 8 of what the impact
+    // stores, at most 0.02 * 6^2 / 2; omega_c h = pi / 100.
+    CHECK(largest_rise < 4.4e-5);
   }
 }
 
@@ -388,7 +439,10 @@ TEST_CASE("a lossless wall keeps the energy") {
     Scene scene{.restitution = 1, .until_time = 30};
     const Run run = simulated(scene, {.locate = locate}, everything());
     CHECK(run.impacts->time.size() > 10);
-    MESSAGE(run.energy->final.total() / 18 - 1, " ", run.energy->residual);
+    // Unlocated, touch and release find overlaps of up to a step's way: (omega_c h)^2 of what an impact
+    // stores, with either sign. Located, what is left is the third order of the arcs.
+    CHECK(std::abs(run.energy->final.total() / 18 - 1) < (locate ? 1e-7 : 2e-5));
+    CHECK(std::abs(run.energy->residual) < (locate ? 1e-7 : 2e-5));
     for (double loss : run.energy->impact_loss) CHECK(loss == 0);
   }
 }
@@ -398,7 +452,8 @@ TEST_CASE("history samples come at the times asked for and change nothing else")
   Record plain = everything(), sampled = everything();
   sampled.history = {{0, 1, 11}, {5.05, 5.15, 5}, {19, 25, 7}};
   for (bool locate : {false, true}) {
-    const Run a = simulated(scene, {.locate = locate}, plain), b = simulated(scene, {.locate = locate}, sampled);
+    const Run a = simulated(scene, {.locate = locate}, plain),
+              b = simulated(scene, {.locate = locate}, sampled);
     const std::vector<double>& time = b.history->time;
     REQUIRE(time.size() == 11 + 5 + 2);  // 19 and 20; the run ends before the others
     CHECK(time[0] == 0);
@@ -447,7 +502,7 @@ TEST_CASE("a run ends at its time, its amplitude or its budget, and says which")
   run = simulated(scene, options, everything());
   CHECK(run.stop_reason == StopReason::impact_budget);
   CHECK(run.impacts->time.size() == 7);
-  CHECK(run.end_time == run.impacts->time.back());
+  CHECK(run.end_time > run.impacts->time.back());  // just before the one too many
   CHECK(run.energy->impact_loss.size() == 7);
 
   options.budget = {.max_half_cycles = 3};

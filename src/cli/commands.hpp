@@ -15,7 +15,9 @@ struct Command {
   std::function<int()> act;
 };
 
+Command figures_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command scenes_command(CLI::App& program);
+Command series_command(CLI::App& program);
 
 }  // namespace impact_damper::cli

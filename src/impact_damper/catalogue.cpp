@@ -122,6 +122,10 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     item.required("ordinate", *figure.ordinate,
                   {LossOrdinate::eta, LossOrdinate::specific, LossOrdinate::specific_secondary,
                    LossOrdinate::amplitude_times, LossOrdinate::by_restitution});
+    item.optional("range", figure.range, above(0));
+    if (!figure.range.empty() && !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
+      item.refuse("range", "must be two amplitudes, the lower first");
+    }
   }
   if (figure.table == TableKind::motion) item.required("window", figure.window, above(0));
   if (figure.table != TableKind::motion && figure.table != TableKind::drawing) {

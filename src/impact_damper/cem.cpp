@@ -5,23 +5,27 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/numerical_failure.hpp"
+#include "impact_damper/errors.hpp"
+#include "impact_damper/number_text.hpp"
 
 namespace impact_damper {
 namespace {
 
-std::string number(double value, int digits) {
+std::string rounded(double value) {
   char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr;
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
   return {text, end};
 }
+// At most `value`, so that whoever types it in is not refused.
+std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
 
 }  // namespace
 
 Cem resolved(const Scene& scene, Cem options) {
   if (!options.time_step) {
     double half_period = std::min(nominal_contact_time(scene), std::numbers::pi);
-    if (scene.force_amplitude != 0) half_period = std::min(half_period, std::numbers::pi / scene.force_frequency);
+    if (scene.force_amplitude != 0)
+      half_period = std::min(half_period, std::numbers::pi / scene.force_frequency);
     options.time_step = half_period / 100;
   }
   return options;
@@ -29,14 +33,14 @@ Cem resolved(const Scene& scene, Cem options) {
 
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
   const double h = options.time_step.value();
-  if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0, got " + number(h, 6)}};
+  if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0 and finite, got " + number_text(h)}};
   const double limit = stability_limit(scene, options.damper, options.calibration);
   if (h <= limit || options.unstable) return {};
-  return {{"time_step", "must be <= " + number(limit, 6) + ", got " + number(h, 6) +
-                            ": beyond it the contact's fastest mode grows (frequency " +
-                            number(fastest_contact_frequency(scene), 6) + ", " +
-                            std::string(name_of(options.damper)) +
-                            " damper); take a smaller step, or give --unstable to run it all the same"}};
+  return {{"time_step",
+           "must be <= " + rounded_down(limit) + ", got " + number_text(h) +
+               ": beyond this stability limit the fastest mode in contact grows (angular frequency " +
+               rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
+               " damper); take a smaller step, or run it all the same with --unstable"}};
 }
 
 void require_no_problems(const Scene& scene, const Cem& options) {
@@ -46,8 +50,8 @@ void require_no_problems(const Scene& scene, const Cem& options) {
 }
 
 void fail_of_overflow(double time, double step) {
-  throw NumericalFailure("the component element method overflowed near time " + number(time, 6) +
-                         " with time_step " + number(step, 6));
+  throw NumericalError("the component element method overflowed near time " + rounded(time) +
+                         " with time_step " + number_text(step));
 }
 
 }  // namespace impact_damper

@@ -26,6 +26,8 @@
 
 #include "impact_damper/cem_scheme.hpp"
 #include "impact_damper/elementary.hpp"
+#include "impact_damper/energy.hpp"
+#include "impact_damper/motion.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -41,11 +43,6 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 void require_no_problems(const Scene& scene, const Cem& options);
 
 [[noreturn]] void fail_of_overflow(double time, double step);
-
-struct CemEnd {
-  StopReason reason = StopReason::time;
-  double time = 0;
-};
 
 // The parabola through three successive steps of one coordinate, about the middle one.
 template <class Real>
@@ -74,17 +71,14 @@ class CemEngine {
  public:
   // `options` resolved and free of problems.
   CemEngine(const Scene& scene, const Cem& options, Observer& observer);
-  CemEnd run();
+  Outcome run();
 
  private:
   struct Moment {  // positions at a step, and the increments that led there
     Real x, q, dx, dq;
   };
-  struct State {
-    Real x, v, q, w;
-  };
 
-  void begin_segment(const Real& time, const State& state);
+  void begin_segment(const Real& time, const State<Real>& state);
   std::int64_t steps_until(const Real& time) const;
   void take_steps(std::int64_t most);
   template <Regime regime, bool forced, bool ledger>
@@ -107,20 +101,23 @@ class CemEngine {
   }
   Arc<Real> x_arc() const { return arc(&Moment::x, &Moment::dx); }
   Arc<Real> q_arc() const { return arc(&Moment::q, &Moment::dq); }
-  State state_at(const Real& at) const {
+  State<Real> state_at(const Real& at) const {
     const Arc<Real> x = x_arc(), q = q_arc();
-    return {x.at(at), x.slope_at(at), q.at(at), q.slope_at(at)};
+    return {x.at(at), x.slope_at(at), origin_of_q() + q.at(at), q.slope_at(at)};
   }
 
-  static Real position(Wall wall) { return wall == Wall::right ? Real(1) : Real(0); }
+  Real origin_of_q() const { return wall_ == Wall::right ? Real(1) : Real(0); }
+  auto acceleration(const Real& time, const State<Real>& s) const {
+    return equations().acceleration(s.x, s.v, s.y - origin_of_q(), s.w, forcing(time));
+  }
   static Real sign(const Real& value) { return Real((value > 0) - (value < 0)); }
   const RegimeEquations<Real>& equations() const { return wall_ ? contact_ : flight_; }
   Real forcing(const Real& time) const {
-    return forced_ ? force_amplitude_ * sin_cos(Real(force_frequency_ * time)).sin : Real(0);
+    return forced_ ? force_.amplitude * sin_cos(Real(force_.frequency * time)).sin : Real(0);
   }
 
-  Energy energy(const State& state);
-  void add_powers(const Real& weight, const Real& time, const State& state);
+  Energy energy(const State<Real>& state);
+  void add_powers(const Real& weight, const Real& time, const State<Real>& state);
   void close_powers(const Real& at);
 
   const Budget budget_;
@@ -131,22 +128,23 @@ class CemEngine {
   const bool locate_;
   Observer& observer_;
 
+  const System<Real> system_;
+  const Forcing<Real> force_;
   const Real h_;
   const RegimeEquations<Real> flight_, contact_;
   const CemStep<Real> flight_step_, contact_step_;
-  const Real force_amplitude_, force_frequency_;
   const bool forced_, ledger_;
   const bool peaks_;  // somebody looks at amplitudes
-  State initial_;
+  const State<Real> initial_;
 
-  Moment before_{}, now_{};  // the last step went from the one to the other
-  Real origin_ = 0;          // time of step 0
-  std::int64_t step_ = 0;    // number of now_
+  Moment before_{}, now_{};   // the last step went from the one to the other
+  Real origin_ = 0;           // time of step 0
+  std::int64_t step_ = 0;     // number of now_
   std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;
 
-  Real side_ = 0;   // sign of x in this half cycle, 0 until x has moved
+  Real side_ = 0;   // sign of x in this half cycle, 0 before x has moved
   Real trend_ = 0;  // sign of x' since the last turn
   Real row_begin_ = 0, peak_ = 0, peak_time_ = 0;
   std::int64_t impacts_ = 0, rows_ = 0;
@@ -154,13 +152,13 @@ class CemEngine {
   Real wall_work_ = 0;  // in the contact under way
   Real viscous_work_ = 0, forcing_work_ = 0, losses_ = 0;
   double largest_energy_ = 0;
-  std::optional<CemEnd> end_;
+  std::optional<Outcome> end_;
 };
 
 // Runs the scene for an observer with the members of Recorder. Checks the step first: throws
-// std::invalid_argument with the problem; throws NumericalFailure where the numbers overflow.
+// std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
 template <class Real = double, class Observer>
-CemEnd run_cem(const Scene& scene, const Cem& options, Observer& observer) {
+Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
   const Cem complete = resolved(scene, options);
   require_no_problems(scene, complete);
   return CemEngine<Real, Observer>(scene, complete, observer).run();

@@ -14,23 +14,24 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       damper_(options.damper),
       locate_(options.locate),
       observer_(observer),
+      system_(scene),
+      force_(system_.forcing),
       h_(options.time_step.value()),
       flight_(regime_equations<Real>(scene, options.calibration, Regime::flight)),
       contact_(regime_equations<Real>(scene, options.calibration, Regime::contact)),
       flight_step_(cem_step(flight_, options.damper, h_)),
       contact_step_(cem_step(contact_, options.damper, h_)),
-      force_amplitude_(scene.force_amplitude),
-      force_frequency_(scene.force_frequency),
-      forced_(scene.force_amplitude != 0),
+      forced_(bool(force_)),
       ledger_(observer.wants_energy()),
       peaks_(observer.wants_half_cycles() || scene.until_amplitude),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0} {
-  // Overlapping, or at the wall and on the way into it: in contact from the beginning, by no impact.
-  const State& s = initial_;
-  const Real inwards = s.w != 0 ? s.w : flight_.acceleration(s.x, s.v, s.q, s.w, Real(0)).q;
-  if (s.q < 0 || (s.q == 0 && inwards < 0)) wall_ = Wall::left;
-  if (s.q > 1 || (s.q == 1 && inwards > 0)) wall_ = Wall::right;
-  if (wall_) initial_.q -= position(*wall_);
+  // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
+  // the first derivative of y that is not zero tells.
+  const State<Real>& s = initial_;
+  const Real bend = acceleration(Real(0), s).q, jerk = s.v - force_.amplitude * force_.frequency;
+  const Real inwards = s.w != 0 ? Real(0) : bend != 0 ? bend : jerk;
+  if (s.y < 0 || (s.y == 0 && inwards < 0)) wall_ = Wall::left;
+  if (s.y > 1 || (s.y == 1 && inwards > 0)) wall_ = Wall::right;
 
   side_ = sign(s.x != 0 ? s.x : s.v);
   if (peaks_) trend_ = sign(s.v);
@@ -38,12 +39,11 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
 }
 
 template <class Real, class Observer>
-CemEnd CemEngine<Real, Observer>::run() {
+Outcome CemEngine<Real, Observer>::run() {
   begin_segment(Real(0), initial_);
   if (ledger_) observer_.ledger().initial = energy(initial_);
   if (observer_.next_sample() <= 0) {
-    const Real y = initial_.q + (wall_ ? position(*wall_) : Real(0));
-    observer_.sample(0, double(initial_.x), double(initial_.v), double(y), double(initial_.w));
+    observer_.sample(0, double(initial_.x), double(initial_.v), double(initial_.y), double(initial_.w));
   }
   while (!end_) {
     const Real sample = observer_.next_sample();
@@ -55,9 +55,9 @@ CemEnd CemEngine<Real, Observer>::run() {
 
 // The second-order start: the step before the first is u - h u' + h^2 u''/2.
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::begin_segment(const Real& time, const State& s) {
-  const auto a = equations().acceleration(s.x, s.v, s.q, s.w, forcing(time));
-  now_ = {s.x, s.q, h_ * (s.v - h_ * a.x / 2), h_ * (s.w - h_ * a.q / 2)};
+void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real>& s) {
+  const auto a = acceleration(time, s);
+  now_ = {s.x, s.y - origin_of_q(), h_ * (s.v - h_ * a.x / 2), h_ * (s.w - h_ * a.q / 2)};
   origin_ = time;
   step_ = 0;
   if (ledger_) add_powers(-h_ / 2, time, s);
@@ -99,10 +99,10 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   Real f = 0, df = 0, curb = 0;
   if constexpr (forced) {
     most = std::min<std::int64_t>(most, 1024);
-    const Real half = force_frequency_ * h_ / 2, time = origin_ + Real(step_) * h_;
+    const Real half = force_.frequency * h_ / 2, time = origin_ + Real(step_) * h_;
     const Real sin_half = sin_cos(half).sin;
     f = forcing(time);
-    df = 2 * force_amplitude_ * sin_half * sin_cos(Real(force_frequency_ * time + half)).cos;
+    df = 2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos;
     curb = 4 * sin_half * sin_half;
   }
   Real sum_vv = 0, sum_ww = 0, sum_fv = 0;  // of 2 h v and 2 h w, v and w centred
@@ -212,35 +212,31 @@ std::optional<Real> CemEngine<Real, Observer>::wall_crossing() const {
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::change_regime(const Real& at) {
   const Real time = last_step_begin() + at;
-  State s = state_at(at);
+  State<Real> s = state_at(at);
+  const Real y = now_.q + origin_of_q();
+  // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
+  const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
+  const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
+  if (!wall_ && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
+
   if (locate_) {
     // The velocities by the trapezoid of the accelerations, one order better than the arc's slope.
-    const auto a = equations().acceleration(s.x, s.v, s.q, s.w, forcing(time));
+    const auto a = acceleration(time, s);
     const Arc<Real> x = x_arc(), q = q_arc();
     s.v = x.slope + at * (x.bend + a.x) / 2;
     s.w = q.slope + at * (q.bend + a.q) / 2;
+    s.y = (wall_ ? *wall_ : wall) == Wall::right ? 1 : 0;
     if (ledger_) close_powers(at);
   }
-  const bool was_contact = wall_.has_value();
-  if (was_contact) {
-    const Real back = position(*wall_);
-    before_.q += back;
-    now_.q += back;
-    s.q = back;
-    leave(time);
-  }
-  // A step too coarse can lead from one wall through to the other; located, the wall met decides.
-  if (!was_contact || (!locate_ && !(now_.q >= 0 && now_.q <= 1))) {
-    const Wall wall = now_.q > Real(0.5) ? Wall::right : Wall::left;
-    before_.q -= position(wall);
-    now_.q -= position(wall);
-    s.q = 0;
-    enter(wall, time, s.w);
-    if (impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
-  }
+  const Real old_origin = origin_of_q();
+  if (wall_) leave(time);
+  if (met) enter(wall, time, s.w);
   if (locate_) {
     if (peaks_) trend_ = sign(s.v);
     begin_segment(time, s);
+  } else {
+    before_.q += old_origin - origin_of_q();
+    now_.q += old_origin - origin_of_q();
   }
 }
 
@@ -281,6 +277,7 @@ void CemEngine<Real, Observer>::cross_zero(const Real& at) {
   if (peaks_) trend_ = sign(now_.dx);
   row_begin_ = time;
   peak_ = 0;
+  peak_time_ = time;
   if (small) return finish(StopReason::amplitude, at);
   if (rows_ >= budget_.max_half_cycles) finish(StopReason::half_cycle_budget, at);
 }
@@ -298,9 +295,8 @@ template <class Real, class Observer>
 void CemEngine<Real, Observer>::give_samples(const Real& until) {
   while (observer_.next_sample() <= until) {
     const double time = observer_.next_sample();
-    const State s = state_at(Real(time) - last_step_begin());
-    const Real y = wall_ ? s.q + position(*wall_) : s.q;
-    observer_.sample(time, double(s.x), double(s.v), double(y), double(s.w));
+    const State<Real> s = state_at(Real(time) - last_step_begin());
+    observer_.sample(time, double(s.x), double(s.v), double(s.y), double(s.w));
   }
 }
 
@@ -317,28 +313,24 @@ void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
     EnergyLedger& ledger = observer_.ledger();
     ledger.viscous_work = double(viscous_work_);
     ledger.forcing_work = double(forcing_work_);
-    const double residual = ledger.initial.total() + ledger.forcing_work -
-                            (ledger.final.total() + double(losses_) + ledger.viscous_work);
-    ledger.residual = largest_energy_ > 0 ? residual / largest_energy_ : residual;
+    const double largest = std::max(largest_energy_, std::abs(ledger.forcing_work));
+    const Real open =
+        (ledger.initial.total() + forcing_work_) - (ledger.final.total() + losses_ + viscous_work_);
+    ledger.residual = largest > 0 ? double(open) / largest : 0.0;
   }
-  end_ = {reason, double(time)};
+  end_ = Outcome{reason, double(time)};
 }
 
 template <class Real, class Observer>
-Energy CemEngine<Real, Observer>::energy(const State& s) {
-  const Real nu = contact_.nu;
-  Energy e;
-  e.kinetic = double((s.v * s.v + nu * (s.v + s.w) * (s.v + s.w)) / 2);
-  e.spring = double(s.x * s.x / 2);
-  if (wall_) e.wall = double(nu * contact_.omega_2 * s.q * s.q / 2);
-  e.paper = double((s.v * s.v + nu * (s.v * s.v + s.w * s.w) + s.x * s.x) / 2);
-  largest_energy_ = std::max(largest_energy_, e.total());
-  return e;
+Energy CemEngine<Real, Observer>::energy(const State<Real>& s) {
+  const Energy energy = energy_of(system_, s, wall_ ? absolute(Real(s.y - origin_of_q())) : Real(0));
+  largest_energy_ = std::max(largest_energy_, energy.total());
+  return energy;
 }
 
 // The ledger's integrals are trapezoids over the steps: the loop adds whole powers, these the ends.
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time, const State& s) {
+void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time, const State<Real>& s) {
   viscous_work_ += weight * 2 * flight_.zeta * s.v * s.v;
   forcing_work_ += weight * forcing(time) * s.v;
   wall_work_ += weight * equations().nu * equations().c * s.w * s.w;

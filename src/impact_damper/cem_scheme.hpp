@@ -43,7 +43,7 @@ RegimeEquations<Real> regime_equations(const Scene& scene, Calibration calibrati
   RegimeEquations<Real> equations{.nu = scene.mass_ratio, .zeta = scene.damping_ratio, .c = 0, .omega_2 = 0};
   if (regime == Regime::flight) return equations;
   equations.omega_2 = Real(scene.wall_stiffness) / equations.nu;
-  equations.c = 2 * square_root(equations.omega_2) * Real(zeta_m(scene, calibration));
+  equations.c = 2 * square_root(equations.omega_2) * zeta_m<Real>(scene, calibration);
   return equations;
 }
 
@@ -58,8 +58,8 @@ template <class Real>
 CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, const Real& h) {
   const auto& [nu, zeta, c, omega_2] = equations;
   const bool centred = damper == Damper::centred;
-  const Real ahead = centred ? h * c / 2 : Real(0);   // the wall damper's share of the left side,
-  const Real behind = centred ? h * c / 2 : h * c;    // and of the right
+  const Real ahead = centred ? h * c / 2 : Real(0);  // the wall damper's share of the left side,
+  const Real behind = centred ? h * c / 2 : h * c;   // and of the right
   const Real outer = h * zeta, h_2 = h * h, spring = h_2 * omega_2;
   const Real determinant = (1 + outer) * (1 + ahead) + nu * ahead;
   // The inverse of M + h C/2, times h^2 for the forces.

@@ -43,7 +43,8 @@ class ContactSystem {
     gamma_ = -alpha / resultant;
     delta_ = (beta - alpha * p_) / resultant;
     // On fast motions x = nu (c s + K) / (s^2 + 2 zeta s + 1) q: its inverse denominator, reduced by Q2.
-    stiff_ = factors.stiff;
+    const Real free = 1 + 2 * zeta;
+    stiff_ = b2_ > 16 * free * free;
     const Real a = 2 * zeta - p2_, o = 1 - b2_;
     const Real free_resultant = o * o - a * o * p2_ + a * a * b2_;
     shape_s_ = -a / free_resultant;
@@ -108,45 +109,41 @@ class Contact {
 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
-    const auto slow = move(system_.slow, slow_, system_.drive_slow, t);
-    const auto fast = move(system_.fast, fast_, system_.drive_fast, t);
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
     return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
   }
 
   // Towards zero: how deep the secondary mass is in the wall.
   std::array<Outlook<Real>, 1> depth(const Real& t, const Real& span) const {
-    const auto slow = move(system_.slow, slow_, system_.drive_slow, t);
-    const auto fast = move(system_.fast, fast_, system_.drive_fast, t);
-    return {look(slow.q, slow.w, fast.q, fast.w, system_.drive_slow.q, system_.drive_slow.w, system_.drive_fast.q,
-                 system_.drive_fast.w, 0, inward_, t, span)};
+    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
-    const auto slow = move(system_.slow, slow_, system_.drive_slow, t);
-    const auto fast = move(system_.fast, fast_, system_.drive_fast, t);
-    return look(slow.x, slow.v, fast.x, fast.v, system_.drive_slow.x, system_.drive_slow.v, system_.drive_fast.x,
-                system_.drive_fast.v, order, sign, t, span);
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    const Real time = begin_ + t;
+    return look({system_.slow, slow.x, slow.v, on_f(system_.slow, system_.drive_slow.x, system_.drive_slow.v),
+                 system_.drive_slow.x, system_.forcing, time},
+                {system_.fast, fast.x, fast.v, on_f(system_.fast, system_.drive_fast.x, system_.drive_fast.v),
+                 system_.drive_fast.x, system_.forcing, time},
+                order, sign, span);
   }
 
-  // Panels as long as the fast motion allows while it can still be felt in the energy, then as the slow one.
+  // Panels as long as the fast motion allows while its ringing can still be felt in the energy, then as the
+  // slow one and the forcing allow.
   Real panel(const Real& t) const {
-    const auto slow = move(system_.slow, slow_, system_.drive_slow, t);
-    const auto fast = move(system_.fast, fast_, system_.drive_fast, t);
-    // What of the fast part rings, beyond following the forcing as a spring would.
-    const auto d = derivatives(system_.fast, fast.q, fast.w, system_.drive_fast.q, system_.drive_fast.w, t);
-    Real follows1{0}, follows2{0};
-    if (system_.forcing) {
-      const auto f = system_.forcing.template derivatives<4>(begin_ + t);
-      const Real on_f = system_.drive_fast.w + 2 * system_.fast.a() * system_.drive_fast.q;
-      follows1 = (on_f * f[1] + system_.drive_fast.q * f[2]) / system_.fast.b();
-      follows2 = (on_f * f[2] + system_.drive_fast.q * f[3]) / system_.fast.b();
-    }
-    const Real ringing = system_.fast.bound(d[1] - follows1, d[2] - follows2, 0, 0);
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    Real rate = system_.slow.rate();
+    if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
+    const Real ringing = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
     const Real others = absolute(slow.w) + absolute(slow.v);
-    const Real felt = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others);
-    const bool quiet = felt <= Real(1e-19) * (slow.x * slow.x + slow.v * slow.v);
-    Real slow_rate = system_.slow.rate();
-    if (system_.forcing && system_.forcing.frequency > slow_rate) slow_rate = system_.forcing.frequency;
-    return Real(6) / (quiet ? slow_rate : system_.fast.rate() > slow_rate ? system_.fast.rate() : slow_rate);
+    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others);
+    const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
+                       (absolute(slow.q) + absolute(fast.q));
+    const Real forced = system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);
+    const Real energy = slow.x * slow.x + slow.v * slow.v + forced * forced;
+    const bool quiet = ringing <= noise || power <= Real(1e-18) * rate * energy;
+    if (!quiet && system_.fast.rate() > rate) rate = system_.fast.rate();
+    return Real(6) / rate;
   }
   static constexpr bool in_contact = true;
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
@@ -172,43 +169,25 @@ class Contact {
     return to;
   }
 
-  static constexpr std::size_t orders = 6;
-  using Derivatives = std::array<Real, orders>;
+  ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
+  ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
 
-  // The derivatives of a part (u, u') that is driven by (drive, drive1).
-  Derivatives derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& drive,
-                          const Real& drive1, const Real& t) const {
-    Derivatives f{};
-    if (system_.forcing) {
-      const auto force = system_.forcing.template derivatives<orders + 1>(begin_ + t);
-      for (std::size_t n = 0; n < orders; ++n) {
-        f[n] = (drive1 + 2 * oscillator.a() * drive) * force[n] + drive * force[n + 1];
-      }
-    }
-    return oscillator.derivatives(u, u1, f);
+  // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation under
+  // (drive1 + 2 a drive) f + drive f'.
+  using Part = Instant<Real, 6>;
+  static Real on_f(const Oscillator<Real>& oscillator, const Real& drive, const Real& drive1) {
+    return drive1 + 2 * oscillator.a() * drive;
   }
-  Real bound(const Oscillator<Real>& oscillator, const Derivatives& d, std::size_t order, const Real& drive,
-             const Real& drive1, const Real& span) const {
-    Real force{0};
-    if (system_.forcing) {
-      force = absolute(system_.forcing.amplitude) *
-              (absolute(drive1 + 2 * oscillator.a() * drive) + absolute(drive) * system_.forcing.frequency);
-      for (std::size_t n = 0; n < order; ++n) force *= system_.forcing.frequency;
-    }
-    return oscillator.bound(d[order], d[order + 1], force, span);
+  Part instant_of_q(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
+                    const ContactState<Real>& drive, const Real& t) const {
+    return {oscillator, now.q, now.w, on_f(oscillator, drive.q, drive.w), drive.q, system_.forcing, begin_ + t};
   }
-  Outlook<Real> look(const Real& slow, const Real& slow1, const Real& fast, const Real& fast1, const Real& drive_slow,
-                     const Real& drive_slow1, const Real& drive_fast, const Real& drive_fast1, std::size_t order,
-                     const Real& sign, const Real& t, const Real& span) const {
-    const auto s = derivatives(system_.slow, slow, slow1, drive_slow, drive_slow1, t);
-    const auto f = derivatives(system_.fast, fast, fast1, drive_fast, drive_fast1, t);
-    const Real slow_third = bound(system_.slow, s, order + 3, drive_slow, drive_slow1, span);
-    const Real fast_third = bound(system_.fast, f, order + 3, drive_fast, drive_fast1, span);
-    const Real rest = bound(system_.fast, f, order, drive_fast, drive_fast1, span);
-    const std::size_t n = order;
-    return {{sign * (s[n] + f[n]), sign * (s[n + 1] + f[n + 1]), sign * (s[n + 2] + f[n + 2]), slow_third + fast_third},
-            {sign * s[n], sign * s[n + 1], sign * s[n + 2], slow_third},
-            rest};
+  static Outlook<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign, const Real& span) {
+    const Real slow_third = slow.bound(n + 3, span), fast_third = fast.bound(n + 3, span);
+    return {{sign * (slow[n] + fast[n]), sign * (slow[n + 1] + fast[n + 1]), sign * (slow[n + 2] + fast[n + 2]),
+             slow_third + fast_third},
+            {sign * slow[n], sign * slow[n + 1], sign * slow[n + 2], slow_third},
+            fast.bound(n, span)};
   }
 
   const ContactSystem<Real>& system_;

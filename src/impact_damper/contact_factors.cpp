@@ -44,6 +44,7 @@ QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
     for (int j = i + 1; j < 4; ++j) {
       const Complex sum = roots[i] + roots[j], product = roots[i] * roots[j];
       if (sum.imag() != 0 || (roots[i].imag() == 0) != (roots[j].imag() == 0)) continue;
+      if (product.real() > scale * scale * (1 + 1e-6)) continue;  // the faster of two factors
       int others_imaginary = 0;
       for (int m = 0; m < 4; ++m) others_imaginary += m != i && m != j && roots[m].imag() != 0;
       if (others_imaginary == 1) continue;

@@ -11,14 +11,14 @@ namespace impact_damper {
 template <class Real>
 struct ContactFactors {
   Real p, b, p2, b2;
-  bool stiff;  // the two are far apart, as for every wall that is much stiffer than the spring
 };
 
 struct QuadraticFactor {
   double p, b;
 };
-// A factor of s^4 + c3 s^3 + c2 s^2 + c1 s + c0 from its roots (Eigen), to a few digits. Of the possible
-// pairings of real roots the one whose two factors have roots farthest apart.
+// The slower factor of s^4 + c3 s^3 + c2 s^2 + c1 s + c0 from its roots (Eigen), to a few digits: the faster
+// follows from it without cancellation, but not the other way round. Of the possible pairings of real roots
+// the one whose two factors have roots farthest apart.
 QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0);
 
 template <class Real>
@@ -26,11 +26,10 @@ ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real
   const Real c3 = 2 * zeta + damping * (1 + nu), c2 = 1 + 2 * zeta * damping + stiffness * (1 + nu);
   const Real c1 = damping + 2 * zeta * stiffness, c0 = stiffness;
   ContactFactors<Real> factors;
-  const Real far = 100 * (1 + 2 * zeta);
-  factors.stiff = stiffness > far * far;
-  // Far apart, the slow motion is nearly the stuck one.
+  // With a wall that is much stiffer than the spring the slow motion is nearly the stuck one.
   Real p = 2 * zeta / (1 + nu), b = 1 / (1 + nu);
-  if (!factors.stiff) {
+  const Real far = 100 * (1 + 2 * zeta);
+  if (!(stiffness > far * far)) {
     const QuadraticFactor factor = quadratic_factor(double(c3), double(c2), double(c1), double(c0));
     p = factor.p;
     b = factor.b;

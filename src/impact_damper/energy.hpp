@@ -26,6 +26,7 @@ Energy energy_of(const System<Real>& system, const State<Real>& s, const Real& d
 template <class Real>
 struct Works {
   Real wall{0}, viscous{0}, forcing{0};
+  Real turnover{0};  // integral of the forcing's |power|: what rounding errors of its work are measured by
 };
 
 // Abscissae (positive half) and weights of the 16-point Gauss-Legendre rule on [-1, 1]
@@ -57,7 +58,11 @@ Works<Real> works_of(const System<Real>& system, const Motion& motion, const Rea
         const Real dt = half * weight;
         works.viscous += dt * (2 * system.zeta) * (s.v * s.v);
         works.wall += dt * wall_damping * (s.w * s.w);
-        if (system.forcing) works.forcing += dt * s.v * system.forcing.template derivatives<2>(begin + t)[0];
+        if (system.forcing) {
+          const Real work = dt * s.v * system.forcing.template derivatives<2>(begin + t)[0];
+          works.forcing += work;
+          works.turnover += absolute(work);
+        }
       }
     }
     from = to;

@@ -60,24 +60,8 @@ class Swing {
     return now;
   }
 
-  static constexpr std::size_t orders = 7;
-  using Derivatives = std::array<Real, orders>;
-  Derivatives derivatives(const Real& x, const Real& v, const Real& t) const {
-    Derivatives f{};
-    if (forcing_) f = forcing_.template derivatives<orders>(begin_ + t);
-    return oscillator_.derivatives(x, v, f);
-  }
-  Real bound(const Derivatives& d, std::size_t order, const Real& span) const {
-    Real force = absolute(forcing_.amplitude);
-    for (std::size_t n = 0; n < order && force != 0; ++n) force *= forcing_.frequency;
-    return oscillator_.bound(d[order], d[order + 1], force, span);
-  }
-  // The `order`-th derivative of x, looked ahead from d.
-  Outlook<Real> outlook(const Derivatives& d, std::size_t order, const Real& sign, const Real& span) const {
-    Outlook<Real> look;
-    look.whole = {sign * d[order], sign * d[order + 1], sign * d[order + 2], bound(d, order + 3, span)};
-    look.rest = std::numeric_limits<Real>::infinity();
-    return look;
+  Instant<Real, 7> instant(const Real& x, const Real& v, const Real& t) const {
+    return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
   // How far a smooth quadrature panel may reach.
   Real panel() const {
@@ -90,6 +74,14 @@ class Swing {
   Forcing<Real> forcing_;
   Real begin_, x0_, v0_;
 };
+
+// The `order`-th derivative of x, looked ahead from an instant.
+template <class Real>
+Outlook<Real> outlook(const Instant<Real, 7>& x, std::size_t order, const Real& sign, const Real& span) {
+  return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)},
+          {},
+          std::numeric_limits<Real>::infinity()};
+}
 
 // How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
 template <class Real>
@@ -112,23 +104,23 @@ class Flight {
   // Towards zero: the gap to the left wall, y, and the gap to the right one, 1 - y.
   std::array<Outlook<Real>, 2> gaps(const Real& t, const Real& span) const {
     const State<Real> now = at(t);
-    const auto d = swing_.derivatives(now.x, now.v, t);
-    const Real third = swing_.bound(d, 3, span), swing = swing_.bound(d, 0, span);
+    const auto x = swing_.instant(now.x, now.v, t);
+    const Real third = x.bound(3, span), swing = x.bound(0, span);
     const Real z = now.y + now.x, z1 = now.w + now.v;
-    return {Outlook<Real>{{now.y, now.w, -d[2], third}, {z, z1, 0, 0}, swing},
-            Outlook<Real>{{1 - now.y, -now.w, d[2], third}, {1 - z, -z1, 0, 0}, swing}};
+    return {Outlook<Real>{{now.y, now.w, -x[2], third}, {z, z1, Real(0), Real(0)}, swing},
+            Outlook<Real>{{1 - now.y, -now.w, x[2], third}, {1 - z, -z1, Real(0), Real(0)}, swing}};
   }
   // y'' and y''' at the beginning, and a bound on |y''''|.
   struct Departure {
     Real acceleration, jerk, fourth;
   };
   Departure departure(const Real& span) const {
-    const auto d = swing_.derivatives(start_.x, start_.v, Real(0));
-    return {-d[2], -d[3], swing_.bound(d, 4, span)};
+    const auto x = swing_.instant(start_.x, start_.v, Real(0));
+    return {-x[2], -x[3], x.bound(4, span)};
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const State<Real> now = at(t);
-    return swing_.outlook(swing_.derivatives(now.x, now.v, t), order, sign, span);
+    return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
   }
   Real panel(const Real&) const { return swing_.panel(); }
   static constexpr bool in_contact = false;
@@ -159,7 +151,7 @@ class Stuck {
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const State<Real> now = at(t);
-    return swing_.outlook(swing_.derivatives(now.x, now.v, t), order, sign, span);
+    return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
   }
   Real panel(const Real&) const { return swing_.panel(); }
   static constexpr bool in_contact = false;

@@ -55,14 +55,13 @@ class Oscillator {
     const Real discriminant = b - a * a;
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
-    const Real root_b = square_root(b);
-    rate_ = a > root_b ? a : root_b;
-    if (!underdamped_) slow_rate_ = b / (a + omega_);
+    rate_ = underdamped_ ? square_root(b) : Real(a + omega_);
+    if (!underdamped_) slow_rate_ = b / rate_;
   }
 
   const Real& a() const { return a_; }
   const Real& b() const { return b_; }
-  const Real& rate() const { return rate_; }  // max(a, sqrt b): times shorter than 1/rate see little change
+  const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
 
   Propagator<Real> propagate(const Real& t) const {
     if (t == 0) return {};
@@ -84,6 +83,9 @@ class Oscillator {
       const Real decay = exponential(-slow_rate_ * t);
       p.s = omega_ == 0 ? Real(t * decay) : Real(-decay * exponential_minus_1(Real(-2 * omega_ * t)) / (2 * omega_));
       p.c = decay + slow_rate_ * p.s;
+      p.c1 = exponential_minus_1(Real(-slow_rate_ * t)) + slow_rate_ * p.s;
+      p.s1 = p.s - t;
+      return p;
     }
     p.c1 = p.c - 1;
     p.s1 = p.s - t;
@@ -99,28 +101,11 @@ class Oscillator {
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
     // The response z to exp(i omega_f t), turned by the phase at the beginning:
     // sin(phase + omega_f t) = Im(exp(i phase) exp(i omega_f t)).
-    const auto [z, z1] = a_ * a_ * 2 < b_ ? respond_by_difference(forcing.frequency, t)
-                                          : respond_by_steady_state(forcing.frequency, t, p);
+    const bool may_resonate = a_ * a_ * 2 < b_ && forcing.frequency * forcing.frequency < 2 * b_;
+    const auto [z, z1] = may_resonate ? respond_by_difference(forcing.frequency, t)
+                                      : respond_by_steady_state(forcing.frequency, t, p);
     return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
             forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
-  }
-
-  // u and its first N - 1 derivatives from u, u' and the derivatives of f.
-  template <std::size_t N>
-  std::array<Real, N> derivatives(const Real& u, const Real& u1, const std::array<Real, N>& f) const {
-    std::array<Real, N> d;
-    d[0] = u;
-    d[1] = u1;
-    for (std::size_t n = 2; n < N; ++n) d[n] = f[n - 2] - 2 * a_ * d[n - 1] - b_ * d[n - 2];
-    return d;
-  }
-
-  // |u^(n)| stays within this for a time `span`: each derivative obeys the same equation, whose energy
-  // u'^2 + b u^2 no damping raises, and whose square root a force |f^(n)| <= force raises by `force` per time.
-  Real bound(const Real& u_n, const Real& u_n1, const Real& force, const Real& span) const {
-    Real bound = square_root(Real(u_n * u_n + u_n1 * u_n1 / b_));
-    if (force != 0) bound += force * span / square_root(b_);
-    return bound;
   }
 
  private:
@@ -173,10 +158,11 @@ class Oscillator {
 
   // Steady state minus the transient it starts with: safe wherever the steady state cannot be large.
   ComplexResponse respond_by_steady_state(const Real& frequency, const Real& t, const Propagator<Real>& p) const {
-    const auto [sin, cos] = sin_cos(frequency * t);
+    const Real sin = sin_cos(frequency * t).sin, half = sin_cos(frequency * t / 2).sin;
+    const Real cos_minus_c = -2 * half * half - p.c1;
     const Complex h(b_ - frequency * frequency, 2 * a_ * frequency);
-    return {Complex(cos - p.c, sin - frequency * p.s) / h,
-            Complex(b_ * p.s - frequency * sin, frequency * (cos - p.c + 2 * a_ * p.s)) / h};
+    return {Complex(cos_minus_c, sin - frequency * p.s) / h,
+            Complex(b_ * p.s - frequency * sin, frequency * (cos_minus_c + 2 * a_ * p.s)) / h};
   }
 
   // Underdamped, eigenvalues lambda = -a +- i omega: z = (E(lambda) - E(conj lambda)) / (2 i omega) with
@@ -203,6 +189,62 @@ class Oscillator {
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
+};
+
+// An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them from
+// there on.
+template <class Real, std::size_t N>
+class Instant {
+ public:
+  Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f, const Real& on_f1,
+          const Forcing<Real>& forcing, const Real& time)
+      : root_b_(square_root(oscillator.b())), frequency_(forcing.frequency) {
+    d_[0] = u;
+    d_[1] = u1;
+    if (!forcing) {
+      for (std::size_t n = 2; n < N; ++n) d_[n] = -2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
+      return;
+    }
+    const auto f = forcing.template derivatives<N + 1>(time);
+    for (std::size_t n = 2; n < N; ++n) {
+      d_[n] = on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
+    }
+    // The steady state: |H|^2 u = Re(conj H) (on_f f + on_f1 f') + Im(conj H) (their integral's) ..., with
+    // H = b - omega_f^2 + 2 a i omega_f and i omega_f f standing for f'.
+    const Real re = oscillator.b() - frequency_ * frequency_, im = 2 * oscillator.a() * frequency_;
+    const Real h2 = re * re + im * im;
+    const Real on_sin = (re * on_f + im * on_f1 * frequency_) / h2;
+    const Real on_cos = (re * on_f1 - im * on_f / frequency_) / h2;
+    for (std::size_t n = 0; n < N; ++n) steady_[n] = on_sin * f[n] + on_cos * f[n + 1];
+    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency_ * frequency_));
+    force_ = absolute(forcing.amplitude) * size;
+    steady_size_ = force_ / square_root(h2);
+  }
+
+  const Real& operator[](std::size_t n) const { return d_[n]; }
+
+  // |u^(n)| stays within this for a time `span`, without forcing for ever. Every derivative obeys the same
+  // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per time.
+  // Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
+  Real bound(std::size_t n, const Real& span) const {
+    const Real free = size_of(d_[n], d_[n + 1]);
+    if (force_ == 0) return free;
+    Real power{1};
+    for (std::size_t i = 0; i < n; ++i) power *= frequency_;
+    const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
+    return steady < growing ? steady : growing;
+  }
+  // What of u^(n) is not the steady state, at most, from here on.
+  Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
+
+ private:
+  Real size_of(const Real& u, const Real& u1) const {
+    const Real scaled = u1 / root_b_;
+    return square_root(Real(u * u + scaled * scaled));
+  }
+
+  std::array<Real, N> d_, steady_{};
+  Real root_b_, frequency_, force_{0}, steady_size_{0};
 };
 
 }  // namespace impact_damper

@@ -72,7 +72,8 @@ struct EnergyLedger {
   double bounce_down_loss = 0;      // restitution: loss in the impacts jumped over
   double viscous_work = 0;          // taken out by the primary mass's damper, integral of 2 zeta v^2
   double forcing_work = 0;          // put in by the forcing, integral of f0 sin(omega_f t) v
-  double residual = 0;              // left minus right of the equation above, by the largest energy met
+  double residual = 0;              // left minus right of the equation above, by what went through it: the
+                                    // initial energy plus the integral of the forcing's |power|
 };
 
 // What a run is asked to record. Nothing else is computed.

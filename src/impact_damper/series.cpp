@@ -94,10 +94,10 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRun*>&
   }
 }
 
-void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& name,
+void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& number,
                      const std::string& legend, Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
-  table.blocks.push_back({.name = name,
+  table.blocks.push_back({.name = "curve-" + number,
                           .columns = {{"time", "time of the peak, by 1/Omega_n", rows.peak_time},
                                       {legend, "peak amplitude of the half cycle, by epsilon", rows.amplitude}}});
 }
@@ -144,15 +144,16 @@ Table figure_table(const Figure& figure, const FigureRuns& runs) {
     case TableKind::decay:
     case TableKind::loss_factor:
       for (std::size_t i = 0; i < sources.size(); ++i) {
-        const std::string name = "curve-" + std::to_string(i + 1);
+        const std::string number = std::to_string(i + 1);
         const std::string legend =
             figure.varied ? equation(sources[i]->run.scene, *figure.varied) : figure.curves[i].scene;
         if (figure.table == TableKind::decay) {
-          add_decay_block(figure, *sources[i], name, legend, table);
+          add_decay_block(figure, *sources[i], number, legend, table);
         } else {
-          add_loss_block(figure, figure.curves[i], *sources[i], name, legend, table);
+          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
         }
       }
+      if (!figure.range.empty()) add_spread_block(figure, table);
       if (figure.table == TableKind::loss_factor) add_loss_theory_blocks(figure, sources, table);
       break;
     case TableKind::phase:

@@ -20,11 +20,14 @@ using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 
 // The table of `figure`, which must not be a drawing; `runs` holds at least its scenes. Blocks by kind:
 //
-//   motion       "motion" (time, x, x + 1, z = x + y, y), "impacts", and "stuck" if the mass sticks
+//   motion       "motion" (time, x, x + 1, z = x + y, y), "impacts" (also vertices of "motion": with any
+//                number of samples the drawn line meets the wall), and "stuck" if the mass sticks
 //   decay        "curve-1" ... in the order of the figure's curves (time, amplitude)
-//   loss_factor  "curve-1" ... (amplitude, ordinate); theory, where it has a closed form for the
-//                ordinate: "one-impact-1" ..., "bounce-down-1" ... (if within the axes)
-//   phase        "impacts", "stuck", "windows", and theory: "one-impact", "bounces", "accumulation"
+//   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1" ...;
+//                "spread" over Figure::range; closed forms, for the curves that have them, within the
+//                amplitudes of the run: "one-impact-1" ..., "bounce-down-1" ...
+//   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ... "bounce-4",
+//                "accumulation"
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to; or if a drawn value is not finite.

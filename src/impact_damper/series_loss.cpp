@@ -1,8 +1,11 @@
 // Figures 8-14: the averaged loss factor over amplitude, and the closed forms it is held against.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "impact_damper/loss_factor.hpp"
+#include "impact_damper/number_text.hpp"
+#include "impact_damper/regimes.hpp"
 #include "impact_damper/series_blocks.hpp"
 #include "impact_damper/theory.hpp"
 
@@ -45,10 +48,21 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
           .columns = {{"amplitude", "peak amplitude A, by epsilon", {}}, {legend, meaning(which), {}}}};
 }
 
+// How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
+std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
+  const std::optional<double> amplitude = impact_failure(run).first_missed;
+  if (!amplitude) return loss.eta.size();
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  const auto failure = static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+  const double last = run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
+  const auto behind = std::ranges::lower_bound(loss.time, last);
+  return std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin()));
+}
+
 }  // namespace
 
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
-                    const std::string& name, const std::string& legend, Table& table) {
+                    const std::string& number, const std::string& legend, Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
   const int span = curve.loss_factor.half_cycles;
   const LossFactor loss = averaged_loss_factor(rows, curve.loss_factor);
@@ -57,11 +71,46 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
                    "is too short: " + std::to_string(rows.amplitude.size()) +
                        " half cycles, the averaging needs at least " + std::to_string(span + 2));
   }
+  const std::vector<double> values = ordinate(loss, source.run.scene, *figure.ordinate);
+  const std::size_t kept = before_failure(source.run, loss, span);
+  const auto part = [&](const std::vector<double>& column, std::size_t from, std::size_t to) {
+    return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
+                               column.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const auto block = [&](const std::string& block_name, const std::string& note, std::size_t from, std::size_t to) {
+    table.blocks.push_back(
+        {.name = block_name,
+         .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" + note},
+         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, from, to)},
+                     {legend, meaning(*figure.ordinate), part(values, from, to)}}});
+  };
+  block("curve-" + number, "", 0, kept);
+  if (kept < values.size()) block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
+}
+
+void add_spread_block(const Figure& figure, Table& table) {
+  double least = std::numeric_limits<double>::max(), most = std::numeric_limits<double>::lowest();
+  for (const TableBlock& block : table.blocks) {
+    if (!block.name.starts_with("curve-")) continue;
+    for (std::size_t i = 0; i < block.columns[0].values.size(); ++i) {
+      const double amplitude = block.columns[0].values[i], value = block.columns[1].values[i];
+      if (amplitude < figure.range[0] || amplitude > figure.range[1]) continue;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  }
+  if (!(least <= most)) return;
+  const double middle = (least + most) / 2;
+  const double percent = 100 * (most - middle) / middle;
+  const std::string legend =
+      number_text(std::round(middle * 1e3) / 1e3) + " ± " + number_text(std::round(percent)) + " %";
   table.blocks.push_back(
-      {.name = name,
-       .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles"},
-       .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", loss.amplitude},
-                   {legend, meaning(*figure.ordinate), ordinate(loss, source.run.scene, *figure.ordinate)}}});
+      {.name = "spread",
+       .notes = {"middle, least and greatest ordinate of all curves over the amplitudes of its two rows"},
+       .columns = {{"amplitude", "by epsilon", figure.range},
+                   {"least", "of all curves", {least, least}},
+                   {"most", "of all curves", {most, most}},
+                   {legend, "half way between least and most", {middle, middle}}}});
 }
 
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table) {

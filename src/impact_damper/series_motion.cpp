@@ -59,27 +59,29 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
                                 {"right wall", "x + 1, that of the right wall less the width of the mass", {}},
                                 {"secondary mass", "z = x + y, absolute, by epsilon", {}},
                                 {"relative", "y, secondary mass from the left wall, by epsilon", {}}}};
-  for (std::size_t i = first; i <= last; ++i) {
-    const double x = history.x[i], y = history.y[i];
-    const double row[] = {history.time[i], x, x + 1, x + y, y};
-    for (std::size_t c = 0; c < 5; ++c) motion.columns[c].values.push_back(row[c]);
-  }
-  table.blocks.push_back(std::move(motion));
-
-  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
   TableBlock impacts{.name = "impacts",
                      .columns = {{"time", "by 1/Omega_n", {}},
                                  {"wall", "0 left, 1 right: y at the impact", {}},
                                  {"impacts", "absolute displacement of that wall, by epsilon", {}}}};
-  for (std::size_t i = 0; i < source.run.impacts->time.size(); ++i) {
-    const double time = source.run.impacts->time[i];
-    if (time < begin || time > end) continue;
-    const double wall = static_cast<double>(source.run.impacts->wall[i]);
-    impacts.columns[0].values.push_back(time);
-    impacts.columns[1].values.push_back(wall);
-    impacts.columns[2].values.push_back(wall + interpolated(history, history.x, time));
+  const auto add_motion = [&](double time, double x, double y) {
+    const double row[] = {time, x, x + 1, x + y, y};
+    for (std::size_t c = 0; c < 5; ++c) motion.columns[c].values.push_back(row[c]);
+  };
+  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
+  const Impacts& all = *source.run.impacts;
+  std::size_t next = static_cast<std::size_t>(std::ranges::lower_bound(all.time, begin) - all.time.begin());
+  for (std::size_t i = first; i <= last; ++i) {
+    for (; next < all.time.size() && all.time[next] <= history.time[i]; ++next) {
+      const double time = all.time[next], x = interpolated(history, history.x, time);
+      const double wall = static_cast<double>(all.wall[next]);
+      const double row[] = {time, wall, x + wall};
+      for (std::size_t c = 0; c < 3; ++c) impacts.columns[c].values.push_back(row[c]);
+      if (time < history.time[i]) add_motion(time, x, wall);
+    }
+    add_motion(history.time[i], history.x[i], history.y[i]);
   }
   if (impacts.columns[0].values.empty()) throw unusable(figure, source.file, "has no impact in the window");
+  table.blocks.push_back(std::move(motion));
   table.blocks.push_back(std::move(impacts));
 
   if (!source.run.contacts) throw unusable(figure, source.file, "holds no contacts");

@@ -19,8 +19,7 @@ Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
 
 Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
   options = resolved(scene, options);
-  const CemEnd end = run_cem<double>(scene, options, recorder);
-  return {end.reason, end.time};
+  return run_cem<double>(scene, options, recorder);
 }
 
 void collect(std::string& all, const std::string& field, const std::string& message) {

@@ -51,10 +51,7 @@ class Timeline {
       side_ = lead > 0 ? 1 : -1;
       break;
     }
-    if (observer_.wants_energy()) {
-      observer_.ledger().initial = energy_of(system_, start, depth);
-      largest_energy_ = observer_.ledger().initial.total();
-    }
+    if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
   // Lets `duration` of a motion pass, less if the scene ends in it. Returns the works in it.
@@ -76,6 +73,7 @@ class Timeline {
       works = works_of(system_, motion, now(), duration, wall_damping);
       viscous_ += works.viscous;
       forcing_ += works.forcing;
+      turnover_ += works.turnover;
     }
     last_ = duration;
     clock_.advance(duration);
@@ -101,11 +99,9 @@ class Timeline {
     ledger.final = energy_of(system_, last, depth);
     ledger.viscous_work = double(viscous_);
     ledger.forcing_work = double(forcing_);
-    Real largest = largest_energy_;
-    if (ledger.final.total() > largest) largest = ledger.final.total();
-    if (absolute(forcing_) > largest) largest = absolute(forcing_);
+    const Real handled = ledger.initial.total() + turnover_;
     const Real open = (ledger.initial.total() + forcing_) - (ledger.final.total() + losses + viscous_);
-    ledger.residual = largest > 0 ? double(open / largest) : 0.0;
+    ledger.residual = handled > 0 ? double(open / handled) : 0.0;
   }
 
  private:
@@ -173,7 +169,7 @@ class Timeline {
   std::int64_t impacts_ = 0, rows_ = 0;
   // The half cycle that is under way: on which side of zero x is, since when, and its largest |x| so far.
   Real side_{1}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
-  Real viscous_{0}, forcing_{0}, largest_energy_{0};
+  Real viscous_{0}, forcing_{0}, turnover_{0};
 };
 
 }  // namespace impact_damper

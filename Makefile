@@ -1,0 +1,72 @@
+# The door for people: CMake and the program do the work. `make help` lists what there is.
+#
+#   make deps figures            from a bare machine to the figures
+#   make figures ENGINE=cem      the same with another engine: exact, restitution, cem
+ENGINE ?= exact
+BUILD := build
+FIGURES := $(BUILD)/figures$(if $(filter-out exact,$(ENGINE)),/$(ENGINE))
+JOBS := $(shell nproc 2>/dev/null || echo 2)
+
+PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \
+  gnuplot-nox librsvg2-bin fonts-dejavu-core
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.PHONY: help deps build figures verify test check clean
+
+help:  ## list the targets
+	@echo "impact-damper: make TARGET..."
+	@sed -n 's/^\([a-z]*\):[^#]*## */\1\t/p' $(firstword $(MAKEFILE_LIST)) | while IFS="$$(printf '\t')" read -r name what; do \
+	  printf '  %-9s %s\n' "$$name" "$$what"; done
+
+deps:  ## install what is missing (Debian); elsewhere say what is wanted
+	@if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then \
+	  echo "Wanted, under the names your system has for them (these are Debian's):"; \
+	  echo "  $(PACKAGES)"; \
+	  exit 0; \
+	fi; \
+	missing=; \
+	for package in $(PACKAGES); do \
+	  dpkg-query -W -f='$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
+	done; \
+	if [ -z "$$missing" ]; then echo "Nothing is missing."; exit 0; fi; \
+	sudo=; \
+	if [ "$$(id -u)" -ne 0 ]; then \
+	  if ! command -v sudo >/dev/null; then \
+	    echo "make deps: neither root nor sudo; as root: apt-get install$$missing" >&2; exit 1; \
+	  fi; \
+	  sudo=sudo; \
+	fi; \
+	echo "Installing$$missing"; \
+	$$sudo apt-get update -q && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing
+
+# Made by a recipe, not while the Makefile is read: `make deps figures` has no CMake before its first half.
+$(BUILD)/build.ninja:
+	@cmake --preset release
+
+build: $(BUILD)/build.ninja  ## compile the program and its tests
+	@cmake --build $(BUILD)
+
+figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE=exact|restitution|cem)
+	@touch $(BUILD)/figures.begin
+	@cmake --build $(BUILD) --target figures-$(ENGINE) $(if $(wildcard $(BUILD)/figures-$(ENGINE).stamp),-- --quiet)
+	@if [ $(BUILD)/figures-$(ENGINE).stamp -nt $(BUILD)/figures.begin ]; then \
+	  echo "Figures drawn: $(FIGURES)"; else echo "Figures are up to date: $(FIGURES)"; fi
+
+verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by claim
+	@cmake --build $(BUILD) --target impact-damper -- --quiet
+	@$(BUILD)/src/impact-damper verify
+
+test: build  ## run every test
+	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+check: build test  ## build, run every test, regenerate everything with all engines, verify
+	@$(MAKE) --no-print-directory figures ENGINE=exact
+	@$(MAKE) --no-print-directory figures ENGINE=restitution
+	@$(MAKE) --no-print-directory figures ENGINE=cem
+	@$(MAKE) --no-print-directory verify
+
+clean:  ## remove all that was built
+	@rm -rf $(BUILD)

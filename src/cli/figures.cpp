@@ -1,0 +1,42 @@
+// `figures`: what the catalogue draws, as an aligned table.
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/catalogue.hpp"
+#include "impact_damper/file_output.hpp"
+#include "text_table.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text.empty() ? "-" : text;
+}
+
+int list_figures(const std::string& file) {
+  std::vector<std::vector<std::string>> rows{{"figure", "table", "script", "scenes", "title"}};
+  for (const Figure& figure : read_catalogue(file).figures) {
+    const bool drawn_only = figure.table == TableKind::drawing;
+    rows.push_back({figure.number, drawn_only ? "-" : file_stem(figure) + ".dat", figure.script,
+                    joined(scenes_of(figure)), figure.title});
+  }
+  write_standard_output(aligned(rows));
+  return 0;
+}
+
+}  // namespace
+
+Command figures_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("figures", "List the figures: table, script, scenes and title of each.");
+  app->add_option("CATALOGUE", "default figures/catalogue.json")->type_name("");
+  app->footer(
+      "Tables are made by impact-damper series, pictures by figures/draw; make figures does it all.\n\n"
+      "Example:\n"
+      "  impact-damper figures");
+  return {app,
+          [app] { return list_figures(Arguments(*app).text("CATALOGUE").value_or("figures/catalogue.json")); }};
+}
+
+}  // namespace impact_damper::cli

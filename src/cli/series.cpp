@@ -1,0 +1,106 @@
+// `series`: the run files of a folder into the tables that the figures draw.
+#include <filesystem>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/catalogue.hpp"
+#include "impact_damper/errors.hpp"
+#include "impact_damper/file_output.hpp"
+#include "impact_damper/run_file.hpp"
+#include "impact_damper/series.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The figures named, or all that have a table, in the order of the catalogue.
+std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& arguments) {
+  std::vector<const Figure*> figures;
+  std::vector<std::string_view> numbers;
+  for (const Figure& figure : catalogue.figures) {
+    if (figure.table == TableKind::drawing) continue;
+    figures.push_back(&figure);
+    numbers.push_back(figure.number);
+  }
+  const std::vector<std::string> names = arguments.texts("--figure");
+  if (names.empty()) return figures;
+  figures.clear();
+  for (const std::string& name : names) {
+    const Figure* figure = find_figure(catalogue, name);
+    if (figure && figure->table != TableKind::drawing) {
+      figures.push_back(figure);
+    } else {
+      std::string known;
+      for (const std::string_view number : numbers) known += (known.empty() ? "" : ", ") + std::string(number);
+      arguments.refuse("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
+    }
+  }
+  return figures;
+}
+
+// A figure's runs; what is wrong with one is reported under the figure's name.
+void load(const Figure& figure, const fs::path& folder, FigureRuns& runs) {
+  for (const std::string& scene : scenes_of(figure)) {
+    if (runs.contains(scene)) continue;
+    const fs::path file = folder / (scene + ".json");
+    try {
+      runs[scene] = {file, read_run(file)};
+    } catch (const InputError& error) {
+      std::vector<std::string> problems;
+      for (const std::string& problem : error.problems()) {
+        problems.push_back("figure " + figure.number + ": " + problem);
+      }
+      throw InputError(problems);
+    } catch (const IoError& error) {
+      throw IoError("figure " + figure.number + ": " + error.what());
+    }
+  }
+}
+
+int make_tables(Arguments arguments) {
+  const fs::path runs_folder = arguments.text("--runs").value_or("");
+  if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
+  const auto output = arguments.text("--output");
+  const Catalogue catalogue = read_catalogue(arguments.text("--catalogue").value_or("figures/catalogue.json"));
+  const std::vector<const Figure*> figures = chosen(catalogue, arguments);
+  const bool into_folder = output && fs::is_directory(*output);
+  if (!into_folder && figures.size() != 1) {
+    arguments.refuse("--output", "must be an existing folder if more than one table is made");
+  }
+  arguments.finish();
+
+  FigureRuns runs;
+  for (const Figure* figure : figures) {
+    load(*figure, runs_folder, runs);
+    const std::string text = to_text(figure_table(*figure, runs));
+    if (!output) {
+      write_standard_output(text);
+    } else {
+      write_file(into_folder ? fs::path(*output) / (file_stem(*figure) + ".dat") : fs::path(*output), text);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command series_command(CLI::App& program) {
+  CLI::App* const app = program.add_subcommand("series", "Make from run files the tables that figures draw.");
+  app->add_option("--catalogue", "which figure draws what; default figures/catalogue.json")->type_name("FILE");
+  app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
+  app->add_option("--figure", "only this figure's table, 1 to 15; may be repeated; default all")
+      ->type_name("NUMBER")
+      ->expected(1)
+      ->take_all();
+  app->add_option("-o,--output", "file, or folder for figNN.dat; default standard output")->type_name("PLACE");
+  app->footer(
+      "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of numbers.\n"
+      "A run that is missing, too short or not finite is refused with the figure's and the file's name.\n\n"
+      "Examples:\n"
+      "  impact-damper series --runs build/runs/exact --figure 8\n"
+      "  impact-damper series --runs build/runs/exact -o build/series/exact");
+  return {app, [app] { return make_tables(Arguments(*app)); }};
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,12 @@
+// Rows of words as lines with aligned columns; the last column ends ragged.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace impact_damper::cli {
+
+// `rows` is not empty and all rows are of equal length; widths count bytes.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace impact_damper::cli
