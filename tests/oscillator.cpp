@@ -178,7 +178,7 @@ TEST_CASE("the bound on a motion holds and is reached") {
     const double begin = random.uniform(0, 10), span = random.log_uniform(0.1, 10);
     const Oscillator<double> oscillator(a, b);
     const Forcing<double> forcing{f0, omega};
-    const double bound = oscillator.bound(u, u1, std::abs(f0), span);
+    const double bound = Instant<double, 2>(oscillator, u, u1, 1, 0, forcing, begin).bound(0, span);
     double largest = 0;
     for (int i = 0; i <= 400; ++i) {
       const double t = span * i / 400;
