@@ -27,7 +27,7 @@ set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",1
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.
 require(block, least) = sprintf( \
   "do for [c=1:2] { stats table index '%s' using c nooutput;".\
-  " if (STATS_records < %d || STATS_invalid > 0) { exit message 'block %s of '.table.' is short or not finite' status 1 } }", \
+  " if (STATS_records < %d || STATS_invalid > 0) { print 'block %s is short or not finite'; exit status 1 } }", \
   block, least, block)
 # Whether an optional block is there.
 has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0
