@@ -214,7 +214,8 @@ TEST_CASE("a step beyond the stability limit is refused with the step, the limit
     FAIL("not refused");
   } catch (const std::invalid_argument& refusal) {
     const std::string message = refusal.what();
-    for (const char* part : {"time_step", "0.003", "0.00280055", "714.143", "centred", "contact", "--unstable"}) {
+    for (const char* part :
+         {"time_step", "0.003", "0.00280055", "714.143", "centred", "contact", "--unstable"}) {
       CAPTURE(message);
       CHECK(message.find(part) != std::string::npos);
     }
@@ -530,4 +531,39 @@ TEST_CASE("extended precision gives the same run to the last digits but a few") 
       CHECK(std::abs(a.half_cycles->amplitude[i] - b.half_cycles->amplitude[i]) < 1e-9);
     }
   }
+}
+
+TEST_CASE("an arc falls through zero at the first root of its parabola at which it goes down") {
+  CHECK(Arc<double>{2.5, -3, 1}.fall(5) == doctest::Approx(1));  // the other root, 5, goes up
+  CHECK(Arc<double>{0, 1, -2}.fall(5) == doctest::Approx(1));    // not at its beginning, where it rises
+  CHECK(Arc<double>{1, 0, -2}.fall(5) == doctest::Approx(1));
+  CHECK(Arc<double>{0, -1, 0}.fall(5) == 0);
+  CHECK(Arc<double>{0, 0, 0}.fall(5) == 0);
+  CHECK(Arc<double>{6, -1, 0}.fall(5) == 5);
+}
+
+TEST_CASE("samples are continuous through the step in which a wall is met") {
+  for (bool locate : {false, true}) {
+    Scene scene{.x0 = 0, .y0 = 0.25, .w0 = 0.5, .until_time = 1.5001};  // meets the right wall at 1.5
+    const Run run = simulated(scene, {.locate = locate}, {.history = {{1.4999, 1.5001, 401}}});
+    const History& h = *run.history;
+    REQUIRE(h.time.size() == 401);
+    // Within 1e-4 of contact the damper, c = 2 omega_m zeta_m = 227, bends y by less than 227 w (1e-4)^2 / 2.
+    for (std::size_t i = 0; i < h.time.size(); ++i) CHECK(std::abs(h.y[i] - (0.25 + 0.5 * h.time[i])) < 3e-6);
+  }
+}
+
+TEST_CASE("the phase of an impact counts from the zero crossing before it") {
+  Scene scene{.until_time = 30};
+  const Run run = simulated(scene, {}, everything());
+  const std::vector<double>& zero = run.half_cycles->zero_crossing;
+  std::size_t row = 0, checked = 0;
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
+    while (row < zero.size() && run.impacts->time[i] > zero[row]) ++row;
+    if (row == 0 || row == zero.size()) continue;
+    const double phase = 180 * (run.impacts->time[i] - zero[row - 1]) / (zero[row] - zero[row - 1]);
+    CHECK(run.impacts->phase_deg[i].value() == doctest::Approx(phase).epsilon(1e-12));
+    ++checked;
+  }
+  CHECK(checked > 50);
 }

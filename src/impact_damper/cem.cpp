@@ -51,7 +51,7 @@ void require_no_problems(const Scene& scene, const Cem& options) {
 
 void fail_of_overflow(double time, double step) {
   throw NumericalError("the component element method overflowed near time " + rounded(time) +
-                         " with time_step " + number_text(step));
+                       " with time_step " + number_text(step));
 }
 
 }  // namespace impact_damper

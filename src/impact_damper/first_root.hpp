@@ -60,20 +60,18 @@ Real certified_step(const Jet<Real>& jet, const Real& most) {
   if (slope(low) < 0) {
     const Real tangent = low - p(low) / slope(low);
     if (tangent < high) high = tangent;
-  } else {
-    if (g2 < 0) {
-      const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
-      if (parabola < high) high = parabola;
-    }
-    // p has risen from low and falls but once: wherever it is still positive lies before the root.
-    Real nearer = low + (high - low) / 4;
-    while (p(nearer) < 0) {
-      high = nearer;
-      nearer = low + (high - low) / 4;
-      if (!(low < nearer)) return low;
-    }
-    low = nearer;
+  } else if (g2 < 0) {
+    const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
+    if (parabola < high) high = parabola;
   }
+  // Wherever p is still positive lies before the root.
+  Real nearer = low + (high - low) / 4;
+  while (p(nearer) < 0) {
+    high = nearer;
+    nearer = low + (high - low) / 4;
+    if (!(low < nearer)) return low;
+  }
+  low = nearer;
   for (int i = 0; i < 8 && high - low > high / 1048576; ++i) {
     const Real below = p(low), above = p(high);
     if (!(above < 0)) return high;

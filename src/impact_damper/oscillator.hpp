@@ -83,6 +83,9 @@ class Oscillator {
       const Real decay = exponential(-slow_rate_ * t);
       p.s = omega_ == 0 ? Real(t * decay) : Real(-decay * exponential_minus_1(Real(-2 * omega_ * t)) / (2 * omega_));
       p.c = decay + slow_rate_ * p.s;
+      p.c1 = exponential_minus_1(Real(-slow_rate_ * t)) + slow_rate_ * p.s;
+      p.s1 = p.s - t;
+      return p;
     }
     p.c1 = p.c - 1;
     p.s1 = p.s - t;
@@ -98,8 +101,9 @@ class Oscillator {
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
     // The response z to exp(i omega_f t), turned by the phase at the beginning:
     // sin(phase + omega_f t) = Im(exp(i phase) exp(i omega_f t)).
-    const auto [z, z1] = a_ * a_ * 2 < b_ ? respond_by_difference(forcing.frequency, t)
-                                          : respond_by_steady_state(forcing.frequency, t, p);
+    const bool may_resonate = a_ * a_ * 2 < b_ && forcing.frequency * forcing.frequency < 2 * b_;
+    const auto [z, z1] = may_resonate ? respond_by_difference(forcing.frequency, t)
+                                      : respond_by_steady_state(forcing.frequency, t, p);
     return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
             forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
   }
@@ -154,10 +158,11 @@ class Oscillator {
 
   // Steady state minus the transient it starts with: safe wherever the steady state cannot be large.
   ComplexResponse respond_by_steady_state(const Real& frequency, const Real& t, const Propagator<Real>& p) const {
-    const auto [sin, cos] = sin_cos(frequency * t);
+    const Real sin = sin_cos(frequency * t).sin, half = sin_cos(frequency * t / 2).sin;
+    const Real cos_minus_c = -2 * half * half - p.c1;
     const Complex h(b_ - frequency * frequency, 2 * a_ * frequency);
-    return {Complex(cos - p.c, sin - frequency * p.s) / h,
-            Complex(b_ * p.s - frequency * sin, frequency * (cos - p.c + 2 * a_ * p.s)) / h};
+    return {Complex(cos_minus_c, sin - frequency * p.s) / h,
+            Complex(b_ * p.s - frequency * sin, frequency * (cos_minus_c + 2 * a_ * p.s)) / h};
   }
 
   // Underdamped, eigenvalues lambda = -a +- i omega: z = (E(lambda) - E(conj lambda)) / (2 i omega) with

@@ -16,7 +16,6 @@
 // Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
-#include <algorithm>
 
 #include "impact_damper/timeline.hpp"
 
@@ -75,17 +74,17 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
 
     const Flight<Real> flight(system, timeline.now(), state);
     // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4 y'''/|y''''|.
-    // Half of that is passed over, within which the sign of a y'' that is zero to rounding would decide, but
-    // no more than surely leaves half the travel to go: for t <= 1 the mass has gone less than
-    // (y'''/6 + |y''''|/24) t.
+    // Half of that is passed over, within which the sign of a y'' that is zero to rounding would decide; but no
+    // more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of the travel.
     Real from{0};
     if (on_wall && state.w == 0) {
       const auto departure = flight.departure(timeline.span());
       const Real jerk = (wall == Wall::left ? 1 : -1) * departure.jerk;
       const Real acceleration = (wall == Wall::left ? 1 : -1) * departure.acceleration;
       if (jerk > 0 && acceleration < jerk * Real(1e-6)) {
-        const Real reach = jerk / 6 + departure.fourth / 24;
-        from = std::min({Real(2 * jerk / departure.fourth), Real(1), Real(1 / (2 * reach))});
+        from = 2 * jerk / departure.fourth;
+        const Real near = 1 / square_root(Real(1 + jerk));
+        if (near < from) from = near;
       }
     }
     const auto met = first_root<Real>([&](const Real& t) { return flight.gaps(t, timeline.span()); }, from,
