@@ -60,8 +60,8 @@ std::vector<bool> sticks(const Run& run) {
 Spread bounce_down_end(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [](const Run& run) {
     if (const auto end = end_of_bounce_down(run)) return *end;
-    // Nothing sticks from the release on: the end lies above it. Otherwise it lies below the run's end.
-    return stuck_contacts(run).begin.empty() ? half_cycles_of(run).amplitude.at(0) : half_cycles_of(run).amplitude.back();
+    // No series of stuck half cycles has come to an end: either one still goes on or there was none.
+    return sticks(run).back() ? run.half_cycles->amplitude.back() : run.half_cycles->amplitude.front();
   });
 }
 
