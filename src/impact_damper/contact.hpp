@@ -46,7 +46,7 @@ class ContactSystem {
     const Real free = 1 + 2 * zeta;
     stiff_ = b2_ > 16 * free * free;
     const Real a = 2 * zeta - p2_, o = 1 - b2_;
-    const Real free_resultant = o * o - a * o * p2_ + a * a * b2_;
+    const Real free_resultant = o * o + a * (2 * zeta * b2_ - p2_);  // a b2 - o p2, its large terms cancelled
     shape_s_ = -a / free_resultant;
     shape_1_ = (o - a * p2_) / free_resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
@@ -153,9 +153,9 @@ class Contact {
                           const ContactState<Real>& drive, const Real& t) const {
     if (t == 0) return from;
     const Propagator<Real> p = oscillator.propagate(t);
-    const Real c1 = p.c - 2 * oscillator.a() * p.s, s1 = -oscillator.b() * p.s;
-    ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + c1 * from.v,
-                          p.c * from.q + p.s * from.w, s1 * from.q + c1 * from.w};
+    const Real s1 = -oscillator.b() * p.s;
+    ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
+                          p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) {
       const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
       const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
