@@ -13,7 +13,7 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps build figures verify test check clean
+.PHONY: help deps build figures verify test check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -67,6 +67,10 @@ check: build test  ## build, run every test, regenerate everything with all engi
 	@$(MAKE) --no-print-directory figures ENGINE=restitution
 	@$(MAKE) --no-print-directory figures ENGINE=cem
 	@$(MAKE) --no-print-directory verify
+
+paper: build  ## refresh figures, verdicts and outputs in README.md and paper/
+	@$(MAKE) --no-print-directory figures ENGINE=exact
+	@paper/refresh $(BUILD)
 
 clean:  ## remove all that was built
 	@rm -rf $(BUILD)
