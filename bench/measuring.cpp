@@ -2,6 +2,8 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "counted.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
@@ -80,6 +82,7 @@ TEST_CASE("the error is the largest difference of a row, and one row more or les
   CHECK(!amplitude_error({3}, {3, 2, 1}));
   CHECK(!amplitude_error({}, {}));
   CHECK(!amplitude_error({}, {3}));
+  CHECK(!amplitude_error({3, NAN, 1}, {3, 2, 1}));
 }
 
 TEST_CASE("a spread is the median and the quartiles of a sample in any order") {

@@ -74,7 +74,11 @@ std::optional<double> amplitude_error(const std::vector<double>& amplitude,
   const auto [fewer, more] = std::minmax({amplitude.size(), reference.size()});
   if (fewer == 0 || more - fewer > 1) return {};
   double largest = 0;
-  for (std::size_t i = 0; i < fewer; ++i) largest = std::max(largest, std::abs(amplitude[i] - reference[i]));
+  for (std::size_t i = 0; i < fewer; ++i) {
+    const double difference = std::abs(amplitude[i] - reference[i]);
+    if (!std::isfinite(difference)) return {};
+    largest = std::max(largest, difference);
+  }
   return largest;
 }
 

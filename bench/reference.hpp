@@ -23,7 +23,8 @@ std::vector<double> long_double_amplitudes(const Scene& scene, const Exact& opti
 std::vector<double> long_double_amplitudes(const Scene& scene, const Restitution& options);
 
 // The largest difference of a half-cycle amplitude. A row more or less is a zero crossing near the end of the
-// run and not compared; absent if they differ by more rows than that, or if there is none to compare.
+// run and not compared; absent if they differ by more rows than that, if there is none to compare, or if a
+// number is not finite.
 std::optional<double> amplitude_error(const std::vector<double>& amplitude,
                                       const std::vector<double>& reference);
 

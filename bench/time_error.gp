@@ -8,15 +8,17 @@ set multiplot layout 1,2 title title."\n{/*0.82 ".parameters."}" font ",15" offs
 set logscale xy
 set format "10^{%T}"
 set xrange [1e-16:1]
-set yrange [1e2:1e8]
+set yrange [1e3:1e8]
 set xtics 1e-16,100,1
-set ytics 100
+set ytics 10
+set mxtics 1
+set key bottom right
 set grid lc rgb pale lt 1
 set xlabel "error: largest difference of a half-cycle amplitude"
 # What two recorded amplitudes can differ by at all; an error below it is drawn at it.
 floor_of(error) = error > 4.4e-16 ? error : 4.4e-16
 point(block, style, name) = sprintf( \
-  "table index '%s' using (floor_of($1)):2 with points ls %d ps 1.6 title '%s'", block, style, name)
+  "table index '%s' using (floor_of($1)):2 with points ls %d ps 1.2 title '%s'", block, style, name)
 curve(block, style, name) = sprintf( \
   "table index '%s' using (floor_of($1)):2 with linespoints ls %d title '%s'", block, style, name)
 
