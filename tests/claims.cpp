@@ -73,6 +73,19 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("claims/1", "claims/2").find("/schema") != std::string::npos);
 }
 
+TEST_CASE("another engine may have another verdict recorded, with an explanation") {
+  const std::string verdict = "\"verdict\": \"corrected\"";
+  const std::vector<Claim> claims = parse_claims(
+      "f", claims_text(verdict, verdict + R"(, "with_engine": {"cem": {"verdict": "reproduced", "explanation": "h"}})"));
+  CHECK(recorded_for(claims[0], "cem") == Verdict::reproduced);
+  CHECK(recorded_for(claims[0], "exact") == Verdict::corrected);
+  CHECK(recorded_for(claims[0], "") == Verdict::corrected);
+  CHECK(complaint(verdict, verdict + R"(, "with_engine": {"cen": {}})").find("/with_engine/cen") !=
+        std::string::npos);
+  CHECK(complaint(verdict, verdict + R"(, "with_engine": {"cem": {"verdict": "reproduced"}})")
+            .find("/with_engine/cem/explanation") != std::string::npos);
+}
+
 TEST_CASE("an id is given once") {
   const std::string text = claims_text();
   const std::size_t open = text.find('[') + 1, close = text.rfind(']');

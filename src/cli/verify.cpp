@@ -23,7 +23,8 @@ struct Verified {
   const Claim* claim;
   Spread ours;
   Verdict verdict;
-  bool as_recorded() const { return verdict == claim->recorded; }
+  Verdict recorded = Verdict::reproduced;
+  bool as_recorded() const { return verdict == recorded; }
 };
 
 // Four significant digits, for people; the verdict file has all of them.
@@ -63,7 +64,7 @@ std::string table_text(const std::vector<Verified>& all) {
   for (const Verified& each : all)
     rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), ours_text(each.ours),
                     std::string(name_of(each.verdict)) +
-                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.claim->recorded)))});
+                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
@@ -94,7 +95,7 @@ std::string cell(std::string text) {  // of a Markdown table
   return text;
 }
 
-std::string markdown_text(const std::vector<Verified>& all) {
+std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
   std::string text = "| section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
@@ -103,6 +104,10 @@ std::string markdown_text(const std::vector<Verified>& all) {
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {
+    const auto otherwise = each.claim->with_engine.find(engine);
+    if (otherwise != each.claim->with_engine.end())
+      text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
+              otherwise->second.explanation + "\n";
     if (each.claim->explanation.empty()) continue;
     text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " + each.claim->explanation +
             " Evidence: " + each.claim->evidence + "\n";
@@ -130,7 +135,7 @@ std::string verdicts_text(const std::vector<Verified>& all) {
     text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
             ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
             ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
-            ", \"recorded\": " + quoted(std::string(name_of(each.claim->recorded))) + "}";
+            ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
   return text + "\n ]}\n";
@@ -166,9 +171,12 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
     const Spread ours = measure(runs, claim.measure);
     all.push_back({&claim, ours, judge(claim, ours.median)});
   }
-  write_standard_output(table_text(all) + "\n" + summary_text(all));
+  const std::string engine = runs.engine();
+  for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
+  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
+                        summary_text(all));
   if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
-  if (markdown_file) write_file(*markdown_file, markdown_text(all));
+  if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 

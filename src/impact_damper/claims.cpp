@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "impact_damper/engine.hpp"
 #include "impact_damper/json_reader.hpp"
 #include "impact_damper/measures.hpp"
 
@@ -50,6 +51,8 @@ MeasureCall read_measure(ObjectReader object) {
   return call;
 }
 
+constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected};
+
 Claim read_claim(ObjectReader& object) {
   Claim claim;
   require_text(object, "id", claim.id);
@@ -68,8 +71,16 @@ Claim read_claim(ObjectReader& object) {
   require_text(object, "reason", claim.reason);
   claim.measure = read_measure(object.required_object("measure"));
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
-  object.required("verdict", claim.recorded,
-                  {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected});
+  object.required("verdict", claim.recorded, verdicts);
+  if (auto engines = object.optional_object("with_engine")) {
+    for (const std::string_view engine : {Exact::name, Restitution::name, Cem::name}) {
+      auto otherwise = engines->optional_object(engine);
+      if (!otherwise) continue;
+      Claim::Otherwise& read = claim.with_engine[std::string(engine)];
+      otherwise->required("verdict", read.recorded, verdicts);
+      require_text(*otherwise, "explanation", read.explanation);
+    }
+  }
   if (claim.recorded != Verdict::reproduced) {
     require_text(object, "explanation", claim.explanation);
     require_text(object, "evidence", claim.evidence);
@@ -109,6 +120,11 @@ std::vector<Claim> read_claims(const std::filesystem::path& file) {
 }
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));
+}
+
+Verdict recorded_for(const Claim& claim, std::string_view engine) {
+  const auto otherwise = claim.with_engine.find(engine);
+  return otherwise == claim.with_engine.end() ? claim.recorded : otherwise->second.recorded;
 }
 
 Verdict judge(const Claim& claim, double ours) {

@@ -27,6 +27,8 @@ class Runs {
   const Run& file(const std::string& scene);
   // The run file, then the other members, which record half cycles, impacts and contacts.
   const std::vector<Run>& ensemble(const std::string& scene);
+  // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if none was or if they are of several.
+  std::string engine() const;
   const EnsembleOptions& options() const { return options_; }
 
  private:
