@@ -55,8 +55,8 @@ std::string ours_text(const Spread& ours) {
 
 // Characters, not bytes: claims are written in UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 std::string table_text(const std::vector<Verified>& all) {
@@ -100,7 +100,8 @@ std::string markdown_text(const std::vector<Verified>& all, const std::string& e
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
-            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) + " |\n";
+            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) +
+            " |\n";
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {
@@ -109,8 +110,8 @@ std::string markdown_text(const std::vector<Verified>& all, const std::string& e
       text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
               otherwise->second.explanation + "\n";
     if (each.claim->explanation.empty()) continue;
-    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " + each.claim->explanation +
-            " Evidence: " + each.claim->evidence + "\n";
+    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
+            each.claim->explanation + " Evidence: " + each.claim->evidence + "\n";
   }
   return text;
 }
@@ -149,7 +150,8 @@ void check_catalogue(const std::filesystem::path& file, const std::vector<Claim>
   for (const Figure& figure : read_catalogue(file).figures)
     for (const std::string& id : figure.claims)
       if (!ids.contains(id))
-        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " + id);
+        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " +
+                           id);
   if (!problems.empty()) throw InputError(problems);
 }
 
@@ -165,7 +167,8 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
   for (const Claim& claim : claims) {
     const auto now = std::chrono::steady_clock::now();
     if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
-      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id << std::endl;
+      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
+                << std::endl;
       told = now;
     }
     const Spread ours = measure(runs, claim.measure);
@@ -186,7 +189,8 @@ Command verify_command(CLI::App& program) {
   CLI::App* const app =
       program.add_subcommand("verify", "Hold the runs against everything the paper reports, claim by claim.");
   app->add_option("--claims", "what the paper reports; default data/claims.json")->type_name("FILE");
-  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")->type_name("FOLDER");
+  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
+      ->type_name("FOLDER");
   app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
   app->add_option("--members", "releases in each ensemble, the run file's own among them; default 16")
       ->type_name("N");
@@ -199,15 +203,16 @@ Command verify_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
-  return {app, [app] {
-            Arguments arguments(*app);
-            EnsembleOptions ensemble;
-            ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
-            arguments.finish();
-            return verify(arguments.text("--claims").value_or("data/claims.json"),
-                          arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
-                          ensemble, arguments.text("--output"), arguments.text("--markdown"));
-          }};
+  return {
+      app, [app] {
+        Arguments arguments(*app);
+        EnsembleOptions ensemble;
+        ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+        arguments.finish();
+        return verify(arguments.text("--claims").value_or("data/claims.json"),
+                      arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
+                      ensemble, arguments.text("--output"), arguments.text("--markdown"));
+      }};
 }
 
 }  // namespace impact_damper::cli

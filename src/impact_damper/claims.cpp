@@ -42,7 +42,8 @@ MeasureCall read_measure(ObjectReader object) {
     const std::size_t count = call.scenes.size();
     if (count < measure.least_scenes || count > measure.most_scenes)
       object.refuse("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
-                                  std::to_string(measure.most_scenes) + " scenes, got " + std::to_string(count));
+                                  std::to_string(measure.most_scenes) + " scenes, got " +
+                                  std::to_string(count));
   }
   for (const std::string_view number : measure.numbers) {
     double value = 0;
@@ -59,7 +60,8 @@ Claim read_claim(ObjectReader& object) {
   require_text(object, "section", claim.section);
   require_text(object, "statement", claim.statement);
   require_text(object, "printed", claim.printed);
-  if (object.has("value") == object.has("range")) object.refuse("value", "either value or range must be given");
+  if (object.has("value") == object.has("range"))
+    object.refuse("value", "either value or range must be given");
   if (object.has("value")) {
     double value = 0;
     object.optional("value", value);
@@ -98,7 +100,8 @@ std::vector<Claim> read_document(JsonDocument document) {
   std::set<std::string> ids;
   for (ObjectReader object : root.required_objects("claims")) {
     claims.push_back(read_claim(object));
-    if (!ids.insert(claims.back().id).second) object.refuse("id", "must be given once, got " + claims.back().id);
+    if (!ids.insert(claims.back().id).second)
+      object.refuse("id", "must be given once, got " + claims.back().id);
   }
   document.finish();
   return claims;
@@ -108,9 +111,12 @@ std::vector<Claim> read_document(JsonDocument document) {
 
 std::string_view name_of(Verdict verdict) {
   switch (verdict) {
-    case Verdict::reproduced: return "reproduced";
-    case Verdict::not_reproduced: return "not reproduced";
-    case Verdict::corrected: return "corrected";
+    case Verdict::reproduced:
+      return "reproduced";
+    case Verdict::not_reproduced:
+      return "not reproduced";
+    case Verdict::corrected:
+      return "corrected";
   }
   return {};
 }

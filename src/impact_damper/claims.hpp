@@ -42,8 +42,8 @@ struct MeasureCall {
 
 struct Claim {
   std::string id, section, statement, printed;
-  Interval admitted;       // [value, value] or the range, before the tolerance
-  double tolerance = 0;    // >= 0, in the units of the value
+  Interval admitted;     // [value, value] or the range, before the tolerance
+  double tolerance = 0;  // >= 0, in the units of the value
   std::string reason;
   MeasureCall measure;
   std::optional<Interval> corrected;
