@@ -46,7 +46,7 @@ class ContactSystem {
     const Real free = 1 + 2 * zeta;
     stiff_ = b2_ > 16 * free * free;
     const Real a = 2 * zeta - p2_, o = 1 - b2_;
-    const Real free_resultant = o * o - a * o * p2_ + a * a * b2_;
+    const Real free_resultant = o * o + a * (2 * zeta * b2_ - p2_);  // a b2 - o p2, its large terms cancelled
     shape_s_ = -a / free_resultant;
     shape_1_ = (o - a * p2_) / free_resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
@@ -136,7 +136,8 @@ class Contact {
     if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
     const Real ringing = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
     const Real others = absolute(slow.w) + absolute(slow.v);
-    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others);
+    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others) +
+                       absolute(system_.forcing.amplitude) * ringing * system_.nu / (1 + system_.nu);
     const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
                        (absolute(slow.q) + absolute(fast.q));
     const Real forced = system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);
@@ -153,9 +154,9 @@ class Contact {
                           const ContactState<Real>& drive, const Real& t) const {
     if (t == 0) return from;
     const Propagator<Real> p = oscillator.propagate(t);
-    const Real c1 = p.c - 2 * oscillator.a() * p.s, s1 = -oscillator.b() * p.s;
-    ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + c1 * from.v,
-                          p.c * from.q + p.s * from.w, s1 * from.q + c1 * from.w};
+    const Real s1 = -oscillator.b() * p.s;
+    ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
+                          p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) {
       const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
       const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];

@@ -49,7 +49,7 @@ QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
       for (int m = 0; m < 4; ++m) others_imaginary += m != i && m != j && roots[m].imag() != 0;
       if (others_imaginary == 1) continue;
       const double apart = separation(roots, i, j);
-      if (apart > best) {
+      if (apart > best || (apart == best && product.real() < factor.b)) {
         best = apart;
         factor = {-sum.real(), product.real()};
       }

@@ -74,7 +74,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
     }
   }
   timeline.finish(state, in_contact ? depth_of(state) : Real(0), losses);
-  return {*timeline.stopped(), double(timeline.now())};
+  return {*timeline.stopped(), timeline.end_time()};
 }
 
 }  // namespace impact_damper

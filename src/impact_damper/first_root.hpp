@@ -102,7 +102,9 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
     const auto functions = outlook(time);
     const Real rest_of_horizon = horizon - time;
     const Real most = rest_of_horizon < span ? rest_of_horizon : span;
+    const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
     Real step = most;
+    std::optional<Root<Real>> near;
     for (std::size_t i = 0; i < functions.size(); ++i) {
       Jet<Real> jet = functions[i].whole;
       if (jet.g <= 0) {
@@ -117,10 +119,19 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
         const Real proven_without_rest = certified_step(main, most);
         if (proven_without_rest > proven) proven = proven_without_rest;
       }
-      if (proven < step) step = proven;
+      if (!(proven < step)) continue;
+      step = proven;
+      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
+      // if it has one, that is met at no less than half the slope here.
+      near.reset();
+      const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
+      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1 &&
+          jet.third * proven * proven * proven < -jet.g1 * least) {
+        near = Root<Real>{time + 2 * jet.g / (square_root(slope_2) - jet.g1), i};
+      }
     }
     if (step >= rest_of_horizon) return std::nullopt;
-    const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
+    if (near) return near;
     time += step > least ? step : least;
   }
   return std::nullopt;

@@ -48,15 +48,18 @@ class Swing {
   Change at(const Real& t) const {
     const Propagator<Real> p = oscillator_.propagate(t);
     Change now;
+    now.x = x0_ * p.c + v0_ * p.s;
     now.dx = x0_ * p.c1 + v0_ * p.s1;
-    now.dv = v0_ * (p.c1 - 2 * oscillator_.a() * p.s) - x0_ * oscillator_.b() * p.s;
+    const Real from_x = -x0_ * oscillator_.b() * p.s;
+    now.dv = v0_ * (p.c1 - 2 * oscillator_.a() * p.s) + from_x;
+    now.v = v0_ * p.v + from_x;
     if (forcing_) {
       const DrivenResponse<Real> driven = oscillator_.respond(forcing_, begin_, t, p);
+      now.x += driven.d;
       now.dx += driven.d;
       now.dv += driven.d1;
+      now.v += driven.d1;
     }
-    now.x = x0_ + v0_ * t + now.dx;
-    now.v = v0_ + now.dv;
     return now;
   }
 

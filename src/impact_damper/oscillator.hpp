@@ -22,6 +22,7 @@ template <class Real>
 struct Propagator {
   Real c{1}, s{0};    // C, S
   Real c1{0}, s1{0};  // C - 1, S - t
+  Real v{1};          // S' = C - 2 a S, which would cancel where overdamped
 };
 
 // f(t) = amplitude sin(frequency t) and its derivatives at one instant.
@@ -74,14 +75,17 @@ class Oscillator {
         p.c = cos;
         p.c1 = cos > 0 ? -sin * sin / (1 + cos) : cos - 1;
         p.s1 = p.s - t;
+        p.v = cos;
         return p;
       }
       const Real decay = exponential(-a_ * t);
       p.s *= decay;
       p.c = decay * cos + a_ * p.s;
+      p.v = decay * cos - a_ * p.s;
     } else {
-      const Real decay = exponential(-slow_rate_ * t);
+      const Real decay = exponential(-slow_rate_ * t), fast_decay = exponential(Real(-(slow_rate_ + 2 * omega_) * t));
       p.s = omega_ == 0 ? Real(t * decay) : Real(-decay * exponential_minus_1(Real(-2 * omega_ * t)) / (2 * omega_));
+      p.v = fast_decay - slow_rate_ * p.s;
       p.c = decay + slow_rate_ * p.s;
       p.c1 = exponential_minus_1(Real(-slow_rate_ * t)) + slow_rate_ * p.s;
       p.s1 = p.s - t;
@@ -132,6 +136,7 @@ class Oscillator {
     p.s = t + s1;
     p.c1 = -b_ * t * integral;
     p.c = 1 + p.c1;
+    p.v = p.c - 2 * a_ * p.s;
     return p;
   }
 

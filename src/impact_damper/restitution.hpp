@@ -105,7 +105,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
     on_wall = true;
   }
   timeline.finish(state, Real(0), losses);
-  return {*timeline.stopped(), double(timeline.now())};
+  return {*timeline.stopped(), timeline.end_time()};
 }
 
 }  // namespace impact_damper

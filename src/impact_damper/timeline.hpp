@@ -38,6 +38,11 @@ class Timeline {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(end_) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
+  // When the scene ended: on the dot where a time ended it.
+  double end_time() const {
+    const bool by_time = stopped_ == StopReason::time || stopped_ == StopReason::time_budget;
+    return by_time ? end_ : double(clock_.now());
+  }
   // For how long a bound on a motion may be asked for.
   const Real& span() const { return span_; }
 
@@ -109,6 +114,13 @@ class Timeline {
   template <class Motion>
   Real follow(const Motion& motion, const Real& duration) {
     Real from{0};
+    if (side_ == 0) {  // at rest until now
+      const Jet<Real> x = motion.derivative_of_x(0, Real(1), from, span_).whole;
+      for (const Real& lead : {x.g, x.g1, x.g2}) {
+        if (side_ == 0 && lead != 0) side_ = lead > 0 ? 1 : -1;
+      }
+      if (side_ == 0) return duration;
+    }
     notice_peak(motion, from);
     for (;;) {
       const auto crossing = first_root<Real>(
@@ -167,8 +179,9 @@ class Timeline {
   std::optional<StopReason> stopped_;
   Real last_{0};
   std::int64_t impacts_ = 0, rows_ = 0;
-  // The half cycle that is under way: on which side of zero x is, since when, and its largest |x| so far.
-  Real side_{1}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
+  // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and its
+  // largest |x| so far.
+  Real side_{0}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
   Real viscous_{0}, forcing_{0}, turnover_{0};
 };
 

@@ -1,0 +1,206 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/contact.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "impact_damper/wall.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+using reference::Quad;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+double magnitude(Quad x) { return double(reference::absolute(x)); }
+
+// x, v, q, w after a time t of contact: equations (5)-(8) as one linear system, with the force as two more
+// unknowns and q scaled so that all entries are of the order of the wall's frequency.
+template <class Real>
+std::array<Quad, 4> moved(const ContactSystem<Real>& wall, const std::array<double, 4>& from, double begin,
+                          double t) {
+  const Quad nu = wall.nu, k = wall.stiffness, c = wall.damping, zeta = wall.zeta;
+  const Quad f0 = wall.forcing.amplitude, omega = wall.forcing.frequency;
+  const Quad s = std::sqrt(double(wall.stiffness));
+  const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
+                                {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
+                                {0, 0, 0, s, 0, 0},
+                                {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
+                                {0, 0, 0, 0, 0, omega},
+                                {0, 0, 0, 0, -omega, 0}}};
+  const auto phase = reference::exponential<2>({{{0, omega}, {-omega, 0}}}, begin);
+  const auto u = reference::applied<6>(reference::exponential(a, t),
+                                       {from[0], from[1], from[2] * s, from[3], phase[0][1], phase[1][1]});
+  return {u[0], u[1], u[2] / s, u[3]};
+}
+
+Scene random_scene(reference::Random& random) {
+  Scene scene;
+  scene.mass_ratio = random.log_uniform(1e-8, 1e3);
+  scene.restitution = random.chance(0.1) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.wall_stiffness = random.log_uniform(1, 1e12);
+  scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-4, 10);
+  if (random.chance(0.5)) {
+    scene.force_amplitude = random.log_uniform(1e-3, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("the two quadratic factors give back the contact's characteristic polynomial", Real,
+                   double, long double) {
+  const double roundings = 64 * double(std::numeric_limits<Real>::epsilon());
+  reference::Random random(11);
+  for (int n = 0; n < 20000; ++n) {
+    const Scene scene = random_scene(random);
+    const Real nu = scene.mass_ratio, zeta = scene.damping_ratio, k = Real(scene.wall_stiffness) / nu;
+    const Real c = 2 * zeta_m_closed_form(Real(scene.restitution)) * square_root(k);
+    const ContactFactors<Real> f = factor_contact(nu, zeta, k, c);
+    CAPTURE(n);
+    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.restitution);
+    CAPTURE(scene.wall_stiffness);
+    CAPTURE(scene.damping_ratio);
+    CHECK(f.p >= 0);
+    CHECK(f.p2 >= 0);
+    CHECK(f.b > 0);
+    CHECK(f.b <= f.b2);
+    const Quad p = f.p, b = f.b, p2 = f.p2, b2 = f.b2, z = zeta, m = nu, q = k, d = c;
+    const auto check = [&](Quad found, Quad expected) {
+      CHECK(magnitude(found - expected) <= roundings * magnitude(expected));
+    };
+    check(p + p2, 2 * z + d * (1 + m));
+    check(b + b2 + p * p2, 1 + 2 * z * d + q * (1 + m));
+    check(p * b2 + p2 * b, d + 2 * z * q);
+    check(b * b2, q);
+  }
+}
+
+TEST_CASE("contact moves as the coupled linear system does, for every wall, mass ratio, damping and force") {
+  reference::Random random(12);
+  for (int n = 0; n < 4000; ++n) {
+    const Scene scene = random_scene(random);
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const double root_k = std::sqrt(walls.stiffness), rate = walls.fast.rate();
+    // An impact, or any overlap, of either mass's motion of any size.
+    std::array<double, 4> from{random.uniform(-10, 10), random.uniform(-10, 10), 0,
+                               -random.log_uniform(1e-6, 1e2)};
+    if (random.chance(0.3)) from[2] = -random.log_uniform(1e-6, 1) / root_k;
+    const double begin = random.chance(0.5) ? 0 : random.uniform(0, 50);
+    const double t = random.log_uniform(1e-3 / rate, 20);
+    if (rate * t > 1e8) continue;
+
+    const Contact<double> contact(walls, begin, {from[0], from[1], from[2], from[3]}, Wall::left);
+    const State<double> found = contact.at(t);
+    const auto expected = moved(walls, from, begin, t);
+
+    // The sizes of the two motions, and how far rounding of the phase shifts what still rings.
+    const double f0 = std::abs(scene.force_amplitude), nu = scene.mass_ratio;
+    const double slow = std::abs(from[0]) + std::abs(from[1]) + f0 * (1 + std::min(t, 20.0)) +
+                        nu / (1 + nu) * (std::abs(from[3]) + root_k * std::abs(from[2]));
+    const double fast = std::abs(from[3]) + root_k * std::abs(from[2]) + slow / std::max(root_k, 1.0);
+    const double ringing = rate * std::min(t, 1 / std::max(walls.fast.a(), 1e-300));
+    // A fast motion of damping ratio z > 1 has two rates, 4 z^2 apart. That much is lost in taking x apart
+    // from q and q', and again in its velocity.
+    const double apart = std::max(1.0, 4 * walls.fast.a() * walls.fast.a() / walls.fast.b());
+    const double roundings = epsilon * (1 + ringing + (1 + scene.force_frequency) * (begin + t)) * apart;
+    const double share = nu / (1 + nu);
+    const double errors[4] = {magnitude(found.x - expected[0]) / (slow + share * fast),
+                              magnitude(found.v - expected[1]) / (slow + share * fast),
+                              magnitude(found.y - expected[2]) / (fast / root_k),
+                              magnitude(found.w - expected[3]) / fast};
+    CAPTURE(n);
+    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.restitution);
+    CAPTURE(scene.wall_stiffness);
+    CAPTURE(scene.damping_ratio);
+    CAPTURE(scene.force_amplitude);
+    CAPTURE(scene.force_frequency);
+    CAPTURE(t * rate);
+    CAPTURE(t);
+    for (int i = 0; i < 4; ++i) {
+      CAPTURE(i);
+      CHECK(errors[i] <= 64 * roundings * (i < 2 ? apart : 1));
+    }
+  }
+}
+
+namespace {
+
+// What a scene's wall makes of an impact at unit relative velocity, both masses otherwise at rest at x = 0.
+struct Impact {
+  double restitution, momentum_change;
+};
+Impact impact_of(const Scene& scene, Calibration calibration) {
+  const System<double> system(scene);
+  const ContactSystem<double> walls(system, zeta_m<double>(scene, calibration));
+  const Contact<double> contact(walls, 0.0, {0, 0, 0, -1}, Wall::left);
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto left = first_root<double>([&](double t) { return contact.depth(t, infinite); }, 0.0, 100.0,
+                                       infinite, contact.resolution());
+  REQUIRE(left.has_value());
+  const State<double> after = contact.at(left->time);
+  const double nu = scene.mass_ratio;
+  return {after.w, (1 + nu) * after.v + nu * after.w + nu};
+}
+
+}  // namespace
+
+TEST_CASE("a single impact delivers the restitution of the effective damping ratio zeta_m sqrt(1 + nu)") {
+  for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
+    for (double e : {0.2, 0.6, 0.9, 1.0}) {
+      Scene scene;
+      scene.mass_ratio = nu;
+      scene.restitution = e;
+      scene.wall_stiffness = 1e14;
+      const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
+      if (z > 0.99) continue;
+      CAPTURE(nu);
+      CAPTURE(e);
+      // In its short time, about pi sqrt(nu/k), the spring acts on the primary mass: relative order 1/K.
+      const double allowed = 1e-11 + 100 * nu / scene.wall_stiffness;
+      const Impact fixed = impact_of(scene, Calibration::fixed_wall);
+      CHECK(std::abs(fixed.restitution - std::exp(-std::numbers::pi * z / std::sqrt(1 - z * z))) < allowed);
+      CHECK(std::abs(fixed.momentum_change) < allowed * nu + 1e-15);
+      CHECK(std::abs(impact_of(scene, Calibration::two_body).restitution - e) < allowed);
+    }
+  }
+  Scene paper;
+  paper.wall_stiffness = 1e14;
+  CHECK(impact_of(paper, Calibration::fixed_wall).restitution ==
+        doctest::Approx(0.597).epsilon(5e-4 / 0.597));
+}
+
+TEST_CASE("a critically or overdamped wall gives nothing back until something pulls the masses apart") {
+  // e = 0 is zeta_m = 1: critical on a fixed wall, overdamped on a free primary mass. The relative motion
+  // alone never comes back to the wall; here the primary mass, thrown to the right of x = 0, takes it along
+  // until it has turned and x'' > 0 no longer presses.
+  for (double nu : {1e-6, 0.5, 30.0}) {
+    Scene scene;
+    scene.mass_ratio = nu;
+    scene.restitution = 0;
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
+    const double infinite = std::numeric_limits<double>::infinity();
+    const auto left = first_root<double>([&](double t) { return contact.depth(t, infinite); }, 0.0, 100.0,
+                                         infinite, contact.resolution());
+    REQUIRE(left.has_value());
+    CAPTURE(nu);
+    // Joined, the masses pass x = 0 a quarter period of sqrt(1 + nu) after x = -1, a little less for the
+    // velocity -nu/(1+nu) that the impact gives them, and the wall takes about 2 zeta_m/omega_m to let go.
+    const double root = std::sqrt(1 + nu), v = -nu / (1 + nu);
+    const double crossing = root * (std::numbers::pi - std::atan2(1.0, -v * root));
+    CHECK(left->time > 0.9 * (crossing - 1e-3));
+    CHECK(left->time < crossing + 20 / std::sqrt(walls.stiffness) * (1 + nu));
+  }
+}

@@ -1,0 +1,394 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/exact.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "impact_damper/recorder.hpp"
+#include "impact_damper/simulate.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double pi_d = std::numbers::pi;
+
+Record everything(std::vector<HistoryWindow> history = {}) {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = std::move(history);
+  return record;
+}
+
+// The secondary mass stays clear of the walls while |x| < 1/2: it rests at z = x + y = 1/2.
+Scene without_contact(double x0, double v0 = 0) {
+  Scene scene;
+  scene.x0 = x0;
+  scene.v0 = v0;
+  scene.y0 = 0.5 - x0;
+  scene.w0 = -v0;
+  return scene;
+}
+
+template <class Real>
+Run exact_in(const Scene& scene, const Record& record, const Exact& options = {}) {
+  Recorder recorder(record);
+  const Outcome outcome = run_exact<Real>(scene, options, recorder);
+  Run run;
+  run.stop_reason = outcome.stop_reason;
+  run.end_time = outcome.end_time;
+  recorder.finish(run);
+  return run;
+}
+
+std::vector<Scene> many_scenes() {
+  std::vector<Scene> scenes;
+  const auto add = [&](auto change) {
+    Scene scene;
+    scene.until_time = 60;
+    change(scene);
+    scenes.push_back(scene);
+  };
+  add([](Scene&) {});
+  add([](Scene& s) { s.mass_ratio = 0.5; });
+  add([](Scene& s) { s.damping_ratio = 0.08; });
+  add([](Scene& s) { s.damping_ratio = 5, s.v0 = 40; });
+  add([](Scene& s) { s.restitution = 0; });
+  add([](Scene& s) { s.restitution = 1, s.until_time = 20; });
+  add([](Scene& s) { s.restitution = 0.95, s.wall_stiffness = 1e9; });
+  add([](Scene& s) { s.force_amplitude = 0.4, s.force_frequency = 0.9, s.x0 = 0; });
+  add([](Scene& s) { s.force_amplitude = 0.2, s.x0 = 0.3, s.damping_ratio = 0.02; });
+  add([](Scene& s) { s.force_amplitude = 3, s.force_frequency = 2.5, s.damping_ratio = 5; });
+  add([](Scene& s) { s.y0 = -0.01; });
+  add([](Scene& s) { s.y0 = 1.02, s.w0 = 3, s.mass_ratio = 0.1; });
+  add([](Scene& s) { s.x0 = -4; });
+  add([](Scene& s) { s.x0 = 4, s.y0 = 1; });
+  add([](Scene& s) { s.wall_stiffness = 20, s.mass_ratio = 2; });
+  return scenes;
+}
+
+}  // namespace
+
+TEST_CASE("without contact the primary mass is the damped oscillator of the textbooks") {
+  for (double zeta : {0.0, 0.05, 0.5}) {
+    Scene scene = without_contact(0.4);
+    scene.damping_ratio = zeta;
+    scene.until_time = 30;
+    const Run run = simulate(scene, Exact{}, everything({{0, 30, 61}}));
+    const double omega = std::sqrt(1 - zeta * zeta);
+    REQUIRE(run.history->time.size() == 61);
+    for (std::size_t i = 0; i < 61; ++i) {
+      const double t = run.history->time[i], decay = 0.4 * std::exp(-zeta * t);
+      const double x = decay * (std::cos(omega * t) + zeta / omega * std::sin(omega * t));
+      CHECK(t == doctest::Approx(0.5 * double(i)).epsilon(1e-15));
+      CHECK(std::abs(run.history->x[i] - x) < 1e-14);
+      CHECK(std::abs(run.history->v[i] + decay / omega * std::sin(omega * t)) < 1e-14);
+      CHECK(std::abs(run.history->y[i] + run.history->x[i] - 0.5) < 1e-14);
+    }
+    // Row n ends at the n-th zero of cos(omega t) + (zeta/omega) sin(omega t); peaks are where sin vanishes.
+    const double first = (pi_d - std::atan2(omega, zeta)) / omega;
+    for (std::size_t n = 0; n < run.half_cycles->amplitude.size(); ++n) {
+      CHECK(run.half_cycles->zero_crossing[n] ==
+            doctest::Approx(first + pi_d * double(n) / omega).epsilon(1e-14));
+      CHECK(run.half_cycles->peak_time[n] == doctest::Approx(pi_d * double(n) / omega).epsilon(1e-14));
+      CHECK(run.half_cycles->amplitude[n] ==
+            doctest::Approx(0.4 * std::exp(-zeta * pi_d * double(n) / omega)).epsilon(1e-14));
+      CHECK(run.half_cycles->impacts[n] == 0);
+    }
+    CHECK(run.half_cycles->amplitude.size() == std::size_t(std::floor((30 - first) * omega / pi_d)) + 1);
+  }
+}
+
+TEST_CASE("an overdamped primary mass creeps back and crosses zero at most once") {
+  for (double zeta : {1.0, 1.5, 20.0}) {
+    Scene scene = without_contact(0.3);
+    scene.damping_ratio = zeta;
+    scene.until_time = 40;
+    const double fast = zeta + std::sqrt(zeta * zeta - 1), slow = 1 / fast;
+    const auto x = [&](double t, double v0) {
+      if (zeta == 1) return std::exp(-t) * (0.3 + (v0 + 0.3) * t);
+      return ((v0 + 0.3 * fast) * std::exp(-slow * t) - (v0 + 0.3 * slow) * std::exp(-fast * t)) /
+             (fast - slow);
+    };
+    Run run = simulate(scene, Exact{}, everything({{0, 40, 41}}));
+    CHECK(run.half_cycles->amplitude.empty());
+    for (std::size_t i = 0; i < 41; ++i) CHECK(std::abs(run.history->x[i] - x(double(i), 0)) < 2e-15);
+    // Thrown back faster than the fast rate it crosses once.
+    scene = without_contact(0.3, -0.3 * (fast + 0.5));
+    scene.damping_ratio = zeta;
+    scene.until_time = 40;
+    run = simulate(scene, Exact{}, everything());
+    CHECK(run.half_cycles->amplitude.size() == 1);
+    CHECK(std::abs(x(run.half_cycles->zero_crossing.at(0), scene.v0)) < 1e-14);
+  }
+}
+
+TEST_CASE("a forced primary mass follows the textbook solution, at resonance too") {
+  for (double zeta : {0.0, 0.1}) {
+    for (double omega : {0.5, 1.0, 1.7}) {
+      Scene scene = without_contact(0);
+      scene.damping_ratio = zeta;
+      scene.force_amplitude = 0.02;
+      scene.force_frequency = omega;
+      scene.until_time = 40;
+      const Run run = simulate(scene, Exact{}, everything({{0, 40, 81}}));
+      const double wd = std::sqrt(1 - zeta * zeta),
+                   h = std::pow(1 - omega * omega, 2) + std::pow(2 * zeta * omega, 2);
+      for (std::size_t i = 0; i < 81; ++i) {
+        const double t = run.history->time[i];
+        double x = 0.01 * (std::sin(t) - t * std::cos(t));
+        if (h != 0) {
+          const double in_phase = 0.02 * (1 - omega * omega) / h, behind = -0.04 * zeta * omega / h;
+          // The transient cancels x and x' of the steady state at t = 0.
+          const double c = -behind, s = (-in_phase * omega + zeta * c) / wd;
+          x = in_phase * std::sin(omega * t) + behind * std::cos(omega * t) +
+              std::exp(-zeta * t) * (c * std::cos(wd * t) + s * std::sin(wd * t));
+        }
+        CHECK(std::abs(run.history->x[i] - x) < 1e-14);
+      }
+      CHECK(std::abs(run.energy->residual) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("row 0 runs from the release to the first zero crossing, an unfinished half cycle is no row") {
+  Scene scene = without_contact(0.2, 0.3);
+  scene.until_time = pi_d * 3;
+  const Run run = simulate(scene, Exact{}, everything());
+  const double amplitude = std::hypot(0.2, 0.3), peak = std::atan2(0.3, 0.2);
+  REQUIRE(run.half_cycles->amplitude.size() == 3);
+  for (int n = 0; n < 3; ++n) {
+    CHECK(run.half_cycles->peak_time[std::size_t(n)] == doctest::Approx(peak + n * pi_d).epsilon(1e-15));
+    CHECK(run.half_cycles->zero_crossing[std::size_t(n)] ==
+          doctest::Approx(peak + (n + 0.5) * pi_d).epsilon(1e-15));
+    CHECK(run.half_cycles->amplitude[std::size_t(n)] == doctest::Approx(amplitude).epsilon(1e-15));
+  }
+  // Released from rest: the peak of row 0 is the release.
+  scene = without_contact(-0.4);
+  scene.until_time = 2;
+  const Run from_rest = simulate(scene, Exact{}, everything());
+  CHECK(from_rest.half_cycles->peak_time.at(0) == 0);
+  CHECK(from_rest.half_cycles->amplitude.at(0) == 0.4);
+}
+
+TEST_CASE(
+    "a scene stops at its time, at its amplitude or at whichever comes first, or when a budget is used up") {
+  Scene scene;
+  scene.until_time = 33.3;
+  CHECK(simulate(scene, Exact{}, {}).stop_reason == StopReason::time);
+  CHECK(simulate(scene, Exact{}, {}).end_time == 33.3);
+
+  scene.until_time.reset();
+  scene.until_amplitude = 5;
+  const Run low = simulate(scene, Exact{}, {});
+  CHECK(low.stop_reason == StopReason::amplitude);
+  const std::vector<double>& amplitude = low.half_cycles->amplitude;
+  CHECK(amplitude.back() < 5);
+  CHECK(*std::min_element(amplitude.begin(), amplitude.end() - 1) >= 5);
+  CHECK(low.end_time == low.half_cycles->zero_crossing.back());
+
+  scene.until_time = low.end_time + 1;
+  CHECK(simulate(scene, Exact{}, {}).stop_reason == StopReason::amplitude);
+  scene.until_time = low.end_time - 1;
+  CHECK(simulate(scene, Exact{}, {}).stop_reason == StopReason::time);
+
+  scene.until_time = 1e6;
+  scene.until_amplitude.reset();
+  Exact options;
+  options.budget.max_impacts = 7;
+  Run run = simulate(scene, options, everything());
+  CHECK(run.stop_reason == StopReason::impact_budget);
+  CHECK(run.impacts->time.size() == 7);
+  options.budget = {};
+  options.budget.max_half_cycles = 5;
+  run = simulate(scene, options, everything());
+  CHECK(run.stop_reason == StopReason::half_cycle_budget);
+  CHECK(run.half_cycles->amplitude.size() == 5);
+  scene.until_time.reset();
+  scene.until_amplitude = 1e-9;
+  options.budget = {};
+  options.budget.max_time = 12.5;
+  run = simulate(scene, options, {});
+  CHECK(run.stop_reason == StopReason::time_budget);
+  CHECK(run.end_time == doctest::Approx(12.5).epsilon(1e-15));
+}
+
+TEST_CASE("history is sampled where it is asked for, to its last sample, by times and below amplitudes") {
+  Scene scene;
+  for (int n = 0; n < 200; ++n) {
+    scene.until_time = 7 + n * 0.173;
+    const Run run = simulate(scene, Exact{}, everything({{1, 2, 5}, {3.5, *scene.until_time, 11}}));
+    REQUIRE(run.history->time.size() == 16);
+    CHECK(run.history->time.front() == 1);
+    CHECK(run.history->time[4] == 2);
+    CHECK(run.history->time.back() == *scene.until_time);
+    CHECK(run.end_time == *scene.until_time);
+  }
+  scene.until_time = 300;
+  Record record;
+  record.history_below = {{5.5, 10, 21}, {4.9, 5, 11}};
+  const Run run = simulate(scene, Exact{}, record);
+  REQUIRE(run.history->time.size() == 32);
+  std::size_t row = 0;
+  const HalfCycles& rows = *run.half_cycles;
+  while (rows.amplitude.at(row) >= 5.5) ++row;
+  CHECK(run.history->time[0] == rows.zero_crossing[row]);
+  CHECK(std::abs(run.history->x[0]) < 1e-13);
+  while (rows.amplitude.at(row) >= 4.9) ++row;
+  CHECK(run.history->time[21] == rows.zero_crossing[row]);
+}
+
+TEST_CASE("a lossless wall conserves energy") {
+  for (double stiffness : {1e4, 1e8}) {
+    Scene scene;
+    scene.restitution = 1;
+    scene.wall_stiffness = stiffness;
+    scene.until_time = 400;
+    const Run run = simulate(scene, Exact{}, everything());
+    CHECK(run.impacts->time.size() > 500);
+    const double before = run.energy->initial.total(), after = run.energy->final.total();
+    CHECK(std::abs(after - before) < 1e-12 * before);
+    CHECK(*std::max_element(run.energy->impact_loss.begin(), run.energy->impact_loss.end()) == 0);
+  }
+}
+
+TEST_CASE("with e = 0 the mass stays at the wall that it meets until the primary mass turns back") {
+  Scene scene;
+  scene.restitution = 0;
+  scene.wall_stiffness = 1e8;
+  scene.until_time = 60;
+  const Run run = simulate(scene, Exact{}, everything());
+  const std::vector<std::int64_t>& impacts = run.half_cycles->impacts;
+  for (std::size_t n = 2; n < impacts.size(); ++n) CHECK(impacts[n] == 1);
+  for (std::size_t n = 1; n + 1 < run.contacts->end.size(); ++n) {
+    // It leaves where the wall's push vanishes, x = 0, later by the time that the wall takes to unload.
+    double nearest = 1e9;
+    for (double zero : run.half_cycles->zero_crossing)
+      nearest = std::min(nearest, std::abs(zero - run.contacts->end[n]));
+    CHECK(nearest < 20 / std::sqrt(scene.wall_stiffness / scene.mass_ratio));
+  }
+}
+
+TEST_CASE("the mirrored scene runs mirrored") {
+  // x and v are mirrored to the bit by every operation; y -> 1 - y rounds differently, so agreement is to
+  // rounding, carried on by the motion: hence above the chaotic amplitudes, and where stuck phases contract.
+  Scene scene;
+  scene.x0 = 6;
+  scene.y0 = 0.25;
+  scene.w0 = 0.5;
+  scene.damping_ratio = 0.01;
+  scene.force_amplitude = 0.05;
+  scene.force_frequency = 0.7;
+  scene.until_time = 40;
+  Scene mirrored = scene;
+  mirrored.x0 = -6;
+  mirrored.y0 = 0.75;
+  mirrored.w0 = -0.5;
+  mirrored.force_amplitude = -0.05;
+  const Run a = simulate(scene, Exact{}, everything({{0, 40, 401}}));
+  const Run b = simulate(mirrored, Exact{}, everything({{0, 40, 401}}));
+  REQUIRE(a.impacts->time.size() == b.impacts->time.size());
+  for (std::size_t i = 0; i < a.impacts->time.size(); ++i) {
+    CHECK(a.impacts->wall[i] != b.impacts->wall[i]);
+    CHECK(std::abs(a.impacts->time[i] - b.impacts->time[i]) < 1e-11);
+  }
+  for (std::size_t i = 0; i < 401; ++i) {
+    CHECK(std::abs(a.history->x[i] + b.history->x[i]) < 1e-12);
+    CHECK(std::abs(a.history->v[i] + b.history->v[i]) < 1e-12);
+    CHECK(std::abs(a.history->y[i] + b.history->y[i] - 1) < 1e-11);
+  }
+}
+
+TEST_CASE(
+    "a primary mass that the first impact sets in motion starts its first half cycle there, either way") {
+  Scene scene;
+  scene.x0 = 0;
+  scene.y0 = 0.5;
+  scene.w0 = 1;
+  scene.until_time = 20;
+  const Run right = simulate(scene, Exact{}, everything());
+  scene.w0 = -1;
+  const Run left = simulate(scene, Exact{}, everything());
+  REQUIRE(right.half_cycles->amplitude.size() == left.half_cycles->amplitude.size());
+  for (std::size_t n = 0; n < left.half_cycles->amplitude.size(); ++n) {
+    CHECK(left.half_cycles->amplitude[n] == doctest::Approx(right.half_cycles->amplitude[n]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("energy never rises unforced and the ledger closes, over many scenes") {
+  for (const Scene& scene : many_scenes()) {
+    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damping_ratio);
+    CAPTURE(scene.force_amplitude);
+    CAPTURE(scene.y0);
+    CAPTURE(scene.restitution);
+    const Run run = simulate(scene, Exact{}, everything({{0, *scene.until_time, 2001}}));
+    CHECK(std::abs(run.energy->residual) < 1e-12);
+    if (scene.force_amplitude != 0) continue;
+    const System<double> system(scene);
+    double before = run.energy->initial.total();
+    for (std::size_t i = 0; i < run.history->time.size(); ++i) {
+      const History& h = *run.history;
+      const double depth = h.y[i] < 0 ? -h.y[i] : h.y[i] > 1 ? h.y[i] - 1 : 0;
+      const double now = energy_of<double>(system, {h.x[i], h.v[i], h.y[i], h.w[i]}, depth).total();
+      CHECK(now <= before * (1 + 1e-13));
+      before = now;
+    }
+  }
+}
+
+TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and not in an impact") {
+  Scene pressed;
+  pressed.x0 = -4;  // x'' = 4 presses the mass at rest on the left wall
+  pressed.until_time = 1;
+  Run run = simulate(pressed, Exact{}, everything());
+  CHECK(run.impacts->time.empty());
+  REQUIRE(run.contacts->begin.size() == 1);
+  CHECK(run.contacts->begin[0] == 0);
+  CHECK(run.contacts->end[0] == 1);
+  CHECK(run.energy->contact_loss > 0);
+  Scene overlapping;
+  overlapping.y0 = 1.01;
+  overlapping.until_time = 0.2;
+  run = simulate(overlapping, Exact{}, everything());
+  CHECK(run.contacts->wall.at(0) == Wall::right);
+  CHECK(run.contacts->begin.at(0) == 0);
+  CHECK(run.energy->initial.wall == doctest::Approx(0.5e4 * 0.01 * 0.01).epsilon(1e-13));
+}
+
+TEST_CASE("the same scene in extended precision agrees before the chaotic amplitudes") {
+  struct Case {
+    double x0, until;
+  };
+  for (const auto& [x0, until] : {Case{6, 400}, Case{4.5, 100}}) {
+    Scene scene;
+    scene.x0 = x0;
+    scene.until_time = until;
+    const Run in_double = exact_in<double>(scene, {}), in_extended = exact_in<long double>(scene, {});
+    REQUIRE(in_double.half_cycles->amplitude.size() == in_extended.half_cycles->amplitude.size());
+    for (std::size_t n = 0; n < in_double.half_cycles->amplitude.size(); ++n) {
+      // 1e-12 is a few thousand roundings, those of as many impacts.
+      CHECK(std::abs(in_double.half_cycles->amplitude[n] - in_extended.half_cycles->amplitude[n]) < 1e-12);
+      CHECK(std::abs(in_double.half_cycles->zero_crossing[n] - in_extended.half_cycles->zero_crossing[n]) <
+            1e-12);
+      CHECK(in_double.half_cycles->impacts[n] == in_extended.half_cycles->impacts[n]);
+    }
+  }
+}
+
+TEST_CASE("what is recorded never changes the motion, to the last bit") {
+  for (Scene scene : many_scenes()) {
+    const Run bare = simulate(scene, Exact{}, {});
+    const Run full = simulate(scene, Exact{}, everything({{0.1, 7.3, 1000}, {8, 9, 3}}));
+    CHECK(bare.half_cycles->amplitude == full.half_cycles->amplitude);
+    CHECK(bare.half_cycles->zero_crossing == full.half_cycles->zero_crossing);
+    CHECK(bare.half_cycles->peak_time == full.half_cycles->peak_time);
+    CHECK(bare.half_cycles->impacts == full.half_cycles->impacts);
+    CHECK(bare.end_time == full.end_time);
+  }
+}
