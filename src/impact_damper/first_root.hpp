@@ -36,8 +36,9 @@ struct Outlook {
 template <class Real>
 Real certified_step(const Jet<Real>& jet, const Real& most) {
   const auto& [g, g1, g2, third] = jet;
-  const auto p = [&](const Real& s) { return g + s * (g1 + s * (g2 / 2 - s * third / 6)); };
-  const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * third / 2); };
+  const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
+  const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
+  const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };
   Real low{0};
   // Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
   // rising ground there is none.

@@ -133,7 +133,8 @@ Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
 
 Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to")))
+    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"),
+                              static_cast<int>(number(call, "half_cycles"))))
         .first;
   });
 }
@@ -226,9 +227,9 @@ std::vector<Measure> loss_measures() {
       {"product_peak_amplitude",
        1,
        1,
-       {"from", "to"},
+       {"from", "to", "half_cycles"},
        product_peak_amplitude,
-       "amplitude of the largest A eta_s / nu, A in [from, to]"},
+       "amplitude of the largest A eta_s / nu, A in [from, to], averaged over half_cycles"},
       {"loss_near_span",
        1,
        1,
