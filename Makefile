@@ -56,8 +56,8 @@ figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE
 	  echo "Figures drawn: $(FIGURES)"; else echo "Figures are up to date: $(FIGURES)"; fi
 
 verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by claim
-	@cmake --build $(BUILD) --target impact-damper -- --quiet
-	@$(BUILD)/src/impact-damper verify
+	@cmake --build $(BUILD) --target runs-exact -- --quiet
+	@$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts.json
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)

@@ -21,7 +21,8 @@ set style line 10 lc rgb grey      lw 0.8 dt 1
 set border 31 lw 1
 set tics in scale 0.8,0.4 font ",13"
 set key noopaque samplen 3.2 spacing 1.15 font ",13" width -1
-set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.5
+set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.4
+set tmargin at screen 0.875
 
 # Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.

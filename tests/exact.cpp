@@ -181,7 +181,7 @@ TEST_CASE(
   Scene scene;
   scene.until_time = 33.3;
   CHECK(simulate(scene, Exact{}, {}).stop_reason == StopReason::time);
-  CHECK(simulate(scene, Exact{}, {}).end_time == doctest::Approx(33.3).epsilon(1e-15));
+  CHECK(simulate(scene, Exact{}, {}).end_time == 33.3);
 
   scene.until_time.reset();
   scene.until_amplitude = 5;
@@ -227,6 +227,7 @@ TEST_CASE("history is sampled where it is asked for, to its last sample, by time
     CHECK(run.history->time.front() == 1);
     CHECK(run.history->time[4] == 2);
     CHECK(run.history->time.back() == *scene.until_time);
+    CHECK(run.end_time == *scene.until_time);
   }
   scene.until_time = 300;
   Record record;

@@ -14,6 +14,7 @@
 
 #include "impact_damper/errors.hpp"
 #include "impact_damper/scene_file.hpp"
+#include "impact_damper/simulate.hpp"
 #include "impact_damper/theory.hpp"
 
 namespace impact_damper {
@@ -250,6 +251,63 @@ TEST_CASE("a motion begins where its amplitude was first undercut and touches th
           doctest::Approx(impacts.columns[1].values[i]));
   }
   CHECK(block(table, "stuck").columns[1].values[0] == 2.0);
+}
+
+TEST_CASE("the stuck region has one row per half cycle and a gap where the mass did not stick") {
+  // Half cycles of length 1 after row 0; stuck in rows 1, 2 and 4, in row 2 until a little past its end.
+  Run run;
+  run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
+  run.half_cycles = HalfCycles{};
+  run.impacts = Impacts{};
+  for (int i = 0; i < 14; ++i) {
+    run.half_cycles->zero_crossing.push_back(i);
+    run.half_cycles->peak_time.push_back(i - 0.5);
+    run.half_cycles->amplitude.push_back(6 - 0.1 * i);
+    run.half_cycles->impacts.push_back(3);
+    run.impacts->time.push_back(i - 0.75);
+    run.impacts->wall.push_back(Wall::left);
+    run.impacts->relative_velocity.push_back(-1);
+    run.impacts->phase_deg.push_back(i == 0 ? std::nullopt : std::optional(45.0));
+    run.impacts->amplitude.push_back(6 - 0.1 * i);
+  }
+  run.contacts = Contacts{{0.5, 1.75, 3.25}, {1.0, 2.125, 3.5}, {Wall::left, Wall::right, Wall::left}};
+  Figure figure;
+  figure.number = "15";
+  figure.table = TableKind::phase;
+  figure.curves = {{"sticky", {}}};
+  const Table table = figure_table(figure, {{"sticky", {"sticky.json", run}}});
+
+  const TableBlock& stuck = block(table, "stuck");
+  CHECK(stuck.columns[0].values == std::vector{5.9, 5.8, 6 - 0.1 * 4});
+  CHECK(stuck.columns[1].values == std::vector{90.0, 135.0, 45.0});
+  CHECK(stuck.columns[2].values == std::vector{180.0, 180.0, 90.0});
+  CHECK(stuck.gaps == std::vector<std::size_t>{2});
+  CHECK(block(table, "impacts").columns[0].values.size() == 13);  // that of row 0 has no phase
+  CHECK(block(table, "windows").columns[0].values == std::vector{3.0});
+}
+
+TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
+  Run run = simulate({.x0 = 1.5, .until_time = 1200, .until_amplitude = 0.05}, Exact{}, {});
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  figure.down_to = 0.2;
+  figure.curves[0].ensemble = 4;
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const TableBlock &curve = block(table, "curve-1"), &band = block(table, "band-1");
+  REQUIRE(band.columns[0].values.size() > 100);
+  double widest = 0;
+  for (std::size_t i = 0; i < band.columns[0].values.size(); ++i) {
+    const double amplitude = band.columns[0].values[i];
+    const double low = band.columns[1].values[i], high = band.columns[2].values[i];
+    CHECK(low <= high);
+    widest = std::max(widest, high - low);
+    // Two neighbouring points of the curve enclose the band's lower edge, or one of them lies in the band.
+    std::size_t k = 1;
+    while (k + 1 < curve.columns[0].values.size() && curve.columns[0].values[k] >= amplitude) ++k;
+    const double before = curve.columns[1].values[k - 1], behind = curve.columns[1].values[k];
+    CHECK(std::min(before, behind) <= high);
+    CHECK(std::max(before, behind) >= low);
+  }
+  CHECK(widest > 1e-4);  // the decay passes through a chaotic range: the members differ
 }
 
 TEST_CASE("a run that lacks what a figure draws is refused with the figure's and the file's name") {

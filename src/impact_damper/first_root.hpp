@@ -121,11 +121,13 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
       }
       if (!(proven < step)) continue;
       step = proven;
-      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it.
+      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
+      // if it has one, that is met at no less than half the slope here.
       near.reset();
-      if (jet.g1 < 0 && jet.third * proven * proven * proven < -jet.g1 * least) {
-        const Real root = square_root(Real(jet.g1 * jet.g1 - 2 * jet.g2 * jet.g));
-        near = Root<Real>{time + 2 * jet.g / (root - jet.g1), i};
+      const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
+      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1 &&
+          jet.third * proven * proven * proven < -jet.g1 * least) {
+        near = Root<Real>{time + 2 * jet.g / (square_root(slope_2) - jet.g1), i};
       }
     }
     if (step >= rest_of_horizon) return std::nullopt;

@@ -1,0 +1,325 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/restitution.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double pi_d = std::numbers::pi;
+
+Record everything(std::vector<HistoryWindow> history = {}) {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = std::move(history);
+  return record;
+}
+
+// The release at x0 = 6 from the left wall, with what a case changes.
+template <class Change>
+Scene scene_until(double time, Change&& change) {
+  Scene scene;
+  scene.until_time = time;
+  change(scene);
+  return scene;
+}
+
+std::vector<Scene> many_scenes() {
+  return {
+      scene_until(60, [](Scene&) {}),
+      scene_until(60, [](Scene& s) { s.mass_ratio = 0.5; }),
+      scene_until(60, [](Scene& s) { s.x0 = 0.3; }),
+      scene_until(60, [](Scene& s) { s.x0 = 1e6; }),
+      scene_until(60, [](Scene& s) { s.damping_ratio = 0.08; }),
+      scene_until(60, [](Scene& s) { s.damping_ratio = 5, s.v0 = 40; }),
+      scene_until(60, [](Scene& s) { s.restitution = 0; }),
+      scene_until(60, [](Scene& s) { s.restitution = 0.95; }),
+      scene_until(60, [](Scene& s) { s.force_amplitude = 0.4, s.force_frequency = 0.9, s.x0 = 0; }),
+      scene_until(60, [](Scene& s) { s.force_amplitude = 0.2, s.x0 = 0.3, s.damping_ratio = 0.02; }),
+      scene_until(60, [](Scene& s) { s.force_amplitude = 3, s.force_frequency = 2.5, s.damping_ratio = 5; }),
+      scene_until(60, [](Scene& s) { s.x0 = -4; }),
+      scene_until(60, [](Scene& s) { s.x0 = 4, s.y0 = 1; }),
+      scene_until(60, [](Scene& s) { s.x0 = 10, s.mass_ratio = 20; })};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an impact keeps the momentum, turns the relative velocity into -e times it and loses the stated "
+    "energy") {
+  for (double nu : {1e-6, 0.02, 1.0, 40.0}) {
+    for (double e : {0.0, 0.3, 0.6, 1.0}) {
+      const Scene scene = scene_until(0.5 + 1e-9, [&](Scene& s) {
+        s.mass_ratio = nu;
+        s.restitution = e;
+        s.x0 = 0;
+        s.y0 = 0.5;
+        s.w0 = 1;
+      });
+      // The primary mass rests until the impact at t = 0.5.
+      const Run run = simulate(scene, Restitution{}, everything({{0.4, 0.5 + 1e-9, 2}}));
+      REQUIRE(run.impacts->time.size() == 1);
+      CHECK(run.impacts->time[0] == doctest::Approx(0.5).epsilon(1e-15));
+      CHECK(run.impacts->relative_velocity[0] == 1);
+      const double v = run.history->v[1], w = run.history->w[1];
+      CHECK(w == doctest::Approx(-e).epsilon(1e-8));
+      CHECK((1 + nu) * v + nu * w == doctest::Approx(nu).epsilon(1e-8));
+      CHECK(run.energy->impact_loss[0] == doctest::Approx(nu * (1 - e * e) / (2 * (1 + nu))).epsilon(1e-15));
+      CHECK(std::abs(run.energy->residual) < 1e-15);
+    }
+  }
+}
+
+TEST_CASE("bouncing to rest ends after 2 w / (a (1 - e)) under a constant relative acceleration") {
+  for (double e : {0.0, 0.2, 0.6, 0.9}) {
+    // x stays near -1e4 for the short while that the bouncing takes: y'' = x, a = 1e4.
+    const double a = 1e4, w = 0.3;
+    const Scene scene = scene_until(0.01, [&](Scene& s) {
+      s.mass_ratio = 1e-9;
+      s.restitution = e;
+      s.x0 = -a;
+      s.w0 = w;
+    });
+    const Run run = simulate(scene, Restitution{}, everything());
+    const double end = 2 * w / (a * (1 - e));
+    REQUIRE(run.contacts->begin.size() == 1);
+    CAPTURE(e);
+    // a changes by t^2/2 of itself, at most.
+    CHECK(run.contacts->begin[0] == doctest::Approx(end).epsilon(end * end + 1e-12));
+    // The bounces, one by one: each lasts e times the one before.
+    double time = 2 * w / a;
+    for (std::size_t i = 0; i < std::min<std::size_t>(run.impacts->time.size(), 6); ++i) {
+      CHECK(run.impacts->time[i] == doctest::Approx(time).epsilon(end * end + 1e-12));
+      time += 2 * w / a * std::pow(e, double(i + 1));
+    }
+    const EnergyLedger& ledger = *run.energy;
+    const double lost =
+        std::accumulate(ledger.impact_loss.begin(), ledger.impact_loss.end(), ledger.bounce_down_loss);
+    CHECK(lost == doctest::Approx(1e-9 * w * w / 2 / (1 + 1e-9)).epsilon(1e-6));
+    CHECK(ledger.bounce_downs == (e > 0 ? 1 : 0));
+  }
+}
+
+TEST_CASE("where x'' varies the bounces accumulate where a sum of stepped bounces does") {
+  // nu -> 0: x = x0 cos(t), y'' = x. Each bounce by Newton's method in extended precision, its displacement
+  // written without cancellation.
+  const double e = 0.5, x0 = -3, w0 = 0.8;
+  const auto sine_less_argument = [](long double s) {
+    const long double q = s * s;
+    if (s > 0.2L) return std::sin(s) - s;
+    return -s * q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156)))));
+  };
+  long double time = 0, speed = w0;
+  for (int n = 0; n < 100; ++n) {
+    const long double sin = std::sin(time), cos = std::cos(time);
+    const auto rise = [&](long double s) {  // y' - speed
+      return x0 * (cos * std::sin(s) - 2 * sin * std::pow(std::sin(s / 2), 2));
+    };
+    const auto y = [&](long double s) {
+      return speed * s + x0 * (2 * cos * std::pow(std::sin(s / 2), 2) + sin * sine_less_argument(s));
+    };
+    long double s = -2 * speed / (x0 * cos);
+    for (int i = 0; i < 30; ++i) s -= y(s) / (speed + rise(s));
+    speed = -e * (speed + rise(s));
+    time += s;
+  }
+  const Scene scene = scene_until(1.4, [&](Scene& s) {
+    s.mass_ratio = 1e-14;
+    s.restitution = e;
+    s.x0 = x0;
+    s.w0 = w0;
+  });
+  const Run run = simulate(scene, Restitution{}, everything());
+  REQUIRE(run.contacts->begin.size() == 1);
+  CHECK(run.contacts->begin[0] == doctest::Approx(double(time)).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "the secondary mass is released where x = 0, or where the joined masses' x'' = 0 if damped and forced") {
+  for (const Scene& scene : many_scenes()) {
+    const Run run = simulate(scene, Restitution{}, everything());
+    if (scene.damping_ratio == 0 && scene.force_amplitude == 0) {
+      for (double end : run.contacts->end) {
+        if (end == run.end_time) continue;
+        double nearest = 1e9;
+        for (double zero : run.half_cycles->zero_crossing) nearest = std::min(nearest, std::abs(zero - end));
+        CHECK(nearest < 1e-12);
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, run.contacts->end.size()); ++i) {
+      const double begin = run.contacts->begin[i], end = run.contacts->end[i];
+      if (end == run.end_time || end - begin < 1e-3) continue;
+      const Run seen = simulate(scene, Restitution{}, everything({{begin, end, 3}}));
+      const double f = scene.force_amplitude * std::sin(scene.force_frequency * end);
+      const double x = seen.history->x[2], v = seen.history->v[2];
+      const double size = std::abs(x) + 2 * scene.damping_ratio * std::abs(v) + std::abs(f);
+      CHECK(std::abs(f - 2 * scene.damping_ratio * v - x) < 1e-12 * (1 + size));
+      CHECK(seen.history->w[1] == 0);
+      CHECK((seen.history->y[1] == 0 || seen.history->y[1] == 1));
+    }
+  }
+}
+
+TEST_CASE("0 <= y <= 1 always, energy never rises unforced, and the ledger closes") {
+  for (const Scene& scene : many_scenes()) {
+    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damping_ratio);
+    CAPTURE(scene.force_amplitude);
+    CAPTURE(scene.x0);
+    const Run run = simulate(scene, Restitution{}, everything({{0, 60, 6001}}));
+    CHECK(std::abs(run.energy->residual) < 1e-12);
+    const System<double> system(scene);
+    double before = run.energy->initial.total();
+    // y is the difference of displacements of the size of x.
+    const double rounding = 1e-14 * (1 + std::abs(scene.x0));
+    for (std::size_t i = 0; i < run.history->time.size(); ++i) {
+      const History& h = *run.history;
+      CHECK(h.y[i] >= -rounding);
+      CHECK(h.y[i] <= 1 + rounding);
+      const double now = energy_of<double>(system, {h.x[i], h.v[i], h.y[i], h.w[i]}, 0.0).total();
+      if (scene.force_amplitude == 0) CHECK(now <= before * (1 + 1e-13));
+      before = now;
+    }
+  }
+}
+
+TEST_CASE("bounce-down that ends stuck costs w^2 / (pi A^2) per radian and mass ratio, exactly if e = 0") {
+  // t* with A (t* - sin t*) = 1, w = A (1 - cos t*): physics of the limit nu -> 0.
+  for (double amplitude : {1.0, 7.5, 100.0}) {
+    const double nu = 1e-7;
+    const Scene scene = scene_until(30, [&](Scene& s) {
+      s.mass_ratio = nu;
+      s.restitution = 0;
+      s.x0 = amplitude;
+    });
+    const Run run = simulate(scene, Restitution{}, everything());
+    double low = 0, high = pi_d;
+    for (int i = 0; i < 100; ++i) {
+      const double t = (low + high) / 2;
+      (amplitude * (t - std::sin(t)) < 1 ? low : high) = t;
+    }
+    const double w = amplitude * (1 - std::cos(low));
+    const std::vector<std::int64_t>& impacts = run.half_cycles->impacts;
+    for (std::size_t n = 3; n < impacts.size(); ++n) CHECK(impacts[n] == 1);
+    for (std::size_t i = 4; i < run.impacts->time.size(); ++i) {
+      CHECK(std::abs(run.impacts->relative_velocity[i]) == doctest::Approx(w).epsilon(1e-5));
+      CHECK(run.energy->impact_loss[i] == doctest::Approx(nu * w * w / 2).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
+  Scene scene;
+  scene.restitution = 1;
+  scene.mass_ratio = 0.3;
+  scene.x0 = 2;
+  scene.until_time = 1e7;
+  Restitution options;
+  options.budget.max_impacts = 100000;
+  const Run run = simulate(scene, options, everything());
+  CHECK(run.stop_reason == StopReason::impact_budget);
+  CHECK(run.impacts->time.size() == 100000);
+  const double before = run.energy->initial.total();
+  // A random walk of 1e5 steps, a few roundings each: 300 of them.
+  CHECK(std::abs(run.energy->final.total() - before) < 1e-12 * before);
+}
+
+TEST_CASE("the accumulation tolerance does not show in the motion") {
+  std::vector<Run> runs;
+  for (double tolerance : {1e-6, 1e-8, 1e-10}) {
+    Restitution options;
+    options.accumulation_tolerance = tolerance;
+    runs.push_back(simulate(scene_until(80, [](Scene& s) { s.x0 = 8; }), options, everything()));
+  }
+  for (const Run& run : runs) {
+    REQUIRE(run.half_cycles->amplitude.size() == runs[0].half_cycles->amplitude.size());
+    for (std::size_t n = 0; n < run.half_cycles->amplitude.size(); ++n) {
+      // The displacement that a jump ignores, nu w^2 / 2a with w of order tolerance a^2, is 1e-13 at most.
+      CHECK(std::abs(run.half_cycles->amplitude[n] - runs[2].half_cycles->amplitude[n]) < 1e-12);
+    }
+  }
+  CHECK(runs[0].impacts->time.size() < runs[2].impacts->time.size());
+  CHECK(runs[0].energy->bounce_downs == runs[2].energy->bounce_downs);
+}
+
+TEST_CASE("the mirrored scene runs mirrored, and what is recorded never changes the motion") {
+  for (Scene scene : many_scenes()) {
+    scene.until_time = 12;
+    scene.w0 = 0.1;
+    scene.y0 = 0.25;
+    const Run run = simulate(scene, Restitution{}, everything({{0, 12, 500}}));
+    const Run bare = simulate(scene, Restitution{}, {});
+    CHECK(run.half_cycles->amplitude == bare.half_cycles->amplitude);
+    CHECK(run.half_cycles->zero_crossing == bare.half_cycles->zero_crossing);
+    Scene mirrored = scene;
+    mirrored.x0 *= -1;
+    mirrored.v0 *= -1;
+    mirrored.y0 = 1 - scene.y0;
+    mirrored.w0 *= -1;
+    mirrored.force_amplitude *= -1;
+    const Run other = simulate(mirrored, Restitution{}, everything());
+    // 1 - y rounds differently from y: equal to rounding, which a few impacts amplify.
+    REQUIRE(other.half_cycles->amplitude.size() == run.half_cycles->amplitude.size());
+    for (std::size_t n = 0; n < run.half_cycles->amplitude.size(); ++n) {
+      CHECK(other.half_cycles->amplitude[n] == doctest::Approx(run.half_cycles->amplitude[n]).epsilon(1e-11));
+    }
+  }
+}
+
+TEST_CASE("the forced solution with two symmetric impacts per cycle holds for ten thousand cycles") {
+  // x = C sin(omega t + tau) - nu V sin(t - T/2)/cos(T/2), t since the departure from the left wall, T =
+  // pi/omega.
+  const double nu = 0.05, e = 0.6, omega = 1.05, f0 = 0.03;  // stable: largest multiplier 0.96
+  const double big_c = f0 / (1 - omega * omega), period = pi_d / omega, b = (1 - e) / (1 + e);
+  const double a = period + 2 * nu * std::tan(period / 2), q = b * (1 + nu) / omega;
+  const double speed =
+      (a + std::sqrt(a * a - (a * a + 4 * q * q) * (1 - 4 * big_c * big_c))) / (a * a + 4 * q * q);
+  const double tau = std::atan2((1 - a * speed) / (2 * big_c), q * speed / big_c);
+  const auto x = [&](double t) {
+    return big_c * std::sin(omega * t + tau) - nu * speed * std::sin(t - period / 2) / std::cos(period / 2);
+  };
+  const auto v = [&](double t) {
+    return big_c * omega * std::cos(omega * t + tau) -
+           nu * speed * std::cos(t - period / 2) / std::cos(period / 2);
+  };
+  // The scene's force has phase zero at its time 0; so it starts in the flight in which that happens.
+  double since = -tau / omega;
+  double side = 1;
+  while (since < 0) since += period, side = -side;
+  while (since >= period) since -= period, side = -side;
+  Scene scene;
+  scene.mass_ratio = nu;
+  scene.restitution = e;
+  scene.force_amplitude = side * f0;
+  scene.force_frequency = omega;
+  scene.x0 = x(since);
+  scene.v0 = v(since);
+  scene.y0 = x(0) + speed * since - scene.x0;
+  scene.w0 = speed - scene.v0;
+  scene.until_time = 1e4 * 2 * period;
+  for (int i = 1; i < 1000; ++i) {
+    const double y = x(0) + speed * i * period / 1000 - x(i * period / 1000);
+    REQUIRE(y > 0);
+    REQUIRE(y < 1);
+  }
+  const Run run = simulate(scene, Restitution{}, everything());
+  REQUIRE(run.impacts->time.size() == 20000);
+  double worst = 0;
+  for (std::size_t n = 0; n < 20000; ++n) {
+    worst = std::max(worst, std::abs(run.impacts->time[n] - (period * double(n + 1) - since)));
+    CHECK((run.impacts->wall[n] == Wall::right) == (n % 2 == 0));
+  }
+  // Stable: only the rounding of omega t, 6e4 at the end, remains.
+  CHECK(worst < 1e-10);
+  CHECK(std::abs(run.energy->residual) < 1e-12 * 1e4);
+}
