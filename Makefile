@@ -13,7 +13,7 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps build figures verify test check paper clean
+.PHONY: help deps build figures verify test bench check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -61,6 +61,9 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bench: $(BUILD)/build.ninja  ## measure run time beside error (a minute or two), print and draw it
+	@cmake --build $(BUILD) --target bench
 
 check: build test  ## build, run every test, regenerate everything with all engines, verify
 	@$(MAKE) --no-print-directory figures ENGINE=exact

@@ -1,5 +1,6 @@
 # Figures 8-14: curves of the averaged loss factor, the closed forms thinly beside them. The figure's script
-# sets axes, key, `styles` (the line style of each curve) and `theory` (the curves whose closed forms are drawn).
+# sets `from` (of the amplitude axis), the ordinate's axis, `styles` (the line style of each curve) and `theory`
+# (the curves whose closed forms are drawn).
 do for [i=1:words(styles)] { eval require(sprintf("curve-%d", i), 10) }
 do for [i in theory] { eval require("one-impact-".i, 10) }
 bounced = ""
@@ -11,7 +12,9 @@ set xlabel "peak amplitude A"
 set logscale x
 set xrange [from:7]
 set xtics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "6" 6)
-do for [decade in "0.01 0.1 1"] { do for [k=2:9] { if (k != 3 && k * decade < 6) { set xtics add ("" k * decade 1) } } }
+do for [decade in "0.01 0.1 1"] {
+  do for [k=2:9] { if (k != 3 && k * decade < 6) { set xtics add ("" k * decade 1) } }
+}
 
 # One mark in each eighth of a decade, or they crowd where a half cycle loses little; staggered from curve to
 # curve. The legend's sample is drawn from points outside the axes.

@@ -2,7 +2,8 @@
 # table, output, title, parameters, folder.
 set encoding utf8
 canvas(width, height) = sprintf( \
-  'set terminal svg size %d,%d enhanced font "DejaVu Sans,15" linewidth 1 rounded background "white"', width, height)
+  'set terminal svg size %d,%d enhanced font "DejaVu Sans,15" linewidth 1 rounded background "white"', \
+  width, height)
 eval canvas(720, 500)
 set output output
 

@@ -57,9 +57,12 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("\"reason\": \"r\", ", "").find("f: /claims/0/reason") != std::string::npos);
   CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must not be empty") != std::string::npos);
   CHECK(complaint("step_limit", "step_limits").find("/claims/0/measure/name") != std::string::npos);
-  CHECK(complaint("\"step_limit\"", "\"step_limit\", \"e\": 1").find("/claims/0/measure") != std::string::npos);
-  CHECK(complaint("\"step_limit\"", "\"zeta_error\"").find("/claims/0/measure/restitution") != std::string::npos);
-  CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") != std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"step_limit\", \"e\": 1").find("/claims/0/measure") !=
+        std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"zeta_error\"").find("/claims/0/measure/restitution") !=
+        std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") !=
+        std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]").find("either value or range") !=
         std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [2, 1]").find("least <= most") != std::string::npos);
@@ -71,6 +74,21 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("\"explanation\": \"x\"", "\"explanation\": \"\"").find("/claims/0/explanation") !=
         std::string::npos);
   CHECK(complaint("claims/1", "claims/2").find("/schema") != std::string::npos);
+}
+
+TEST_CASE("another engine may have another verdict recorded, with an explanation") {
+  const std::string verdict = "\"verdict\": \"corrected\"";
+  const std::vector<Claim> claims = parse_claims(
+      "f",
+      claims_text(verdict,
+                  verdict + R"(, "with_engine": {"cem": {"verdict": "reproduced", "explanation": "h"}})"));
+  CHECK(recorded_for(claims[0], "cem") == Verdict::reproduced);
+  CHECK(recorded_for(claims[0], "exact") == Verdict::corrected);
+  CHECK(recorded_for(claims[0], "") == Verdict::corrected);
+  CHECK(complaint(verdict, verdict + R"(, "with_engine": {"cen": {}})").find("/with_engine/cen") !=
+        std::string::npos);
+  CHECK(complaint(verdict, verdict + R"(, "with_engine": {"cem": {"verdict": "reproduced"}})")
+            .find("/with_engine/cem/explanation") != std::string::npos);
 }
 
 TEST_CASE("an id is given once") {

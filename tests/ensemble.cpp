@@ -12,7 +12,8 @@ using namespace impact_damper;
 TEST_CASE("an ensemble begins with the scene itself and shifts the release of the others by whole steps") {
   Scene scene;
   scene.until_time = 1;
-  const std::vector<Scene> members = ensemble_of(scene, {.members = 50, .step = 1e-9, .most_steps = 1000, .seed = 7});
+  const std::vector<Scene> members =
+      ensemble_of(scene, {.members = 50, .step = 1e-9, .most_steps = 1000, .seed = 7});
   REQUIRE(members.size() == 50);
   CHECK(members[0] == scene);
   std::set<double> releases;

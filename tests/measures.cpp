@@ -41,8 +41,10 @@ TEST_CASE("the slope of a power law is its exponent") {
 TEST_CASE("curves a factor apart have the spread of that factor, equal ones none") {
   CHECK(spread_percent({power(1, -1), power(1, -1)}, 0.1, 6) == 0);
   // Bins hold the same points of both: (1.2 - 1) / 1.1 in each.
-  CHECK(spread_percent({power(1, -1), power(1.2, -1)}, 0.1, 6) == doctest::Approx(100 * 0.2 / 1.1).epsilon(1e-12));
-  CHECK(spread_percent({power(1, 0), power(2, 0), power(4, 0)}, 0.1, 6) == doctest::Approx(100 * 3 / (7 / 3.0)));
+  CHECK(spread_percent({power(1, -1), power(1.2, -1)}, 0.1, 6) ==
+        doctest::Approx(100 * 0.2 / 1.1).epsilon(1e-12));
+  CHECK(spread_percent({power(1, 0), power(2, 0), power(4, 0)}, 0.1, 6) ==
+        doctest::Approx(100 * 3 / (7 / 3.0)));
   CHECK(std::isnan(spread_percent({power(1, -1), power(1, -1)}, 10, 20)));
 }
 
@@ -77,7 +79,8 @@ TEST_CASE("the limits and the slips are what theory says they are") {
   const double v = 6 * std::sin(0.5);
   CHECK(value("paper_energy_drift_percent", {{"x0", 6}, {"until_time", 0.5}}) ==
         doctest::Approx(100 * 0.02 * v * v / 18).epsilon(1e-9));
-  CHECK(value("impact_energy_without_wall_percent", {{"mass_ratio", 0.25}}) == doctest::Approx(80).epsilon(1e-3));
+  CHECK(value("impact_energy_without_wall_percent", {{"mass_ratio", 0.25}}) ==
+        doctest::Approx(80).epsilon(1e-3));
   CHECK(std::abs(value("impact_energy_with_wall_percent", {{"mass_ratio", 0.25}})) < 1e-10);
   CHECK(value("stuck_forcing", {{"mass_ratio", 0.25}}) == doctest::Approx(0.8).epsilon(1e-5));
   CHECK(value("stuck_drift", {{"mass_ratio", 0.25}}) < 1e-12);

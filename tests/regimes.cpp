@@ -41,7 +41,8 @@ Run rows_sticking(std::size_t count, const std::vector<std::size_t>& rows) {
 TEST_CASE("a compliant contact is stuck once it outlasts a full period, a rigid one always") {
   Run run = rows_with_impacts({1, 1});
   const double nominal = nominal_contact_time(run.scene);
-  run.contacts = Contacts{{0.1, 0.3, 1.2}, {0.1 + nominal, 0.3 + 1.99 * nominal, 1.2 + 2.01 * nominal},
+  run.contacts = Contacts{{0.1, 0.3, 1.2},
+                          {0.1 + nominal, 0.3 + 1.99 * nominal, 1.2 + 2.01 * nominal},
                           {Wall::left, Wall::right, Wall::left}};
   CHECK(stuck_contacts(run).begin == std::vector<double>{1.2});
   run.engine = Restitution{};
@@ -55,7 +56,8 @@ TEST_CASE("stuck intervals are cut at the zero crossings and given in degrees") 
   const StuckPhases phases = stuck_phases(run);
   CHECK(phases.begin_deg == std::vector<double>{90, 0, 45, 0});
   CHECK(phases.end_deg == std::vector<double>{180, 22.5, 180, 180});
-  CHECK(phases.amplitude == std::vector<double>{amplitude_of(1), amplitude_of(2), amplitude_of(2), amplitude_of(3)});
+  CHECK(phases.amplitude ==
+        std::vector<double>{amplitude_of(1), amplitude_of(2), amplitude_of(2), amplitude_of(3)});
 }
 
 TEST_CASE("bounce-down ends with the first unbroken series of stuck half cycles") {
@@ -94,8 +96,8 @@ TEST_CASE("impact failure is for good where no three half cycles bring three imp
 }
 
 TEST_CASE("regular windows are maximal series of equal counts") {
-  const std::vector<RegularWindow> windows = regular_windows(
-      rows_with_impacts({3, 3, 3, 3, 3, 3, 3, 3, 3, 2, 1, 2, 2, 2, 2, 2, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  const std::vector<RegularWindow> windows = regular_windows(rows_with_impacts(
+      {3, 3, 3, 3, 3, 3, 3, 3, 3, 2, 1, 2, 2, 2, 2, 2, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   REQUIRE(windows.size() == 1);
   CHECK(windows[0].impacts == 3);
   CHECK(windows[0].first == 1);

@@ -37,7 +37,8 @@ Run exponential_decay(double zeta, int half_cycles) {
   return run;
 }
 
-// x = A sin(t) from 0 to 4 pi, sampled finely, with y a triangle between the walls: an impact at every half pi.
+// x = A sin(t) from 0 to 4 pi, sampled finely, with y a triangle between the walls: an impact at every half
+// pi.
 Run triangle_motion() {
   Run run = exponential_decay(0.01, 5);
   run.half_cycles->zero_crossing = {0, pi, 2 * pi, 3 * pi, 4 * pi};

@@ -57,13 +57,15 @@ TEST_CASE("one impact per half cycle is a fixed point of the impact map") {
       CHECK(std::abs(next.speed - motion->speed) < 1e-12);
       // Loss: 2 impacts per cycle of nu (1 - e^2) w^2 / 2 each, by 2 pi times the energy A^2 / 2.
       const double w = motion->speed + amplitude * std::sin(motion->theta);
-      CHECK(motion->loss == doctest::Approx((1 - e * e) * w * w / (pi * amplitude * amplitude)).epsilon(1e-13));
+      CHECK(motion->loss ==
+            doctest::Approx((1 - e * e) * w * w / (pi * amplitude * amplitude)).epsilon(1e-13));
       CHECK(motion->phase_deg == doctest::Approx(90 + motion->theta * 180 / pi));
     }
   }
 }
 
-TEST_CASE("a disturbed single-impact motion returns to it below the loss of equal spacing and leaves it above") {
+TEST_CASE(
+    "a disturbed single-impact motion returns to it below the loss of equal spacing and leaves it above") {
   for (double e : {0.4, 0.6, 0.8}) {
     for (double factor : {0.98, 1.02}) {
       const double amplitude = factor * equal_spacing_amplitude(e);

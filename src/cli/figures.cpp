@@ -35,8 +35,9 @@ Command figures_command(CLI::App& program) {
       "Tables are made by impact-damper series, pictures by figures/draw; make figures does it all.\n\n"
       "Example:\n"
       "  impact-damper figures");
-  return {app,
-          [app] { return list_figures(Arguments(*app).text("CATALOGUE").value_or("figures/catalogue.json")); }};
+  return {app, [app] {
+            return list_figures(Arguments(*app).text("CATALOGUE").value_or("figures/catalogue.json"));
+          }};
 }
 
 }  // namespace impact_damper::cli

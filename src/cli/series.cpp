@@ -1,4 +1,6 @@
 // `series`: the run files of a folder into the tables that the figures draw.
+#include "impact_damper/series.hpp"
+
 #include <filesystem>
 
 #include "arguments.hpp"
@@ -7,7 +9,6 @@
 #include "impact_damper/errors.hpp"
 #include "impact_damper/file_output.hpp"
 #include "impact_damper/run_file.hpp"
-#include "impact_damper/series.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -32,7 +33,8 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
       figures.push_back(figure);
     } else {
       std::string known;
-      for (const std::string_view number : numbers) known += (known.empty() ? "" : ", ") + std::string(number);
+      for (const std::string_view number : numbers)
+        known += (known.empty() ? "" : ", ") + std::string(number);
       arguments.refuse("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
     }
   }
@@ -62,7 +64,8 @@ int make_tables(Arguments arguments) {
   const fs::path runs_folder = arguments.text("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
   const auto output = arguments.text("--output");
-  const Catalogue catalogue = read_catalogue(arguments.text("--catalogue").value_or("figures/catalogue.json"));
+  const Catalogue catalogue =
+      read_catalogue(arguments.text("--catalogue").value_or("figures/catalogue.json"));
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
   const bool into_folder = output && fs::is_directory(*output);
   if (!into_folder && figures.size() != 1) {
@@ -87,15 +90,18 @@ int make_tables(Arguments arguments) {
 
 Command series_command(CLI::App& program) {
   CLI::App* const app = program.add_subcommand("series", "Make from run files the tables that figures draw.");
-  app->add_option("--catalogue", "which figure draws what; default figures/catalogue.json")->type_name("FILE");
+  app->add_option("--catalogue", "which figure draws what; default figures/catalogue.json")
+      ->type_name("FILE");
   app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
   app->add_option("--figure", "only this figure's table, 1 to 15; may be repeated; default all")
       ->type_name("NUMBER")
       ->expected(1)
       ->take_all();
-  app->add_option("-o,--output", "file, or folder for figNN.dat; default standard output")->type_name("PLACE");
+  app->add_option("-o,--output", "file, or folder for figNN.dat; default standard output")
+      ->type_name("PLACE");
   app->footer(
-      "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of numbers.\n"
+      "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
+      "numbers.\n"
       "A run that is missing, too short or not finite is refused with the figure's and the file's name.\n\n"
       "Examples:\n"
       "  impact-damper series --runs build/runs/exact --figure 8\n"

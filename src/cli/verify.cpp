@@ -23,7 +23,8 @@ struct Verified {
   const Claim* claim;
   Spread ours;
   Verdict verdict;
-  bool as_recorded() const { return verdict == claim->recorded; }
+  Verdict recorded = Verdict::reproduced;
+  bool as_recorded() const { return verdict == recorded; }
 };
 
 // Four significant digits, for people; the verdict file has all of them.
@@ -54,8 +55,8 @@ std::string ours_text(const Spread& ours) {
 
 // Characters, not bytes: claims are written in UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 std::string table_text(const std::vector<Verified>& all) {
@@ -63,7 +64,7 @@ std::string table_text(const std::vector<Verified>& all) {
   for (const Verified& each : all)
     rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), ours_text(each.ours),
                     std::string(name_of(each.verdict)) +
-                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.claim->recorded)))});
+                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
@@ -94,18 +95,23 @@ std::string cell(std::string text) {  // of a Markdown table
   return text;
 }
 
-std::string markdown_text(const std::vector<Verified>& all) {
+std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
   std::string text = "| section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
-            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) + " |\n";
+            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) +
+            " |\n";
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {
+    const auto otherwise = each.claim->with_engine.find(engine);
+    if (otherwise != each.claim->with_engine.end())
+      text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
+              otherwise->second.explanation + "\n";
     if (each.claim->explanation.empty()) continue;
-    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " + each.claim->explanation +
-            " Evidence: " + each.claim->evidence + "\n";
+    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
+            each.claim->explanation + " Evidence: " + each.claim->evidence + "\n";
   }
   return text;
 }
@@ -130,7 +136,7 @@ std::string verdicts_text(const std::vector<Verified>& all) {
     text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
             ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
             ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
-            ", \"recorded\": " + quoted(std::string(name_of(each.claim->recorded))) + "}";
+            ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
   return text + "\n ]}\n";
@@ -144,7 +150,8 @@ void check_catalogue(const std::filesystem::path& file, const std::vector<Claim>
   for (const Figure& figure : read_catalogue(file).figures)
     for (const std::string& id : figure.claims)
       if (!ids.contains(id))
-        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " + id);
+        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " +
+                           id);
   if (!problems.empty()) throw InputError(problems);
 }
 
@@ -160,15 +167,19 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
   for (const Claim& claim : claims) {
     const auto now = std::chrono::steady_clock::now();
     if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
-      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id << std::endl;
+      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
+                << std::endl;
       told = now;
     }
     const Spread ours = measure(runs, claim.measure);
     all.push_back({&claim, ours, judge(claim, ours.median)});
   }
-  write_standard_output(table_text(all) + "\n" + summary_text(all));
+  const std::string engine = runs.engine();
+  for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
+  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
+                        summary_text(all));
   if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
-  if (markdown_file) write_file(*markdown_file, markdown_text(all));
+  if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 
@@ -178,7 +189,8 @@ Command verify_command(CLI::App& program) {
   CLI::App* const app =
       program.add_subcommand("verify", "Hold the runs against everything the paper reports, claim by claim.");
   app->add_option("--claims", "what the paper reports; default data/claims.json")->type_name("FILE");
-  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")->type_name("FOLDER");
+  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
+      ->type_name("FOLDER");
   app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
   app->add_option("--members", "releases in each ensemble, the run file's own among them; default 16")
       ->type_name("N");
@@ -191,15 +203,16 @@ Command verify_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
-  return {app, [app] {
-            Arguments arguments(*app);
-            EnsembleOptions ensemble;
-            ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
-            arguments.finish();
-            return verify(arguments.text("--claims").value_or("data/claims.json"),
-                          arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
-                          ensemble, arguments.text("--output"), arguments.text("--markdown"));
-          }};
+  return {
+      app, [app] {
+        Arguments arguments(*app);
+        EnsembleOptions ensemble;
+        ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+        arguments.finish();
+        return verify(arguments.text("--claims").value_or("data/claims.json"),
+                      arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
+                      ensemble, arguments.text("--output"), arguments.text("--markdown"));
+      }};
 }
 
 }  // namespace impact_damper::cli

@@ -26,7 +26,8 @@ Record read_record(ObjectReader& scene) {
     } else if (word == "history") {
       history = true;
     } else {
-      scene.refuse("record", "must list half_cycles, impacts, contacts, energy or history, got \"" + word + "\"");
+      scene.refuse("record",
+                   "must list half_cycles, impacts, contacts, energy or history, got \"" + word + "\"");
     }
   }
   for (ObjectReader item : scene.optional_objects("history_below")) {
@@ -53,7 +54,8 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
     if (table == TableKind::loss_factor) {
       std::int64_t half_cycles = curve.loss_factor.half_cycles;
       item.optional("half_cycles", half_cycles, within(10, 18));
-      if (half_cycles % 2 != 0) item.refuse("half_cycles", "must be even, so that one peak is the middle one");
+      if (half_cycles % 2 != 0)
+        item.refuse("half_cycles", "must be even, so that one peak is the middle one");
       curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
       item.optional("ensemble", curve.ensemble, within(0, 1000));
     }
@@ -99,7 +101,9 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
     if (const char* missing = missing_record(figure.table, scene->record)) {
       item.refuse("curves", "needs \"" + std::string(missing) + "\" recorded of scene " + curve.scene);
     }
-    const auto opens_window = [&](const AmplitudeWindow& window) { return window.amplitude == figure.window; };
+    const auto opens_window = [&](const AmplitudeWindow& window) {
+      return window.amplitude == figure.window;
+    };
     if (figure.window && std::ranges::none_of(scene->record.history_below, opens_window)) {
       item.refuse("window", "must be the amplitude of a history window of scene " + curve.scene);
     }
@@ -110,9 +114,9 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   Figure figure;
   item.required("figure", figure.number);
   item.required("title", figure.title);
-  item.required("table", figure.table,
-                {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
-                 TableKind::drawing});
+  item.required(
+      "table", figure.table,
+      {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase, TableKind::drawing});
   if (item.has("varied")) {
     figure.varied = Varied::mass_ratio;
     item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});

@@ -58,9 +58,9 @@ struct Figure {
   std::optional<Varied> varied;          // if there is more than one curve
   std::optional<double> window;          // motion tables: the amplitude of one of the scene's history windows
   std::optional<double> down_to;         // amplitude that every curve must reach, or its run is short
-  std::vector<double> range;             // loss_factor: amplitudes over which the spread is shown; empty or two
-  std::string script;                    // beside the catalogue
-  std::vector<std::string> claims;       // ids in data/claims.json
+  std::vector<double> range;        // loss_factor: amplitudes over which the spread is shown; empty or two
+  std::string script;               // beside the catalogue
+  std::vector<std::string> claims;  // ids in data/claims.json
 };
 
 struct Catalogue {

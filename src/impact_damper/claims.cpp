@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "impact_damper/engine.hpp"
 #include "impact_damper/json_reader.hpp"
 #include "impact_damper/measures.hpp"
 
@@ -41,7 +42,8 @@ MeasureCall read_measure(ObjectReader object) {
     const std::size_t count = call.scenes.size();
     if (count < measure.least_scenes || count > measure.most_scenes)
       object.refuse("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
-                                  std::to_string(measure.most_scenes) + " scenes, got " + std::to_string(count));
+                                  std::to_string(measure.most_scenes) + " scenes, got " +
+                                  std::to_string(count));
   }
   for (const std::string_view number : measure.numbers) {
     double value = 0;
@@ -50,13 +52,16 @@ MeasureCall read_measure(ObjectReader object) {
   return call;
 }
 
+constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected};
+
 Claim read_claim(ObjectReader& object) {
   Claim claim;
   require_text(object, "id", claim.id);
   require_text(object, "section", claim.section);
   require_text(object, "statement", claim.statement);
   require_text(object, "printed", claim.printed);
-  if (object.has("value") == object.has("range")) object.refuse("value", "either value or range must be given");
+  if (object.has("value") == object.has("range"))
+    object.refuse("value", "either value or range must be given");
   if (object.has("value")) {
     double value = 0;
     object.optional("value", value);
@@ -68,8 +73,16 @@ Claim read_claim(ObjectReader& object) {
   require_text(object, "reason", claim.reason);
   claim.measure = read_measure(object.required_object("measure"));
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
-  object.required("verdict", claim.recorded,
-                  {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected});
+  object.required("verdict", claim.recorded, verdicts);
+  if (auto engines = object.optional_object("with_engine")) {
+    for (const std::string_view engine : {Exact::name, Restitution::name, Cem::name}) {
+      auto otherwise = engines->optional_object(engine);
+      if (!otherwise) continue;
+      Claim::Otherwise& read = claim.with_engine[std::string(engine)];
+      otherwise->required("verdict", read.recorded, verdicts);
+      require_text(*otherwise, "explanation", read.explanation);
+    }
+  }
   if (claim.recorded != Verdict::reproduced) {
     require_text(object, "explanation", claim.explanation);
     require_text(object, "evidence", claim.evidence);
@@ -87,7 +100,8 @@ std::vector<Claim> read_document(JsonDocument document) {
   std::set<std::string> ids;
   for (ObjectReader object : root.required_objects("claims")) {
     claims.push_back(read_claim(object));
-    if (!ids.insert(claims.back().id).second) object.refuse("id", "must be given once, got " + claims.back().id);
+    if (!ids.insert(claims.back().id).second)
+      object.refuse("id", "must be given once, got " + claims.back().id);
   }
   document.finish();
   return claims;
@@ -97,9 +111,12 @@ std::vector<Claim> read_document(JsonDocument document) {
 
 std::string_view name_of(Verdict verdict) {
   switch (verdict) {
-    case Verdict::reproduced: return "reproduced";
-    case Verdict::not_reproduced: return "not reproduced";
-    case Verdict::corrected: return "corrected";
+    case Verdict::reproduced:
+      return "reproduced";
+    case Verdict::not_reproduced:
+      return "not reproduced";
+    case Verdict::corrected:
+      return "corrected";
   }
   return {};
 }
@@ -109,6 +126,11 @@ std::vector<Claim> read_claims(const std::filesystem::path& file) {
 }
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));
+}
+
+Verdict recorded_for(const Claim& claim, std::string_view engine) {
+  const auto otherwise = claim.with_engine.find(engine);
+  return otherwise == claim.with_engine.end() ? claim.recorded : otherwise->second.recorded;
 }
 
 Verdict judge(const Claim& claim, double ours) {

@@ -9,6 +9,10 @@
 //                "measure": {"name": "product_mid_range", "scenes": ["nu2-e06"], "from": 0.1, "to": 6},
 //                "verdict": "reproduced"}]}
 //
+// Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
+// and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method
+// that finds contact at whole steps, with its default step; locating touch and release it has no exceptions.
+//
 // A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
 // one the "corrected" interval [least, most] that takes the place of what is printed.
 #pragma once
@@ -38,14 +42,22 @@ struct MeasureCall {
 
 struct Claim {
   std::string id, section, statement, printed;
-  Interval admitted;       // [value, value] or the range, before the tolerance
-  double tolerance = 0;    // >= 0, in the units of the value
+  Interval admitted;     // [value, value] or the range, before the tolerance
+  double tolerance = 0;  // >= 0, in the units of the value
   std::string reason;
   MeasureCall measure;
   std::optional<Interval> corrected;
   Verdict recorded = Verdict::reproduced;
   std::string explanation, evidence;
+  struct Otherwise {
+    Verdict recorded = Verdict::reproduced;
+    std::string explanation;
+  };
+  std::map<std::string, Otherwise, std::less<>> with_engine;  // by the engine's name
 };
+
+// The verdict recorded for runs of that engine.
+Verdict recorded_for(const Claim& claim, std::string_view engine);
 
 // Throws IoError if the file cannot be read, InputError naming everything that is not admitted: unknown
 // measures and measure parameters and duplicate ids among it.

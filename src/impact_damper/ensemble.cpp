@@ -27,7 +27,8 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
   std::uint64_t state = options.seed;
   while (static_cast<std::int64_t>(scenes.size()) < options.members) {
     const std::uint64_t drawn = draw(state);
-    const double steps = 1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
+    const double steps =
+        1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
     const double factor = 1 + options.step * (drawn & 1 ? steps : -steps);
     Scene shifted = scene;
     (scene.x0 != 0 ? shifted.x0 : shifted.v0) *= factor;

@@ -13,8 +13,8 @@
 namespace impact_damper {
 
 struct EnsembleOptions {
-  std::int64_t members = 16;    // >= 1, the undisturbed scene among them
-  double step = 1e-9;           // relative to the initial displacement
+  std::int64_t members = 16;       // >= 1, the undisturbed scene among them
+  double step = 1e-9;              // relative to the initial displacement
   std::int64_t most_steps = 1000;  // a member is shifted by a whole number of steps up to this, either way
   std::uint64_t seed = 1;
 };

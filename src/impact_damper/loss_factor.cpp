@@ -70,11 +70,21 @@ std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrd
     const double product = amplitude_times_loss(loss.amplitude[i], specific);
     double y = 0;
     switch (which) {
-      case LossOrdinate::eta: y = loss.eta[i]; break;
-      case LossOrdinate::specific: y = specific_loss(loss.eta[i], scene.mass_ratio); break;
-      case LossOrdinate::specific_secondary: y = specific; break;
-      case LossOrdinate::amplitude_times: y = product; break;
-      case LossOrdinate::by_restitution: y = loss_by_restitution(product, scene.restitution); break;
+      case LossOrdinate::eta:
+        y = loss.eta[i];
+        break;
+      case LossOrdinate::specific:
+        y = specific_loss(loss.eta[i], scene.mass_ratio);
+        break;
+      case LossOrdinate::specific_secondary:
+        y = specific;
+        break;
+      case LossOrdinate::amplitude_times:
+        y = product;
+        break;
+      case LossOrdinate::by_restitution:
+        y = loss_by_restitution(product, scene.restitution);
+        break;
     }
     column.push_back(y);
   }

@@ -47,7 +47,9 @@ inline double specific_secondary_loss(double eta, double damping_ratio, double m
 
 // A (eta - 2 zeta) / nu, and that by 1 - e (e < 1): the ordinates of Figures 12, 13 and 14.
 inline double amplitude_times_loss(double amplitude, double specific) { return amplitude * specific; }
-inline double loss_by_restitution(double ordinate, double restitution) { return ordinate / (1 - restitution); }
+inline double loss_by_restitution(double ordinate, double restitution) {
+  return ordinate / (1 - restitution);
+}
 
 // One of these ordinates for every row of `loss`, with the scene's nu, zeta and e.
 enum class LossOrdinate { eta, specific, specific_secondary, amplitude_times, by_restitution };

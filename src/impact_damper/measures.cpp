@@ -1,7 +1,7 @@
 #include "impact_damper/measures.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "impact_damper/run_file.hpp"
@@ -29,6 +29,16 @@ const std::vector<Run>& Runs::ensemble(const std::string& scene) {
     for (std::size_t i = 1; i < members.size(); ++i) runs.push_back(simulate(members[i], engine, record));
   }
   return runs;
+}
+
+std::string Runs::engine() const {
+  std::set<std::string> names;
+  for (const auto& [scene, runs] : ensembles_) {
+    if (runs.empty()) continue;
+    const Cem* const cem = std::get_if<Cem>(&runs.front().engine);
+    names.insert(std::string(name_of(runs.front().engine)) + (cem && cem->locate ? " --locate" : ""));
+  }
+  return names.size() == 1 ? *names.begin() : std::string();
 }
 
 const std::vector<Measure>& measures() {

@@ -27,6 +27,9 @@ class Runs {
   const Run& file(const std::string& scene);
   // The run file, then the other members, which record half cycles, impacts and contacts.
   const std::vector<Run>& ensemble(const std::string& scene);
+  // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if
+  // none was or if they are of several.
+  std::string engine() const;
   const EnsembleOptions& options() const { return options_; }
 
  private:
@@ -50,10 +53,10 @@ const std::vector<Measure>& measures();  // in the order of names
 Spread measure(Runs& runs, const MeasureCall& call);
 
 // The parts of the table, by subject: measures_*.cpp.
-std::vector<Measure> loss_measures();     // loss factor curves
-std::vector<Measure> regime_measures();   // bounce-down, windows, impact failure, phases
-std::vector<Measure> model_measures();    // engine against engine, wall and time step
-std::vector<Measure> audit_measures();    // the paper's slips
+std::vector<Measure> loss_measures();    // loss factor curves
+std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
+std::vector<Measure> model_measures();   // engine against engine, wall and time step
+std::vector<Measure> audit_measures();   // the paper's slips
 
 // For each member of the one scene of `call`, or for the members of all of them side by side.
 template <class Find>

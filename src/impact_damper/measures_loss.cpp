@@ -63,7 +63,8 @@ double spread_percent(const std::vector<Curve>& curves, double from, double to) 
 
 namespace {
 
-std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which, double from, double to) {
+std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which, double from,
+                                   double to) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Run* run : runs) {
     for (const double y : loss_curve(*run, which, from, to).y) {
@@ -99,35 +100,41 @@ double mean(const std::vector<double>& values) {
 
 Spread product_mid_range(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    const auto [least, most] =
+        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
     return (least + most) / 2;
   });
 }
 
 Spread product_half_range(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    const auto [least, most] =
+        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
     return 100 * (most - least) / (most + least);
   });
 }
 
 Spread loss_slope(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return log_slope(loss_curve(run, LossOrdinate::specific_secondary, number(call, "from"), number(call, "to")));
+    return log_slope(
+        loss_curve(run, LossOrdinate::specific_secondary, number(call, "from"), number(call, "to")));
   });
 }
 
 Spread largest_loss(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).second; });
+  return over_members(runs, call,
+                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).second; });
 }
 
 Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).first; });
+  return over_members(runs, call,
+                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).first; });
 }
 
 Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"))).first;
+    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to")))
+        .first;
   });
 }
 
@@ -149,7 +156,8 @@ Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     Curve points;
     for (const Run* run : group) {
-      const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+      const Curve curve =
+          loss_curve(*run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
       points.x.push_back(run->scene.mass_ratio);
       points.y.push_back(run->scene.mass_ratio * mean(curve.y));
     }
@@ -195,30 +203,87 @@ Spread single_impact_advantage(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> loss_measures() {
   return {
-      {"product_mid_range", 1, 8, {"from", "to"}, product_mid_range,
+      {"product_mid_range",
+       1,
+       8,
+       {"from", "to"},
+       product_mid_range,
        "mean of the least and the largest A eta_s / nu of all scenes, A in [from, to]"},
-      {"product_half_range_percent", 1, 8, {"from", "to"}, product_half_range,
+      {"product_half_range_percent",
+       1,
+       8,
+       {"from", "to"},
+       product_half_range,
        "half their difference, in percent of their mean"},
-      {"loss_slope", 1, 1, {"from", "to"}, loss_slope, "d ln eta_s / d ln A by least squares, A in [from, to]"},
+      {"loss_slope",
+       1,
+       1,
+       {"from", "to"},
+       loss_slope,
+       "d ln eta_s / d ln A by least squares, A in [from, to]"},
       {"largest_loss", 1, 1, {}, largest_loss, "largest averaged eta"},
       {"largest_loss_amplitude", 1, 1, {}, largest_loss_amplitude, "amplitude at which it is met"},
-      {"product_peak_amplitude", 1, 1, {"from", "to"}, product_peak_amplitude,
+      {"product_peak_amplitude",
+       1,
+       1,
+       {"from", "to"},
+       product_peak_amplitude,
        "amplitude of the largest A eta_s / nu, A in [from, to]"},
-      {"loss_near_span", 1, 1, {"eta", "factor", "from", "to"}, loss_near_span,
-       "ratio of the largest to the least amplitude at which the averaged loss factor is within a factor of eta"},
-      {"collapse_eta_percent", 2, 8, {"from", "to"}, collapse<LossOrdinate::eta>,
+      {"loss_near_span",
+       1,
+       1,
+       {"eta", "factor", "from", "to"},
+       loss_near_span,
+       "ratio of the largest to the least amplitude at which the averaged loss factor is within a factor of "
+       "eta"},
+      {"collapse_eta_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::eta>,
        "spread of eta between the scenes at equal amplitude, in percent"},
-      {"collapse_specific_percent", 2, 8, {"from", "to"}, collapse<LossOrdinate::specific>, "the same of eta/nu"},
-      {"collapse_secondary_percent", 2, 8, {"from", "to"}, collapse<LossOrdinate::specific_secondary>,
+      {"collapse_specific_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific>,
+       "the same of eta/nu"},
+      {"collapse_secondary_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific_secondary>,
        "the same of (eta - 2 zeta)/nu"},
-      {"collapse_restitution_percent", 2, 8, {"from", "to"}, collapse<LossOrdinate::by_restitution>,
+      {"collapse_restitution_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::by_restitution>,
        "the same of A (eta - 2 zeta)/nu/(1 - e)"},
-      {"mass_ratio_exponent", 2, 8, {"from", "to"}, mass_ratio_exponent,
+      {"mass_ratio_exponent",
+       2,
+       8,
+       {"from", "to"},
+       mass_ratio_exponent,
        "d ln (mean of A eta_s) / d ln nu by least squares over the scenes"},
-      {"product_ratio", 2, 2, {"from", "to"}, product_ratio, "mean A eta_s / nu of the first scene by the second's"},
+      {"product_ratio",
+       2,
+       2,
+       {"from", "to"},
+       product_ratio,
+       "mean A eta_s / nu of the first scene by the second's"},
       {"tail_loss_ratio", 1, 1, {"below"}, tail_loss_ratio, "median eta below an amplitude, by the largest"},
-      {"smoothing_ratio", 1, 1, {}, smoothing_ratio, "largest eta averaged over 18 half cycles, by that over 10"},
-      {"single_impact_advantage", 1, 1, {}, single_impact_advantage,
+      {"smoothing_ratio",
+       1,
+       1,
+       {},
+       smoothing_ratio,
+       "largest eta averaged over 18 half cycles, by that over 10"},
+      {"single_impact_advantage",
+       1,
+       1,
+       {},
+       single_impact_advantage,
        "largest eta in and below the window of single impacts, by the largest above it"},
   };
 }

@@ -39,7 +39,8 @@ Spread time_saved(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
   std::vector<double> theirs;
-  for (const Run& run : again(runs, ours.front().scene, Restitution{})) theirs.push_back(time_below(run, amplitude));
+  for (const Run& run : again(runs, ours.front().scene, Restitution{}))
+    theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
   std::vector<double> values;
   for (const Run& run : ours) values.push_back(100 * (1 - time_below(run, amplitude) / reference));
@@ -55,7 +56,8 @@ Spread later_release(Runs& runs, const MeasureCall& call) {
   const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
   std::vector<double> values;
   for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(time_below(theirs[i], number(call, "amplitude")) / time_below(ours[i], number(call, "amplitude")));
+    values.push_back(time_below(theirs[i], number(call, "amplitude")) /
+                     time_below(ours[i], number(call, "amplitude")));
   return spread_of(values);
 }
 
@@ -92,7 +94,9 @@ Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
 Spread zeta_error(Runs&, const MeasureCall& call) {
   return once(zeta_m_iterative(number(call, "restitution")).velocity_error);
 }
-Spread zeta_steps(Runs&, const MeasureCall& call) { return once(zeta_m_iterative(number(call, "restitution")).steps); }
+Spread zeta_steps(Runs&, const MeasureCall& call) {
+  return once(zeta_m_iterative(number(call, "restitution")).steps);
+}
 Spread zeta_difference(Runs&, const MeasureCall& call) {
   const double e = number(call, "restitution");
   return once(std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e)));
@@ -181,26 +185,69 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> model_measures() {
   return {
-      {"models_difference_percent", 1, 1, {"from", "to"}, models_difference,
+      {"models_difference_percent",
+       1,
+       1,
+       {"from", "to"},
+       models_difference,
        "spread of A eta_s / nu between the scene's engine and the restitution engine, in percent"},
-      {"time_saved_percent", 1, 1, {"amplitude"}, time_saved,
-       "by how much the scene's engine reaches an amplitude before the restitution engine, in percent of the time"},
-      {"later_release_ratio", 1, 1, {"x0", "amplitude"}, later_release,
+      {"time_saved_percent",
+       1,
+       1,
+       {"amplitude"},
+       time_saved,
+       "by how much the scene's engine reaches an amplitude before the restitution engine, in percent of the "
+       "time"},
+      {"later_release_ratio",
+       1,
+       1,
+       {"x0", "amplitude"},
+       later_release,
        "time from x0 down to an amplitude, by that from the scene's own release"},
-      {"later_release_difference_percent", 1, 1, {"x0", "from", "to"}, later_release_difference,
+      {"later_release_difference_percent",
+       1,
+       1,
+       {"x0", "from", "to"},
+       later_release_difference,
        "spread of A eta_s / nu between the two releases, in percent"},
-      {"stiffness_effect_percent", 1, 1, {"stiffness", "from", "to"}, stiffness_effect,
+      {"stiffness_effect_percent",
+       1,
+       1,
+       {"stiffness", "from", "to"},
+       stiffness_effect,
        "spread of A eta_s / nu between the scene's wall stiffness and another, in percent"},
       {"zeta_error", 0, 0, {"restitution"}, zeta_error, "velocity error of the iterative zeta_m"},
       {"zeta_steps", 0, 0, {"restitution"}, zeta_steps, "steps of the iterative zeta_m through one impact"},
-      {"zeta_difference", 0, 0, {"restitution"}, zeta_difference, "iterative zeta_m less the closed form, absolute"},
-      {"wall_restitution", 0, 0, {"mass_ratio", "restitution"}, wall_restitution,
+      {"zeta_difference",
+       0,
+       0,
+       {"restitution"},
+       zeta_difference,
+       "iterative zeta_m less the closed form, absolute"},
+      {"wall_restitution",
+       0,
+       0,
+       {"mass_ratio", "restitution"},
+       wall_restitution,
        "relative speed after one impact of the exact engine, by that before"},
-      {"contact_frequency", 0, 0, {"mass_ratio", "restitution"}, contact_frequency,
+      {"contact_frequency",
+       0,
+       0,
+       {"mass_ratio", "restitution"},
+       contact_frequency,
        "frequency of one contact of the exact engine, by the root of k"},
       {"wall_overlap", 1, 1, {}, wall_overlap, "largest deformation of the wall, by the free travel"},
-      {"step_limit", 0, 0, {}, step_limit, "largest stable omega h of central differences, undamped, by trial"},
-      {"step_refinement", 1, 1, {"steps_per_contact", "factor"}, step_refinement,
+      {"step_limit",
+       0,
+       0,
+       {},
+       step_limit,
+       "largest stable omega h of central differences, undamped, by trial"},
+      {"step_refinement",
+       1,
+       1,
+       {"steps_per_contact", "factor"},
+       step_refinement,
        "error of the component element method by its error with a smaller step"},
   };
 }

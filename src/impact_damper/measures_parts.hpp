@@ -19,7 +19,8 @@ struct Curve {
 };
 
 // One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to].
-Curve loss_curve(const Run& run, LossOrdinate which, double from = 0, double to = everywhere, int half_cycles = 10);
+Curve loss_curve(const Run& run, LossOrdinate which, double from = 0, double to = everywhere,
+                 int half_cycles = 10);
 
 // Slope of ln y against ln x by least squares.
 double log_slope(const Curve& curve);
@@ -35,7 +36,8 @@ inline const HalfCycles& half_cycles_of(const Run& run) {
 
 inline double number(const MeasureCall& call, const std::string& name) {
   const auto found = call.numbers.find(name);
-  if (found == call.numbers.end()) throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
+  if (found == call.numbers.end())
+    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
   return found->second;
 }
 

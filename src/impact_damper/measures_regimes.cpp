@@ -37,12 +37,14 @@ std::vector<std::size_t> rows_between(const Run& run, double from, double to) {
 
 std::size_t row_of(const Run& run, double time) {
   const auto& crossing = half_cycles_of(run).zero_crossing;
-  return static_cast<std::size_t>(std::upper_bound(crossing.begin(), crossing.end(), time) - crossing.begin());
+  return static_cast<std::size_t>(std::upper_bound(crossing.begin(), crossing.end(), time) -
+                                  crossing.begin());
 }
 
 double mean_impacts(const Run& run, const Rows& rows) {
   double sum = 0;
-  for (std::size_t row = rows.first; row < rows.last; ++row) sum += static_cast<double>(run.half_cycles->impacts[row]);
+  for (std::size_t row = rows.first; row < rows.last; ++row)
+    sum += static_cast<double>(run.half_cycles->impacts[row]);
   return sum / static_cast<double>(rows.last - rows.first);
 }
 
@@ -66,11 +68,20 @@ Spread bounce_down_end(Runs& runs, const MeasureCall& call) {
 }
 
 Spread first_missed(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [](const Run& run) { return impact_failure(run).first_missed.value_or(std::nan("")); });
+  return over_members(runs, call,
+                      [](const Run& run) { return impact_failure(run).first_missed.value_or(std::nan("")); });
 }
 
 Spread failure_for_good(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [](const Run& run) { return impact_failure(run).for_good.value_or(std::nan("")); });
+  return over_members(runs, call,
+                      [](const Run& run) { return impact_failure(run).for_good.value_or(std::nan("")); });
+}
+
+Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [](const std::vector<const Run*>& group) {
+    return impact_failure(*group[0]).first_missed.value_or(std::nan("")) /
+           impact_failure(*group[1]).first_missed.value_or(std::nan(""));
+  });
 }
 
 Spread window_distance(Runs& runs, const MeasureCall& call) {
@@ -128,7 +139,8 @@ Spread rows_with_impacts(Runs& runs, const MeasureCall& call) {
 
 Spread impacts_ratio(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    return mean_impacts(*group[0], rows_below(*group[0], call)) / mean_impacts(*group[1], rows_below(*group[1], call));
+    return mean_impacts(*group[0], rows_below(*group[0], call)) /
+           mean_impacts(*group[1], rows_below(*group[1], call));
   });
 }
 
@@ -163,7 +175,8 @@ Spread phase_difference(Runs& runs, const MeasureCall& call) {
     std::vector<double> phase;
     for (std::size_t i = 0; i < impacts.time.size(); ++i) {
       const std::size_t row = row_of(run, impacts.time[i]);
-      if (row >= rows.first && row < rows.last && impacts.phase_deg[i]) phase.push_back(*impacts.phase_deg[i]);
+      if (row >= rows.first && row < rows.last && impacts.phase_deg[i])
+        phase.push_back(*impacts.phase_deg[i]);
     }
     if (phase.size() != rows.last - rows.first || phase.size() < 2) return std::nan("");
     double sum = 0;
@@ -187,7 +200,8 @@ Spread stuck_degrees_slope(Runs& runs, const MeasureCall& call) {
     const StuckPhases stuck = stuck_phases(run);
     Curve curve;
     for (std::size_t i = 0; i < stuck.amplitude.size(); ++i) {
-      const bool within = stuck.amplitude[i] >= number(call, "from") && stuck.amplitude[i] <= number(call, "to");
+      const bool within =
+          stuck.amplitude[i] >= number(call, "from") && stuck.amplitude[i] <= number(call, "to");
       // A release lags the zero crossing a little: the remnant at the start of a half cycle is not its own.
       if (!within || stuck.begin_deg[i] <= 0) continue;
       curve.x.push_back(stuck.amplitude[i]);
@@ -240,31 +254,81 @@ Spread impact_speed_slope(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> regime_measures() {
   return {
-      {"bounce_down_end", 1, 1, {}, bounce_down_end,
+      {"bounce_down_end",
+       1,
+       1,
+       {},
+       bounce_down_end,
        "amplitude at the end of bounce-down; the release's if nothing ever sticks"},
       {"first_missed", 1, 1, {}, first_missed, "amplitude at the first missed impact"},
+      {"first_missed_ratio", 2, 2, {}, first_missed_ratio, "that of the first scene by the second's"},
       {"failure_for_good", 1, 1, {}, failure_for_good, "amplitude from which on impacts are missed for good"},
-      {"window_distance", 1, 1, {"impacts", "amplitude"}, window_distance,
+      {"window_distance",
+       1,
+       1,
+       {"impacts", "amplitude"},
+       window_distance,
        "how far an amplitude lies outside the nearest regular window of so many impacts; 0 inside it"},
-      {"windows_in_order", 1, 1, {"most"}, windows_in_order,
+      {"windows_in_order",
+       1,
+       1,
+       {"most"},
+       windows_in_order,
        "how many regular windows, of most, most - 1, ... 1 impacts, follow each other down in amplitude"},
-      {"mixed_gaps", 1, 1, {"most"}, mixed_gaps, "how many pairs of neighbours among them leave a gap of mixed counts"},
-      {"impacts_per_half_cycle", 1, 1, {"amplitude", "half_cycles"}, impacts_per_half_cycle,
+      {"mixed_gaps",
+       1,
+       1,
+       {"most"},
+       mixed_gaps,
+       "how many pairs of neighbours among them leave a gap of mixed counts"},
+      {"impacts_per_half_cycle",
+       1,
+       1,
+       {"amplitude", "half_cycles"},
+       impacts_per_half_cycle,
        "mean number of impacts in so many half cycles from the first below an amplitude on"},
-      {"rows_with_impacts", 1, 1, {"amplitude", "half_cycles", "impacts"}, rows_with_impacts,
+      {"rows_with_impacts",
+       1,
+       1,
+       {"amplitude", "half_cycles", "impacts"},
+       rows_with_impacts,
        "share of these half cycles with just so many impacts"},
-      {"impacts_ratio", 2, 2, {"amplitude", "half_cycles"}, impacts_ratio,
+      {"impacts_ratio",
+       2,
+       2,
+       {"amplitude", "half_cycles"},
+       impacts_ratio,
        "mean number of impacts of the first scene by the second's"},
       {"stuck_share", 1, 1, {"from", "to"}, stuck_share, "share of the half cycles in which the mass sticks"},
-      {"alternation", 1, 1, {"from", "to"}, alternation,
+      {"alternation",
+       1,
+       1,
+       {"from", "to"},
+       alternation,
        "longest series of half cycles with one and two impacts in turn, amplitude in [from, to]"},
-      {"phase_difference", 1, 1, {"amplitude", "half_cycles"}, phase_difference,
+      {"phase_difference",
+       1,
+       1,
+       {"amplitude", "half_cycles"},
+       phase_difference,
        "mean difference in phase between successive impacts, degrees, if each half cycle has one"},
-      {"stuck_degrees_slope", 1, 1, {"from", "to"}, stuck_degrees_slope,
+      {"stuck_degrees_slope",
+       1,
+       1,
+       {"from", "to"},
+       stuck_degrees_slope,
        "growth of the stuck part of a half cycle with amplitude, degrees"},
-      {"bounce_down_degrees_slope", 1, 1, {"from", "to"}, bounce_down_degrees_slope,
+      {"bounce_down_degrees_slope",
+       1,
+       1,
+       {"from", "to"},
+       bounce_down_degrees_slope,
        "growth of the part between first and last impact of a half cycle with amplitude, degrees"},
-      {"impact_speed_slope", 1, 1, {"from", "to", "power"}, impact_speed_slope,
+      {"impact_speed_slope",
+       1,
+       1,
+       {"from", "to", "power"},
+       impact_speed_slope,
        "d ln (w / A^power) / d ln A, w the fastest impact of a half cycle"},
   };
 }

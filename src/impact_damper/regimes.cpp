@@ -85,7 +85,8 @@ ImpactFailure impact_failure(const Run& run, const RegimeOptions& options) {
 
   const std::vector<RegularWindow> windows = regular_windows(run, options);
   const std::size_t regular = windows.empty() ? 0 : windows.back().last;
-  for (std::size_t row = std::max(regular, span / 2) + 1; row - span / 2 + span <= count && !failure.first_missed; ++row)
+  for (std::size_t row = std::max(regular, span / 2) + 1;
+       row - span / 2 + span <= count && !failure.first_missed; ++row)
     if (rows.impacts[row] == 0 && some_missed(row - span / 2)) failure.first_missed = rows.amplitude[row];
 
   for (std::size_t row = count < span ? 0 : count - span + 1; row-- > 1 && some_missed(row);)
@@ -99,8 +100,10 @@ std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& 
   for (std::size_t first = 1, next; first < rows.impacts.size(); first = next) {
     next = first + 1;
     while (next < rows.impacts.size() && rows.impacts[next] == rows.impacts[first]) ++next;
-    if (rows.impacts[first] < 1 || static_cast<std::int64_t>(next - first) < options.window_half_cycles) continue;
-    windows.push_back({rows.impacts[first], first, next - 1, rows.amplitude[first], rows.amplitude[next - 1]});
+    if (rows.impacts[first] < 1 || static_cast<std::int64_t>(next - first) < options.window_half_cycles)
+      continue;
+    windows.push_back(
+        {rows.impacts[first], first, next - 1, rows.amplitude[first], rows.amplitude[next - 1]});
   }
   return windows;
 }

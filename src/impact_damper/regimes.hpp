@@ -31,8 +31,8 @@ Contacts stuck_contacts(const Run& run, const RegimeOptions& options = {});
 
 // A stuck interval, or the part of one that lies in a half cycle, in the coordinates of Figure 15.
 struct StuckPhases {
-  std::vector<double> amplitude;             // of the half cycle
-  std::vector<double> begin_deg, end_deg;    // as Impacts::phase_deg, 0 <= begin < end <= 180
+  std::vector<double> amplitude;           // of the half cycle
+  std::vector<double> begin_deg, end_deg;  // as Impacts::phase_deg, 0 <= begin < end <= 180
 };
 // Needs half_cycles and contacts. Row 0, which no zero crossing began, gives none.
 StuckPhases stuck_phases(const Run& run, const RegimeOptions& options = {});
@@ -57,9 +57,9 @@ ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
 
 // A maximal series of at least window_half_cycles half cycles with the same number of impacts, at least one.
 struct RegularWindow {
-  std::int64_t impacts = 0;       // per half cycle
+  std::int64_t impacts = 0;         // per half cycle
   std::size_t first = 0, last = 0;  // rows, both included
-  double upper = 0, lower = 0;    // amplitudes of these rows
+  double upper = 0, lower = 0;      // amplitudes of these rows
 };
 // In the order of time. Needs half_cycles.
 std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& options = {});

@@ -80,12 +80,18 @@ struct EngineOptions {
   }
 };
 
-// What all curves have in common, for the line under the title.
+// What all curves have in common, and what sets one apart, for the line under the title.
 std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs) {
   std::string text;
   for (const Varied varied : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
     if (figure.varied == varied) continue;
     text += (text.empty() ? "" : ", ") + equation(runs[0]->run.scene, varied);
+  }
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    const int span = figure.curves[i].loss_factor.half_cycles;
+    if (!figure.varied || span == LossFactorOptions{}.half_cycles) continue;
+    text += "; " + equation(runs[i]->run.scene, *figure.varied) + " averaged over " + std::to_string(span) +
+            " half cycles";
   }
   // The exact engine is the house's own answer; a figure made with another one says so.
   if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
@@ -111,9 +117,10 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRun*>&
 void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& number,
                      const std::string& legend, Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
-  table.blocks.push_back({.name = "curve-" + number,
-                          .columns = {{"time", "time of the peak, by 1/Omega_n", rows.peak_time},
-                                      {legend, "peak amplitude of the half cycle, by epsilon", rows.amplitude}}});
+  table.blocks.push_back(
+      {.name = "curve-" + number,
+       .columns = {{"time", "time of the peak, by 1/Omega_n", rows.peak_time},
+                   {legend, "peak amplitude of the half cycle, by epsilon", rows.amplitude}}});
 }
 
 }  // namespace
@@ -134,8 +141,8 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) 
   const double least = *std::ranges::min_element(rows.amplitude);
   if (figure.down_to && !(least <= *figure.down_to)) {
     throw unusable(figure, source.file,
-                   "is too short: must reach an amplitude of " + number_text(*figure.down_to) + ", ends after " +
-                       std::to_string(rows.amplitude.size()) + " half cycles at " +
+                   "is too short: must reach an amplitude of " + number_text(*figure.down_to) +
+                       ", ends after " + std::to_string(rows.amplitude.size()) + " half cycles at " +
                        number_text(rows.amplitude.back()) + " (stopped by " +
                        std::string(name_of(source.run.stop_reason)) + ")");
   }
@@ -148,8 +155,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs) {
   check_comparable(figure, sources);
 
   Table table;
-  table.header = {"Figure " + figure.number + ": " + figure.title,
-                  "Parameters: " + subtitle(figure, sources),
+  table.header = {"Figure " + figure.number + ": " + figure.title, "Parameters: " + subtitle(figure, sources),
                   "Script: " + figure.script};
   for (const std::string& scene : scenes_of(figure)) {
     const Run& run = runs.at(scene).run;

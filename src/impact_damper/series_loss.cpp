@@ -31,7 +31,8 @@ std::string meaning(LossOrdinate which) {
 
 // The ordinate that a specific loss eta/nu of the impacts alone amounts to at zeta = 0.
 double theory_ordinate(LossOrdinate which, double amplitude, double specific, const Scene& scene) {
-  return ordinate({.amplitude = {amplitude}, .time = {0}, .eta = {specific * scene.mass_ratio}}, scene, which)[0];
+  return ordinate({.amplitude = {amplitude}, .time = {0}, .eta = {specific * scene.mass_ratio}}, scene,
+                  which)[0];
 }
 
 constexpr int theory_points = 120;
@@ -55,7 +56,8 @@ std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
   if (!amplitude) return loss.eta.size();
   const std::vector<double>& rows = run.half_cycles->amplitude;
   const auto failure = static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
-  const double last = run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
+  const double last =
+      run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
   const auto behind = std::ranges::lower_bound(loss.time, last);
   return std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin()));
 }
@@ -74,7 +76,8 @@ std::optional<double> value_at(double amplitude, const LossFactor& loss, const s
 }
 
 // The extremes over an ensemble of the run's scene, where all members have a value.
-TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run, const std::string& number) {
+TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
+                      const std::string& number) {
   struct Member {
     LossFactor loss;
     std::vector<double> values;
@@ -88,6 +91,8 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
     member.kept = before_failure(each, member.loss, curve.loss_factor.half_cycles);
     members.push_back(std::move(member));
   }
+  const auto own = members[0].loss.amplitude.begin();
+  const double least = *std::min_element(own, own + static_cast<std::ptrdiff_t>(members[0].kept));
   TableBlock block{.name = "band-" + number,
                    .notes = {std::to_string(curve.ensemble) + " releases of scene " + curve.scene +
                              ", x0 shifted by up to " + std::to_string(options.most_steps) + " times " +
@@ -96,10 +101,11 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
                                {"least", "ordinate of the ensemble", {}},
                                {std::to_string(curve.ensemble) + " releases", "greatest ordinate", {}}}};
   for (int k = 0; k <= 2 * theory_points; ++k) {
-    const double amplitude = amplitude_at(k, *figure.down_to / 4, run.scene.x0, 2 * theory_points);
+    const double amplitude = amplitude_at(k, least, run.scene.x0, 2 * theory_points);
     std::vector<double> values;
     for (const Member& member : members) {
-      if (const auto value = value_at(amplitude, member.loss, member.values, member.kept)) values.push_back(*value);
+      if (const auto value = value_at(amplitude, member.loss, member.values, member.kept))
+        values.push_back(*value);
     }
     if (values.size() < members.size()) continue;
     const Spread spread = spread_of(values);
@@ -128,15 +134,18 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
     return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
                                column.begin() + static_cast<std::ptrdiff_t>(to));
   };
-  const auto block = [&](const std::string& block_name, const std::string& note, std::size_t from, std::size_t to) {
+  const auto block = [&](const std::string& block_name, const std::string& note, std::size_t from,
+                         std::size_t to) {
     table.blocks.push_back(
         {.name = block_name,
-         .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" + note},
+         .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" +
+                   note},
          .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, from, to)},
                      {legend, meaning(*figure.ordinate), part(values, from, to)}}});
   };
   block("curve-" + number, "", 0, kept);
-  if (kept < values.size()) block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
+  if (kept < values.size())
+    block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
   if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, number));
 }
 
@@ -165,7 +174,8 @@ void add_spread_block(const Figure& figure, Table& table) {
                    {legend, "half way between least and most", {middle, middle}}}});
 }
 
-void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table) {
+void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,
+                            Table& table) {
   const LossOrdinate which = *figure.ordinate;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Scene& scene = sources[i]->run.scene;
@@ -193,7 +203,8 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
     for (int k = 0; k <= theory_points; ++k) {
       const double amplitude = amplitude_at(k, end, largest);
       stuck.columns[0].values.push_back(amplitude);
-      stuck.columns[1].values.push_back(theory_ordinate(which, amplitude, bounce_down(e, amplitude).loss, scene));
+      stuck.columns[1].values.push_back(
+          theory_ordinate(which, amplitude, bounce_down(e, amplitude).loss, scene));
     }
     table.blocks.push_back(std::move(stuck));
   }

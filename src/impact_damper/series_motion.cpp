@@ -53,12 +53,13 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
   const History& history = *source.run.history;
   const double begin = history.time[first], end = history.time[last];
 
-  TableBlock motion{.name = "motion",
-                    .columns = {{"time", "by 1/Omega_n", {}},
-                                {"left wall", "x, absolute displacement of the left cavity wall, by epsilon", {}},
-                                {"right wall", "x + 1, that of the right wall less the width of the mass", {}},
-                                {"secondary mass", "z = x + y, absolute, by epsilon", {}},
-                                {"relative", "y, secondary mass from the left wall, by epsilon", {}}}};
+  TableBlock motion{
+      .name = "motion",
+      .columns = {{"time", "by 1/Omega_n", {}},
+                  {"left wall", "x, absolute displacement of the left cavity wall, by epsilon", {}},
+                  {"right wall", "x + 1, that of the right wall less the width of the mass", {}},
+                  {"secondary mass", "z = x + y, absolute, by epsilon", {}},
+                  {"relative", "y, secondary mass from the left wall, by epsilon", {}}}};
   TableBlock impacts{.name = "impacts",
                      .columns = {{"time", "by 1/Omega_n", {}},
                                  {"wall", "0 left, 1 right: y at the impact", {}},

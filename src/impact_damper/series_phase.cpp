@@ -18,9 +18,10 @@ TableColumn amplitude_column() { return {"amplitude", "peak amplitude of the hal
 TableBlock impacts_block(const Figure& figure, const FigureRun& source) {
   if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
   const Impacts& impacts = *source.run.impacts;
-  TableBlock block{.name = "impacts",
-                   .columns = {amplitude_column(),
-                               {"impact", "phase in degrees from the last zero crossing, 180 to the next", {}}}};
+  TableBlock block{
+      .name = "impacts",
+      .columns = {amplitude_column(),
+                  {"impact", "phase in degrees from the last zero crossing, 180 to the next", {}}}};
   for (std::size_t i = 0; i < impacts.time.size(); ++i) {
     if (!impacts.phase_deg[i] || !impacts.amplitude[i]) continue;
     block.columns[0].values.push_back(*impacts.amplitude[i]);

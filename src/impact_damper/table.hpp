@@ -20,7 +20,7 @@ struct TableBlock {
   std::string name;
   std::vector<std::string> notes = {};  // comment lines
   std::vector<TableColumn> columns = {};
-  std::vector<std::size_t> gaps = {};   // rows before which a drawn line is interrupted, ascending
+  std::vector<std::size_t> gaps = {};  // rows before which a drawn line is interrupted, ascending
 };
 
 struct Table {

@@ -92,8 +92,8 @@ struct ForcedTwoImpact {
   double tau = 0;    // phase of the force at the departure from the left wall, radian, in (-pi, pi]
   // The state in which a scene with this force starts at its time 0 on this motion.
   double x0 = 0, v0 = 0, y0 = 0, w0 = 0;
-  bool within_walls = false;         // 0 < y < 1 strictly inside the flight: without it there is no such motion
-  double largest_multiplier = 0;     // modulus, of the map from half period to half period: stable if < 1
+  bool within_walls = false;      // 0 < y < 1 strictly inside the flight: without it there is no such motion
+  double largest_multiplier = 0;  // modulus, of the map from half period to half period: stable if < 1
 };
 // Both roots with V > 0, the faster first; none below |C| = q / sqrt(a^2 + 4 q^2), at resonance, and where
 // cos(T/2) = 0 (omega an odd fraction of 1).

@@ -38,8 +38,8 @@ double largest_multiplier(const Parameters& p, const Departure& fixed, double fl
   Eigen::Matrix4d jacobian;
   for (int i = 0; i < 4; ++i) {
     const Departure d = step * Departure::Unit(i);
-    jacobian.col(i) = (next_departure(p, fixed + d, flight_time) - next_departure(p, fixed - d, flight_time)) /
-                      (2 * step);
+    jacobian.col(i) =
+        (next_departure(p, fixed + d, flight_time) - next_departure(p, fixed - d, flight_time)) / (2 * step);
   }
   return jacobian.eigenvalues().cwiseAbs().maxCoeff();
 }
@@ -67,7 +67,9 @@ std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitu
     motion.tau = std::atan2((1 - a * speed) / (2 * c), q * speed / c);
 
     const double free = -nu * speed / cosine;
-    const auto x = [&](double t) { return c * std::sin(omega * t + motion.tau) + free * std::sin(t - period_half / 2); };
+    const auto x = [&](double t) {
+      return c * std::sin(omega * t + motion.tau) + free * std::sin(t - period_half / 2);
+    };
     const auto v = [&](double t) {
       return c * omega * std::cos(omega * t + motion.tau) + free * std::cos(t - period_half / 2);
     };

@@ -3,7 +3,8 @@
 # file, and to leave no table or picture behind.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
-file(COPY ${FIGURES}/ DESTINATION ${FOLDER}/figures)
+# file(COPY) takes files with equal time stamps for the same, as those of one checkout may have.
+file(COPY ${FIGURES}/ DESTINATION ${FOLDER}/figures PATTERN catalogue.json EXCLUDE)
 file(COPY ${FILES}/ DESTINATION ${FOLDER}/figures)
 file(MAKE_DIRECTORY ${FOLDER}/runs ${FOLDER}/series ${FOLDER}/pictures)
 

@@ -1,0 +1,65 @@
+# verify must notice a wrong model. In a copy of the sources in FOLDER one fault after the other is planted, the
+# eight scenes are run again, and the verdicts must differ from the recorded ones; without a fault they must not.
+#
+#   cmake -DSOURCE=... -DFOLDER=... -P planted_faults.cmake
+cmake_minimum_required(VERSION 3.25)
+
+file(REMOVE_RECURSE ${FOLDER})
+foreach(part CMakeLists.txt src data figures bench)
+  file(COPY ${SOURCE}/${part} DESTINATION ${FOLDER})
+endforeach()
+
+function(run)
+  execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_VARIABLE out
+                  ERROR_VARIABLE out)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGV}: exit code ${code}\n${out}")
+  endif()
+endfunction()
+
+# verdicts(CODE): builds, runs the scenes, verifies.
+function(verdicts wanted name)
+  run(${CMAKE_COMMAND} --build build --target runs-exact)
+  execute_process(COMMAND build/src/impact-damper verify --members 4 WORKING_DIRECTORY ${FOLDER}
+                  RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
+  string(REGEX MATCH "[^\n]*claims:[^\n]*" summary "${out}")
+  message("${name}: exit code ${code}; ${summary}")
+  if(NOT code EQUAL wanted OR summary STREQUAL "")
+    message(FATAL_ERROR "${name}: exit code ${code} instead of ${wanted}\n${out}\n${err}")
+  endif()
+endfunction()
+
+# plant(NAME FILE FROM TO): verify with FROM in FILE replaced by TO.
+function(plant name file from to)
+  set(path ${FOLDER}/src/impact_damper/${file})
+  file(READ ${path} sound)
+  string(REPLACE "${from}" "${to}" faulty "${sound}")
+  if(faulty STREQUAL sound)
+    message(FATAL_ERROR "${name}: ${file} no longer holds what is to be replaced:\n${from}")
+  endif()
+  file(WRITE ${path} "${faulty}")
+  verdicts(1 ${name})
+  file(WRITE ${path} "${sound}")
+endfunction()
+
+run(${CMAKE_COMMAND} -S . -B build -G Ninja -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1)
+verdicts(0 "no fault")
+
+plant("loss factor per cycle" loss_factor.cpp
+      "loss.eta.push_back(-2 *"
+      "loss.eta.push_back(-2 * 2 * std::numbers::pi *")
+plant("restitution off by 0.05" wall.hpp
+      "-logarithm(restitution)"
+      "-logarithm(Real(restitution - Real(0.05)))")
+# A wall that cannot pull: contact ends where its force c q' + K q vanishes.
+plant("contact force clipped at zero" contact.hpp
+      "    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};"
+      "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+               r = instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t);
+    const auto force = [&](std::size_t n) -> Real {
+      return inward_ * (system_.stiffness * (q[n] + r[n]) + system_.damping * (q[n + 1] + r[n + 1]));
+    };
+    const Real third = system_.stiffness * (q.bound(3, span) + r.bound(3, span)) +
+                       system_.damping * (q.bound(4, span) + r.bound(4, span));
+    return {Outlook<Real>{{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()}};")
