@@ -1,5 +1,5 @@
 #!/bin/sh
-# Holds README.md or the files of paper/ against what paper/refresh made of them: FILE... under SOURCE and under NEW.
+# Holds README.md or the files of paper/ against what paper/refresh made of them: compare.sh SOURCE NEW FILE...
 #
 # Byte for byte, if paper/made_with.txt is the same here. With another gnuplot or other last bits of sin and cos,
 # chaos between amplitudes of 3 and 0.42 changes digits and marks: then all words, verdicts among them, must be the
@@ -25,26 +25,23 @@ else
   same=words
 fi
 
-differing=0 count=0
-for pattern in "$@"; do
-  for file in "$new"/$pattern "$source"/$pattern; do
-    case $file in "$new"/*) file=${file#"$new"/} ;; *) file=${file#"$source"/} ;; esac
-    count=$((count + 1))
-    [ -f "$source/$file" ] || { echo "$file is made but not committed"; differing=1; continue; }
-    [ -f "$new/$file" ] || { echo "$file is committed but not made"; differing=1; continue; }
-    if [ $same = cmp ]; then
-      cmp -s "$source/$file" "$new/$file" && continue
-      echo "$file is not what the program makes:"
-      diff "$source/$file" "$new/$file" | cut -c 1-300 | head -n 20
-    else
-      words "$source/$file" >"$new/words.committed"
-      words "$new/$file" >"$new/words.made"
-      cmp -s "$new/words.committed" "$new/words.made" && continue
-      echo "$file has not the words that the program makes:"
-      diff "$new/words.committed" "$new/words.made" | cut -c 1-300 | head -n 20
-    fi
-    differing=1
-  done
+differing=0
+files=$(for place in "$source" "$new"; do (cd "$place" && ls -d $*); done | sort -u)
+for file in $files; do
+  [ -f "$source/$file" ] || { echo "$file is made but not committed"; differing=1; continue; }
+  [ -f "$new/$file" ] || { echo "$file is committed but not made"; differing=1; continue; }
+  if [ $same = cmp ]; then
+    cmp -s "$source/$file" "$new/$file" && continue
+    echo "$file is not what the program makes:"
+    diff "$source/$file" "$new/$file" | cut -c 1-300 | head -n 20
+  else
+    words "$source/$file" >"$new/$file.committed-words"
+    words "$new/$file" >"$new/$file.words"
+    cmp -s "$new/$file.committed-words" "$new/$file.words" && continue
+    echo "$file has not the words that the program makes:"
+    diff "$new/$file.committed-words" "$new/$file.words" | cut -c 1-300 | head -n 20
+  fi
+  differing=1
 done
-[ "$count" -gt 0 ] || { echo "nothing to compare"; exit 1; }
+[ -n "$files" ] || { echo "nothing to compare"; exit 1; }
 [ $differing = 0 ] || { echo "If the new one is right: make paper"; exit 1; }
