@@ -13,7 +13,7 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps build figures verify test check clean
+.PHONY: help deps build figures verify test bench check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -56,17 +56,24 @@ figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE
 	  echo "Figures drawn: $(FIGURES)"; else echo "Figures are up to date: $(FIGURES)"; fi
 
 verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by claim
-	@cmake --build $(BUILD) --target impact-damper -- --quiet
-	@$(BUILD)/src/impact-damper verify
+	@cmake --build $(BUILD) --target runs-exact -- --quiet
+	@$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts.json
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bench: $(BUILD)/build.ninja  ## measure run time beside error (a minute or two), print and draw it
+	@cmake --build $(BUILD) --target bench
 
 check: build test  ## build, run every test, regenerate everything with all engines, verify
 	@$(MAKE) --no-print-directory figures ENGINE=exact
 	@$(MAKE) --no-print-directory figures ENGINE=restitution
 	@$(MAKE) --no-print-directory figures ENGINE=cem
 	@$(MAKE) --no-print-directory verify
+
+paper: build  ## refresh figures, verdicts and outputs in README.md and paper/
+	@$(MAKE) --no-print-directory figures ENGINE=exact
+	@paper/refresh $(BUILD)
 
 clean:  ## remove all that was built
 	@rm -rf $(BUILD)

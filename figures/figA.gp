@@ -1,6 +1,7 @@
 load folder."/schematic.gp"
+eval canvas(720, 470)
 set xrange [0:25]
-set yrange [0:15]
+set yrange [0:14.4]
 
 eval ground(1.2, 2.4, 11.2)
 eval floor_at(2.4, 1.2, 23.5)

@@ -21,15 +21,19 @@ style_of(i) = word(styles, i) + 0
 spread = !has("spread") ? "" : \
   'table index "spread" using 1:2:3 with filledcurves lc rgb pale notitle,'.\
   'table index "spread" using 1:4 with lines ls 10 dt (6,4) title columnheader(4),'
+band = ""
+do for [i=1:words(styles)] { if (has(sprintf("band-%d", i))) { band = band.sprintf( \
+  'table index "band-%d" using 1:2:3 with filledcurves lc rgb sky title columnheader(3),', i) } }
 behind_failure = !words(failed) ? "" : \
-  'for [i in failed] table index "failed-".i using 1:2 with points ls style_of(i + 0) pt 7 ps 0.12 notitle,'
+  ', for [i in failed] table index "failed-".i using 1:2 with points ls style_of(i + 0) pt 7 ps 0.15'.\
+  ' title (i eq word(failed, 1) ? "after impact failure" : "")'
 bounce_down = !words(bounced) ? "" : \
   ', for [i in bounced] table index "bounce-down-".i using 1:2 with lines ls 9 notitle'
-eval 'plot '.spread.behind_failure.\
+eval 'plot '.spread.band.\
   'for [i=1:words(styles)] table index sprintf("curve-%d", i) using 1:2 with lines ls style_of(i) notitle,'.\
   'for [i=1:words(styles)] last = 999 table index sprintf("curve-%d", i)'.\
   '  using 1:(b = bin($1, i), b < last ? (last = b, $2) : NaN) with points ls style_of(i) notitle,'.\
   'for [i=1:words(styles)] table index sprintf("curve-%d", i) using (1e-9):2'.\
   '  with linespoints ls style_of(i) title columnheader(2),'.\
   'for [i in theory] table index "one-impact-".i using 1:2 with lines ls 9'.\
-  '  title (i eq word(theory, 1) ? "closed forms, ν → 0" : "")'.bounce_down
+  '  title (i eq word(theory, 1) ? "closed forms, ν → 0" : "")'.bounce_down.behind_failure

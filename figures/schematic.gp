@@ -5,7 +5,7 @@ unset key
 set lmargin at screen 0.02
 set rmargin at screen 0.98
 set bmargin at screen 0.02
-set tmargin at screen 0.88
+set tmargin at screen 0.90
 set size ratio -1
 
 line(x, y, to_x, to_y) = sprintf("set arrow from %g,%g to %g,%g nohead lc rgb black lw 1.6 front;", x, y, to_x, to_y)

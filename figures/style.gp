@@ -9,7 +9,7 @@ set output output
 # The colours of Okabe and Ito, told apart by all; every line also differs in dash and mark, so that a black
 # and white copy reads as well. Line type 1 is the base scene in every figure it appears in.
 black = "#000000"; blue = "#0072B2"; vermillion = "#D55E00"; green = "#009E73"; purple = "#CC79A7"
-orange = "#E69F00"; grey = "#6E6E6E"; pale = "#E4E4E4"
+orange = "#E69F00"; grey = "#6E6E6E"; pale = "#EAEAEA"; sky = "#A6D8F5"
 set style line 1 lc rgb black      lw 1.8 dt 1           pt 7 ps 0.5
 set style line 2 lc rgb blue       lw 1.8 dt (9,3)       pt 4 ps 0.6
 set style line 3 lc rgb vermillion lw 1.8 dt (9,3,2,3)   pt 8 ps 0.7
@@ -21,13 +21,14 @@ set style line 10 lc rgb grey      lw 0.8 dt 1
 set border 31 lw 1
 set tics in scale 0.8,0.4 font ",13"
 set key noopaque samplen 3.2 spacing 1.15 font ",13" width -1
-set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.5
+set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.4
+set tmargin at screen 0.875
 
 # Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.
 require(block, least) = sprintf( \
   "do for [c=1:2] { stats table index '%s' using c nooutput;".\
-  " if (STATS_records < %d || STATS_invalid > 0) { exit message 'block %s of '.table.' is short or not finite' status 1 } }", \
+  " if (STATS_records < %d || STATS_invalid > 0) { print 'block %s is short or not finite'; exit status 1 } }", \
   block, least, block)
 # Whether an optional block is there.
 has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0

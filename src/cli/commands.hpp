@@ -18,6 +18,7 @@ struct Command {
 Command figures_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command scenes_command(CLI::App& program);
+Command verify_command(CLI::App& program);
 Command series_command(CLI::App& program);
 
 }  // namespace impact_damper::cli

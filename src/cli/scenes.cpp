@@ -8,6 +8,7 @@
 #include "impact_damper/file_output.hpp"
 #include "impact_damper/number_text.hpp"
 #include "impact_damper/scene_file.hpp"
+#include "text_table.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -24,22 +25,6 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
   if (error) throw IoError(folder.string() + ": cannot be read: " + error.message());
   std::sort(files.begin(), files.end());
   return files;
-}
-
-std::string aligned(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += row[i];
-      if (i + 1 < row.size()) text.append(widths[i] - row[i].size() + 2, ' ');
-    }
-    text += '\n';
-  }
-  return text;
 }
 
 int list_scenes(const fs::path& folder) {

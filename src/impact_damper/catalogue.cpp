@@ -55,6 +55,7 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
       item.optional("half_cycles", half_cycles, within(10, 18));
       if (half_cycles % 2 != 0) item.refuse("half_cycles", "must be even, so that one peak is the middle one");
       curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
+      item.optional("ensemble", curve.ensemble, within(0, 1000));
     }
     curves.push_back(curve);
   }

@@ -10,6 +10,7 @@
 //                 "down_to": 0.1, "script": "fig08.gp", "claims": ["..."]}]}
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -43,7 +44,9 @@ struct CatalogueScene {
 
 struct FigureCurve {
   std::string scene;
-  LossFactorOptions loss_factor;  // its window of averaging, loss_factor tables only
+  // loss_factor tables only:
+  LossFactorOptions loss_factor;  // its window of averaging
+  std::int64_t ensemble = 0;      // minutely different releases whose spread is shown with it; 0 for none
 };
 
 struct Figure {

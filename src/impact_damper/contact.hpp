@@ -136,7 +136,8 @@ class Contact {
     if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
     const Real ringing = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
     const Real others = absolute(slow.w) + absolute(slow.v);
-    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others);
+    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others) +
+                       absolute(system_.forcing.amplitude) * ringing * system_.nu / (1 + system_.nu);
     const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
                        (absolute(slow.q) + absolute(fast.q));
     const Real forced = system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);

@@ -83,7 +83,9 @@ ImpactFailure impact_failure(const Run& run, const RegimeOptions& options) {
     return impacts < static_cast<std::int64_t>(span);
   };
 
-  for (std::size_t row = 1 + span / 2; row - span / 2 + span <= count && !failure.first_missed; ++row)
+  const std::vector<RegularWindow> windows = regular_windows(run, options);
+  const std::size_t regular = windows.empty() ? 0 : windows.back().last;
+  for (std::size_t row = std::max(regular, span / 2) + 1; row - span / 2 + span <= count && !failure.first_missed; ++row)
     if (rows.impacts[row] == 0 && some_missed(row - span / 2)) failure.first_missed = rows.amplitude[row];
 
   for (std::size_t row = count < span ? 0 : count - span + 1; row-- > 1 && some_missed(row);)

@@ -44,8 +44,9 @@ std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& op
 
 // Impact failure: the amplitude of a half cycle without an impact,
 struct ImpactFailure {
-  // the first that no neighbour makes up for: of the failure_half_cycles half cycles that it is the middle
-  // of, it leaves fewer impacts than half cycles;
+  // the first, behind the last regular window, that no neighbour makes up for: the failure_half_cycles half
+  // cycles that it is the middle of bring fewer impacts than half cycles. (In the chaotic ranges above a
+  // single impact may be missed too, but impacting recovers.)
   std::optional<double> first_missed;
   // the first from which on, to the end of the run, every failure_half_cycles successive half cycles bring
   // fewer impacts than half cycles: impacting has ceased to be regular for good.

@@ -1,6 +1,7 @@
 #include "impact_damper/series.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <variant>
@@ -43,15 +44,28 @@ std::string equation(const Scene& scene, Varied varied) {
   return "";
 }
 
-// In words, for the line under the title, and with all options, for the header.
-struct EngineWords {
-  std::string operator()(const Exact&) const { return "exact engine"; }
-  std::string operator()(const Restitution&) const { return "restitution model"; }
-  std::string operator()(const Cem& cem) const {
-    return "component element method" + (cem.time_step ? ", step " + number_text(*cem.time_step) : "");
-  }
-};
+// Three digits, for reading.
+std::string rounded(double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 3).ptr;
+  return {digits, end};
+}
 
+// The engine in words, for the line under the title; each run has a step of its own.
+std::string engine_words(const std::vector<const FigureRun*>& runs) {
+  if (std::holds_alternative<Exact>(runs[0]->run.engine)) return "exact engine";
+  if (std::holds_alternative<Restitution>(runs[0]->run.engine)) return "restitution model";
+  std::vector<double> steps;
+  for (const FigureRun* source : runs) {
+    const auto& step = std::get<Cem>(source->run.engine).time_step;
+    if (step) steps.push_back(*step);
+  }
+  if (steps.empty()) return "component element method";
+  const auto [least, most] = std::ranges::minmax(steps);
+  return "component element method, step " + rounded(least) + (least < most ? " to " + rounded(most) : "");
+}
+
+// The engine with all its options, for the header.
 struct EngineOptions {
   std::string operator()(const Exact& exact) const {
     return "exact calibration=" + std::string(name_of(exact.calibration));
@@ -75,7 +89,7 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   }
   // The exact engine is the house's own answer; a figure made with another one says so.
   if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
-    text += "; " + std::visit(EngineWords{}, runs[0]->run.engine);
+    text += "; " + engine_words(runs);
   }
   return text;
 }
@@ -112,6 +126,11 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) 
   if (!source.run.half_cycles) throw unusable(figure, source.file, "holds no half_cycles");
   const HalfCycles& rows = *source.run.half_cycles;
   if (rows.amplitude.empty()) throw unusable(figure, source.file, "holds not one half cycle");
+  for (const auto* column : {&rows.zero_crossing, &rows.peak_time, &rows.amplitude}) {
+    for (const double value : *column) {
+      if (!std::isfinite(value)) throw unusable(figure, source.file, "holds a half cycle that is not finite");
+    }
+  }
   const double least = *std::ranges::min_element(rows.amplitude);
   if (figure.down_to && !(least <= *figure.down_to)) {
     throw unusable(figure, source.file,

@@ -24,7 +24,8 @@ using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 //                number of samples the drawn line meets the wall), and "stuck" if the mass sticks
 //   decay        "curve-1" ... in the order of the figure's curves (time, amplitude)
 //   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1" ...;
-//                "spread" over Figure::range; closed forms, for the curves that have them, within the
+//                "band-1" ... (amplitude, least, greatest) for curves with an ensemble, which is simulated here
+//                with the run's own scene and engine; "spread" over Figure::range; closed forms, for the curves that have them, within the
 //                amplitudes of the run: "one-impact-1" ..., "bounce-down-1" ...
 //   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ... "bounce-4",
 //                "accumulation"

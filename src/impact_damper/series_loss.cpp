@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "impact_damper/ensemble.hpp"
 #include "impact_damper/loss_factor.hpp"
 #include "impact_damper/number_text.hpp"
 #include "impact_damper/regimes.hpp"
@@ -36,10 +37,10 @@ double theory_ordinate(LossOrdinate which, double amplitude, double specific, co
 constexpr int theory_points = 120;
 
 // Equally spaced in the logarithm, both ends included.
-double amplitude_at(int i, double from, double to) {
+double amplitude_at(int i, double from, double to, int last = theory_points) {
   if (i == 0) return from;
-  if (i == theory_points) return to;
-  return from * std::pow(to / from, static_cast<double>(i) / theory_points);
+  if (i == last) return to;
+  return from * std::pow(to / from, static_cast<double>(i) / last);
 }
 
 TableBlock theory_block(const std::string& name, const std::string& legend, LossOrdinate which) {
@@ -57,6 +58,56 @@ std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
   const double last = run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
   const auto behind = std::ranges::lower_bound(loss.time, last);
   return std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin()));
+}
+
+// The ordinate where the amplitude first falls below `amplitude`, between the two rows beside it; absent
+// outside the first `kept` rows.
+std::optional<double> value_at(double amplitude, const LossFactor& loss, const std::vector<double>& values,
+                               std::size_t kept) {
+  for (std::size_t i = 1; i < kept; ++i) {
+    if (!(loss.amplitude[i] < amplitude)) continue;
+    if (!(loss.amplitude[i - 1] >= amplitude)) return std::nullopt;
+    const double part = (loss.amplitude[i - 1] - amplitude) / (loss.amplitude[i - 1] - loss.amplitude[i]);
+    return values[i - 1] + part * (values[i] - values[i - 1]);
+  }
+  return std::nullopt;
+}
+
+// The extremes over an ensemble of the run's scene, where all members have a value.
+TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run, const std::string& number) {
+  struct Member {
+    LossFactor loss;
+    std::vector<double> values;
+    std::size_t kept;
+  };
+  std::vector<Member> members;
+  const EnsembleOptions options{.members = curve.ensemble};
+  for (const Run& each : simulate_ensemble(run.scene, run.engine, Record{}, options)) {
+    Member member{averaged_loss_factor(*each.half_cycles, curve.loss_factor), {}, 0};
+    member.values = ordinate(member.loss, each.scene, *figure.ordinate);
+    member.kept = before_failure(each, member.loss, curve.loss_factor.half_cycles);
+    members.push_back(std::move(member));
+  }
+  TableBlock block{.name = "band-" + number,
+                   .notes = {std::to_string(curve.ensemble) + " releases of scene " + curve.scene +
+                             ", x0 shifted by up to " + std::to_string(options.most_steps) + " times " +
+                             number_text(options.step) + " of it"},
+                   .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+                               {"least", "ordinate of the ensemble", {}},
+                               {std::to_string(curve.ensemble) + " releases", "greatest ordinate", {}}}};
+  for (int k = 0; k <= 2 * theory_points; ++k) {
+    const double amplitude = amplitude_at(k, *figure.down_to / 4, run.scene.x0, 2 * theory_points);
+    std::vector<double> values;
+    for (const Member& member : members) {
+      if (const auto value = value_at(amplitude, member.loss, member.values, member.kept)) values.push_back(*value);
+    }
+    if (values.size() < members.size()) continue;
+    const Spread spread = spread_of(values);
+    block.columns[0].values.push_back(amplitude);
+    block.columns[1].values.push_back(spread.low);
+    block.columns[2].values.push_back(spread.high);
+  }
+  return block;
 }
 
 }  // namespace
@@ -86,6 +137,7 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   };
   block("curve-" + number, "", 0, kept);
   if (kept < values.size()) block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
+  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, number));
 }
 
 void add_spread_block(const Figure& figure, Table& table) {

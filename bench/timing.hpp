@@ -1,0 +1,28 @@
+// Run times in process: repeated, with their spread, and beside a yardstick measured in between.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace impact_damper::bench {
+
+// Median and quartiles (elements of the sample, not interpolated).
+struct Spread {
+  double lower = 0, median = 0, upper = 0;
+};
+Spread spread_of(std::vector<double> sample);
+
+// CPU seconds of one call of the C library's sincos, in a chain in which each call waits for the one before.
+double yardstick();
+
+struct Timing {
+  Spread seconds;     // CPU time of one run
+  Spread yardsticks;  // each repeat by the mean of the yardsticks before and after it
+  Spread yardstick;   // seconds
+  int repeats = 0;
+  int runs = 0;  // in each repeat
+};
+// Each repeat lasts a fiftieth of a second at least; the first run of all is not counted.
+Timing measure(const std::function<void()>& run, int repeats);
+
+}  // namespace impact_damper::bench

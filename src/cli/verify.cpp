@@ -1,0 +1,205 @@
+// `verify`: the claims, one by one, held against the runs.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/catalogue.hpp"
+#include "impact_damper/claims.hpp"
+#include "impact_damper/errors.hpp"
+#include "impact_damper/file_output.hpp"
+#include "impact_damper/measures.hpp"
+#include "impact_damper/number_text.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+struct Verified {
+  const Claim* claim;
+  Spread ours;
+  Verdict verdict;
+  bool as_recorded() const { return verdict == claim->recorded; }
+};
+
+// Four significant digits, for people; the verdict file has all of them.
+std::string brief(double value) {
+  if (std::isnan(value)) return "none";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string admitted_text(const Claim& claim) {
+  const auto& [least, most] = claim.admitted;
+  std::string text;
+  if (least && most && *least == *most)
+    text = brief(*least);
+  else if (least && most)
+    text = brief(*least) + " to " + brief(*most);
+  else
+    text = least ? ">= " + brief(*least) : "<= " + brief(*most);
+  return claim.tolerance > 0 ? text + " +- " + brief(claim.tolerance) : text;
+}
+
+std::string ours_text(const Spread& ours) {
+  const std::string median = brief(ours.median);
+  if (std::isnan(ours.median) || ours.low == ours.high) return median;
+  return median + " (" + brief(ours.low) + " to " + brief(ours.high) + ")";
+}
+
+// Characters, not bytes: claims are written in UTF-8.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string table_text(const std::vector<Verified>& all) {
+  std::vector<std::vector<std::string>> rows{{"claim", "paper", "admitted", "ours (ensemble)", "verdict"}};
+  for (const Verified& each : all)
+    rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), ours_text(each.ours),
+                    std::string(name_of(each.verdict)) +
+                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.claim->recorded)))});
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += row[i];
+      if (i + 1 < row.size()) text.append(widths[i] - width(row[i]) + 2, ' ');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string summary_text(const std::vector<Verified>& all) {
+  std::size_t count[3] = {}, changed = 0;
+  for (const Verified& each : all) {
+    ++count[static_cast<std::size_t>(each.verdict)];
+    changed += !each.as_recorded();
+  }
+  return std::to_string(all.size()) + " claims: " + std::to_string(count[0]) + " reproduced, " +
+         std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected; " +
+         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + "\n";
+}
+
+std::string cell(std::string text) {  // of a Markdown table
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
+  return text;
+}
+
+std::string markdown_text(const std::vector<Verified>& all) {
+  std::string text = "| section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|\n";
+  for (const Verified& each : all) {
+    const Claim& claim = *each.claim;
+    text += "| " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
+            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) + " |\n";
+  }
+  text += "\n" + summary_text(all);
+  for (const Verified& each : all) {
+    if (each.claim->explanation.empty()) continue;
+    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " + each.claim->explanation +
+            " Evidence: " + each.claim->evidence + "\n";
+  }
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string verdicts_text(const std::vector<Verified>& all) {
+  const auto json_number = [](double value) {
+    return std::isfinite(value) ? number_text(value) : std::string("null");
+  };
+  std::string text = "{\"schema\": \"impact-damper/verdicts/1\",\n \"verdicts\": [";
+  const char* separator = "\n";
+  for (const Verified& each : all) {
+    text += separator;
+    text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
+            ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
+            ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
+            ", \"recorded\": " + quoted(std::string(name_of(each.claim->recorded))) + "}";
+    separator = ",\n";
+  }
+  return text + "\n ]}\n";
+}
+
+// The figures may rest on no claim that does not exist.
+void check_catalogue(const std::filesystem::path& file, const std::vector<Claim>& claims) {
+  std::set<std::string> ids;
+  for (const Claim& claim : claims) ids.insert(claim.id);
+  std::vector<std::string> problems;
+  for (const Figure& figure : read_catalogue(file).figures)
+    for (const std::string& id : figure.claims)
+      if (!ids.contains(id))
+        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " + id);
+  if (!problems.empty()) throw InputError(problems);
+}
+
+int verify(const std::filesystem::path& claims_file, const std::filesystem::path& runs_folder,
+           const std::optional<std::string>& catalogue, const EnsembleOptions& ensemble,
+           const std::optional<std::string>& verdicts_file, const std::optional<std::string>& markdown_file) {
+  const std::vector<Claim> claims = read_claims(claims_file);
+  if (catalogue) check_catalogue(*catalogue, claims);
+  Runs runs(runs_folder, ensemble);
+  std::vector<Verified> all;
+  const auto start = std::chrono::steady_clock::now();
+  auto told = start;
+  for (const Claim& claim : claims) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
+      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id << std::endl;
+      told = now;
+    }
+    const Spread ours = measure(runs, claim.measure);
+    all.push_back({&claim, ours, judge(claim, ours.median)});
+  }
+  write_standard_output(table_text(all) + "\n" + summary_text(all));
+  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
+  if (markdown_file) write_file(*markdown_file, markdown_text(all));
+  return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
+}
+
+}  // namespace
+
+Command verify_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("verify", "Hold the runs against everything the paper reports, claim by claim.");
+  app->add_option("--claims", "what the paper reports; default data/claims.json")->type_name("FILE");
+  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")->type_name("FOLDER");
+  app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
+  app->add_option("--members", "releases in each ensemble, the run file's own among them; default 16")
+      ->type_name("N");
+  app->add_option("-o,--output", "write the verdicts as JSON")->type_name("FILE");
+  app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
+  app->footer(
+      "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
+      "and extremes over an ensemble of minutely different releases), and the verdict: reproduced, not\n"
+      "reproduced, or corrected. Exit code 1 if a verdict differs from the recorded one, either way.\n\n"
+      "Examples:\n"
+      "  impact-damper verify\n"
+      "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
+  return {app, [app] {
+            Arguments arguments(*app);
+            EnsembleOptions ensemble;
+            ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+            arguments.finish();
+            return verify(arguments.text("--claims").value_or("data/claims.json"),
+                          arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
+                          ensemble, arguments.text("--output"), arguments.text("--markdown"));
+          }};
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,59 @@
+// What the paper reports, claim by claim, and the verdict on each. Kept in data/claims.json:
+//
+//   {"schema": "impact-damper/claims/1",
+//    "claims": [{"id": "product-mid-range", "section": "3, Effects of viscous damping",
+//                "statement": "...",            what is claimed, in our words
+//                "printed": "0.339",            as the paper prints it
+//                "value": 0.339,                or "range": [0.05, 0.1], either end null for none
+//                "tolerance": 0.008, "reason": "where the tolerance comes from",
+//                "measure": {"name": "product_mid_range", "scenes": ["nu2-e06"], "from": 0.1, "to": 6},
+//                "verdict": "reproduced"}]}
+//
+// A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
+// one the "corrected" interval [least, most] that takes the place of what is printed.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace impact_damper {
+
+struct Interval {  // both ends included; absent: none
+  std::optional<double> least, most;
+};
+
+enum class Verdict { reproduced, not_reproduced, corrected };
+std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "corrected"
+
+// How our value is found: a name out of measures.hpp, the scenes it looks at and its numbers.
+struct MeasureCall {
+  std::string name;
+  std::vector<std::string> scenes;
+  std::map<std::string, double> numbers;
+};
+
+struct Claim {
+  std::string id, section, statement, printed;
+  Interval admitted;       // [value, value] or the range, before the tolerance
+  double tolerance = 0;    // >= 0, in the units of the value
+  std::string reason;
+  MeasureCall measure;
+  std::optional<Interval> corrected;
+  Verdict recorded = Verdict::reproduced;
+  std::string explanation, evidence;
+};
+
+// Throws IoError if the file cannot be read, InputError naming everything that is not admitted: unknown
+// measures and measure parameters and duplicate ids among it.
+std::vector<Claim> read_claims(const std::filesystem::path& file);
+std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
+
+// The verdict that `ours` gives: reproduced if it lies in the admitted interval widened by the tolerance,
+// corrected if it does not but lies in the corrected one, else not reproduced. NaN never agrees.
+Verdict judge(const Claim& claim, double ours);
+
+}  // namespace impact_damper

@@ -1,0 +1,102 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/claims.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "impact_damper/errors.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// One claim as a file, with `from` replaced by `to`.
+std::string claims_text(const std::string& from = "", const std::string& to = "") {
+  std::string text = R"({"schema": "impact-damper/claims/1", "claims": [
+    {"id": "a", "section": "1", "statement": "s", "printed": "2 pi", "value": 6.28, "tolerance": 0.01,
+     "reason": "r", "measure": {"name": "step_limit"}, "corrected": [1.9, 2.1], "verdict": "corrected",
+     "explanation": "x", "evidence": "y"}]})";
+  if (const std::size_t at = text.find(from); !from.empty() && at != std::string::npos)
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string complaint(const std::string& from, const std::string& to) {
+  try {
+    parse_claims("f", claims_text(from, to));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Claim claim_of(Interval admitted, double tolerance, std::optional<Interval> corrected = std::nullopt) {
+  Claim claim;
+  claim.admitted = admitted;
+  claim.tolerance = tolerance;
+  claim.corrected = corrected;
+  return claim;
+}
+
+}  // namespace
+
+TEST_CASE("a claim is read as it is written") {
+  const std::vector<Claim> claims = parse_claims("f", claims_text());
+  REQUIRE(claims.size() == 1);
+  CHECK(claims[0].id == "a");
+  CHECK(claims[0].admitted.least == 6.28);
+  CHECK(claims[0].admitted.most == 6.28);
+  CHECK(claims[0].measure.name == "step_limit");
+  CHECK(claims[0].corrected->most == 2.1);
+  CHECK(claims[0].recorded == Verdict::corrected);
+}
+
+TEST_CASE("what is not admitted in a claim is named with its place") {
+  CHECK(complaint("\"reason\": \"r\", ", "").find("f: /claims/0/reason") != std::string::npos);
+  CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must not be empty") != std::string::npos);
+  CHECK(complaint("step_limit", "step_limits").find("/claims/0/measure/name") != std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"step_limit\", \"e\": 1").find("/claims/0/measure") != std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"zeta_error\"").find("/claims/0/measure/restitution") != std::string::npos);
+  CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") != std::string::npos);
+  CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]").find("either value or range") !=
+        std::string::npos);
+  CHECK(complaint("\"value\": 6.28", "\"range\": [2, 1]").find("least <= most") != std::string::npos);
+  CHECK(complaint("\"value\": 6.28", "\"range\": [null, null]").find("/claims/0/range") != std::string::npos);
+  CHECK(complaint("0.01", "-0.01").find("/claims/0/tolerance") != std::string::npos);
+  CHECK(complaint("\"verdict\": \"corrected\"", "\"verdict\": \"right\"").find("/claims/0/verdict") !=
+        std::string::npos);
+  CHECK(complaint("\"corrected\": [1.9, 2.1], ", "").find("if and only if") != std::string::npos);
+  CHECK(complaint("\"explanation\": \"x\"", "\"explanation\": \"\"").find("/claims/0/explanation") !=
+        std::string::npos);
+  CHECK(complaint("claims/1", "claims/2").find("/schema") != std::string::npos);
+}
+
+TEST_CASE("an id is given once") {
+  const std::string text = claims_text();
+  const std::size_t open = text.find('[') + 1, close = text.rfind(']');
+  const std::string one = text.substr(open, close - open);
+  CHECK_THROWS_AS(parse_claims("f", text.substr(0, close) + "," + one + text.substr(close)), InputError);
+}
+
+TEST_CASE("the verdict follows from the value alone") {
+  const Claim value = claim_of({2, 2}, 0.5);
+  CHECK(judge(value, 1.5) == Verdict::reproduced);
+  CHECK(judge(value, 2.5) == Verdict::reproduced);
+  CHECK(judge(value, 2.51) == Verdict::not_reproduced);
+  CHECK(judge(value, std::nan("")) == Verdict::not_reproduced);
+  const Claim bound = claim_of({6, std::nullopt}, 0);
+  CHECK(judge(bound, 1e300) == Verdict::reproduced);
+  CHECK(judge(bound, 5.99) == Verdict::not_reproduced);
+  const Claim slip = claim_of({1, 1}, 0.1, Interval{5, 6});
+  CHECK(judge(slip, 1.05) == Verdict::reproduced);
+  CHECK(judge(slip, 5.5) == Verdict::corrected);
+  CHECK(judge(slip, 6.05) == Verdict::not_reproduced);
+  CHECK(judge(slip, std::nan("")) == Verdict::not_reproduced);
+}
+
+TEST_CASE("the project's own claims are admitted, and there are at least forty") {
+  const std::vector<Claim> claims = read_claims(SOURCE_FOLDER "/data/claims.json");
+  CHECK(claims.size() >= 40);
+}

@@ -1,0 +1,105 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/measures.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "impact_damper/file_output.hpp"
+#include "impact_damper/measures_parts.hpp"
+#include "impact_damper/run_file.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/theory.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Runs no_runs("no such folder");
+
+double value(const std::string& name, std::map<std::string, double> numbers) {
+  return measure(no_runs, {name, {}, std::move(numbers)}).median;
+}
+
+Curve power(double factor, double exponent, int points = 200) {
+  Curve curve;
+  for (int i = 0; i < points; ++i) {
+    curve.x.push_back(6 * std::pow(0.01, double(i) / points));
+    curve.y.push_back(factor * std::pow(curve.x.back(), exponent));
+  }
+  return curve;
+}
+
+}  // namespace
+
+TEST_CASE("the slope of a power law is its exponent") {
+  CHECK(log_slope(power(3, -0.7)) == doctest::Approx(-0.7).epsilon(1e-12));
+}
+
+TEST_CASE("curves a factor apart have the spread of that factor, equal ones none") {
+  CHECK(spread_percent({power(1, -1), power(1, -1)}, 0.1, 6) == 0);
+  // Bins hold the same points of both: (1.2 - 1) / 1.1 in each.
+  CHECK(spread_percent({power(1, -1), power(1.2, -1)}, 0.1, 6) == doctest::Approx(100 * 0.2 / 1.1).epsilon(1e-12));
+  CHECK(spread_percent({power(1, 0), power(2, 0), power(4, 0)}, 0.1, 6) == doctest::Approx(100 * 3 / (7 / 3.0)));
+  CHECK(std::isnan(spread_percent({power(1, -1), power(1, -1)}, 10, 20)));
+}
+
+TEST_CASE("measures have names of their own, in order, each with its meaning") {
+  for (std::size_t i = 0; i < measures().size(); ++i) {
+    CHECK(!measures()[i].meaning.empty());
+    CHECK(measures()[i].least_scenes <= measures()[i].most_scenes);
+    if (i > 0) CHECK(measures()[i - 1].name < measures()[i].name);
+  }
+  CHECK_THROWS_AS(measure(no_runs, {"no_such_measure", {}, {}}), std::invalid_argument);
+}
+
+TEST_CASE("a wall delivers the closed form's restitution, to a moving primary mass too") {
+  for (double e : {0.3, 0.6, 0.9}) {
+    for (double nu : {1e-9, 0.02, 0.5}) {
+      // The primary mass's own spring takes part to the order of 1/k.
+      CHECK(value("wall_restitution", {{"mass_ratio", nu}, {"restitution", e}}) ==
+            doctest::Approx(delivered_restitution(e, nu)).epsilon(2 * nu * 1e-4 + 1e-8));
+    }
+  }
+}
+
+TEST_CASE("the limits and the slips are what theory says they are") {
+  using std::numbers::pi;
+  CHECK(value("step_limit", {}) == doctest::Approx(2).epsilon(1e-6));
+  CHECK(value("viscous_loss", {{"damping_ratio", 0.004}}) ==
+        doctest::Approx(1 + 89 / 30.0 * std::pow(pi * 0.004, 2)).epsilon(1e-6));
+  CHECK(value("viscous_loss_per_cycle", {{"damping_ratio", 0.001}}) ==
+        doctest::Approx(2 * std::sinh(pi * 0.001) / 0.001).epsilon(1e-5));
+  CHECK(value("energy_drift_percent", {{"x0", 6}, {"until_time", 0.5}}) < 1e-12);
+  // v = -6 sin(t), y' = -v: the paper's energy has nu (v^2 + v^2)/2 where there is none.
+  const double v = 6 * std::sin(0.5);
+  CHECK(value("paper_energy_drift_percent", {{"x0", 6}, {"until_time", 0.5}}) ==
+        doctest::Approx(100 * 0.02 * v * v / 18).epsilon(1e-9));
+  CHECK(value("impact_energy_without_wall_percent", {{"mass_ratio", 0.25}}) == doctest::Approx(80).epsilon(1e-3));
+  CHECK(std::abs(value("impact_energy_with_wall_percent", {{"mass_ratio", 0.25}})) < 1e-10);
+  CHECK(value("stuck_forcing", {{"mass_ratio", 0.25}}) == doctest::Approx(0.8).epsilon(1e-5));
+  CHECK(value("stuck_drift", {{"mass_ratio", 0.25}}) < 1e-12);
+}
+
+TEST_CASE("an ensemble is the run file and the same scene released otherwise") {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "impact-damper-measures-test";
+  std::filesystem::create_directories(folder);
+  Scene scene;
+  scene.until_amplitude = 5.5;
+  Record record;
+  record.contacts = true;
+  write_file(folder / "short.json", run_text(simulate(scene, Exact{}, record)));
+  Runs runs(folder, {.members = 3});
+  CHECK(runs.file("short").scene == scene);
+  const std::vector<Run>& members = runs.ensemble("short");
+  REQUIRE(members.size() == 3);
+  CHECK(!members[0].impacts);
+  CHECK(members[1].impacts);
+  CHECK(members[1].scene.x0 != 6);
+  // A measure that needs what the file does not hold says so instead of guessing.
+  CHECK_THROWS_AS(measure(runs, {"wall_overlap", {"short"}, {}}), std::invalid_argument);
+  CHECK(measure(runs, {"stuck_share", {"short"}, {{"from", 5.5}, {"to", 5.9}}}).low == 1);
+  std::filesystem::remove_all(folder);
+}

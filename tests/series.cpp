@@ -1,0 +1,383 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+// The catalogue, and the tables made from runs whose answer is known beforehand.
+#include "impact_damper/series.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "impact_damper/errors.hpp"
+#include "impact_damper/scene_file.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/theory.hpp"
+
+namespace impact_damper {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double pi = std::numbers::pi;
+
+// A decay that loses the fraction 2 pi zeta per cycle without any impact: A = 6 exp(-zeta t).
+Run exponential_decay(double zeta, int half_cycles) {
+  Run run;
+  run.scene.damping_ratio = zeta;
+  run.half_cycles = HalfCycles{};
+  for (int i = 0; i < half_cycles; ++i) {
+    run.half_cycles->peak_time.push_back(i * pi);
+    run.half_cycles->zero_crossing.push_back((i + 0.5) * pi);
+    run.half_cycles->amplitude.push_back(6 * std::exp(-zeta * i * pi));
+    run.half_cycles->impacts.push_back(1);
+  }
+  return run;
+}
+
+// x = A sin(t) from 0 to 4 pi, sampled finely, with y a triangle between the walls: an impact at every half pi.
+Run triangle_motion() {
+  Run run = exponential_decay(0.01, 5);
+  run.half_cycles->zero_crossing = {0, pi, 2 * pi, 3 * pi, 4 * pi};
+  run.history = History{};
+  for (int i = 0; i <= 400; ++i) {
+    const double t = 2 * pi * i / 400;
+    const double part = std::fmod(t / (pi / 2) + 0.5, 2.0);
+    run.history->time.push_back(t);
+    run.history->x.push_back(std::sin(t));
+    run.history->v.push_back(std::cos(t));
+    run.history->y.push_back(part < 1 ? part : 2 - part);
+    run.history->w.push_back(0);
+  }
+  run.impacts = Impacts{};
+  for (int i = 0; i < 4; ++i) {
+    run.impacts->time.push_back((i + 0.5) * pi / 2);
+    run.impacts->wall.push_back(i % 2 == 0 ? Wall::right : Wall::left);
+    run.impacts->relative_velocity.push_back(i % 2 == 0 ? 1 : -1);
+    run.impacts->phase_deg.push_back(45 + 90.0 * (i % 2));
+    run.impacts->amplitude.push_back(1);
+  }
+  run.contacts = Contacts{{1.0}, {2.0}, {Wall::right}};
+  return run;
+}
+
+const TableBlock& block(const Table& table, const std::string& name) {
+  const auto found = std::ranges::find(table.blocks, name, &TableBlock::name);
+  REQUIRE(found != table.blocks.end());
+  return *found;
+}
+
+bool has_block(const Table& table, const std::string& name) {
+  return std::ranges::count(table.blocks, name, &TableBlock::name) > 0;
+}
+
+Figure loss_figure(LossOrdinate ordinate) {
+  Figure figure;
+  figure.number = "8";
+  figure.table = TableKind::loss_factor;
+  figure.curves = {{"decay", {}}};
+  figure.ordinate = ordinate;
+  return figure;
+}
+
+std::string refusal(const Figure& figure, const FigureRuns& runs) {
+  try {
+    figure_table(figure, runs);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+std::string catalogue_refusal(const std::string& text) {
+  const fs::path file = fs::temp_directory_path() / "impact-damper-test-catalogue.json";
+  std::ofstream(file) << text;
+  try {
+    read_catalogue(file);
+  } catch (const InputError& error) {
+    fs::remove(file);
+    return error.what();
+  }
+  fs::remove(file);
+  return "not refused";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+const std::string small_catalogue = R"({"schema": "impact-damper/catalogue/1",
+  "scenes": [{"scene": "a", "record": ["half_cycles"]}],
+  "figures": [{"figure": "8", "title": "t", "table": "loss_factor", "ordinate": "eta", "down_to": 0.1,
+               "curves": [{"scene": "a", "half_cycles": 12}], "script": "fig08.gp"}]})";
+
+const fs::path source = IMPACT_DAMPER_SOURCE;
+
+}  // namespace
+
+TEST_CASE("the project's catalogue has Figures 1 to 15, A and B, from eight distinct scenes") {
+  const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
+  REQUIRE(catalogue.figures.size() == 17);
+  for (int n = 1; n <= 15; ++n) CHECK(find_figure(catalogue, std::to_string(n)) != nullptr);
+  CHECK(find_figure(catalogue, "A") != nullptr);
+  CHECK(find_figure(catalogue, "B") != nullptr);
+  for (const Figure& figure : catalogue.figures) CHECK(fs::exists(source / "figures" / figure.script));
+
+  REQUIRE(catalogue.scenes.size() == 8);
+  std::set<std::string> distinct;
+  for (const CatalogueScene& scene : catalogue.scenes) {
+    distinct.insert(scene_text(read_scene(source / "data/scenes" / (scene.name + ".json"))));
+  }
+  CHECK(distinct.size() == 8);
+}
+
+TEST_CASE("a figure's files are named after its number") {
+  Figure figure;
+  figure.number = "8";
+  CHECK(file_stem(figure) == "fig08");
+  figure.number = "15";
+  CHECK(file_stem(figure) == "fig15");
+  figure.number = "A";
+  CHECK(file_stem(figure) == "figA");
+}
+
+TEST_CASE("a catalogue that does not hold together is refused at the place that is wrong") {
+  CHECK(catalogue_refusal(small_catalogue) == "not refused");
+  const auto refused = [](const std::string& from, const std::string& to, const std::string& at) {
+    const std::string message = catalogue_refusal(replaced(small_catalogue, from, to));
+    CAPTURE(message);
+    CHECK(message.find(at) != std::string::npos);
+  };
+  refused("catalogue/1", "catalogue/2", "/schema");
+  refused(R"([{"scene": "a", "half)", R"([{"scene": "b", "half)", "/figures/0/curves");
+  refused(R"(["half_cycles"])", R"(["impacts"])", "/figures/0/curves");
+  refused(R"(["half_cycles"])", R"(["half_cycles", "history"])", "/scenes/0/history_below");
+  refused(R"(["half_cycles"])", R"(["half_cycle"])", "/scenes/0/record");
+  refused("12}", "13}", "/figures/0/curves/0/half_cycles");
+  refused("12}", "20}", "/figures/0/curves/0/half_cycles");
+  refused(R"("eta")", R"("theta")", "/figures/0/ordinate");
+  refused(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
+  refused(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
+  refused(R"("title")", R"("titel")", "titel");
+  refused(R"("scenes": [)", R"("scenes": [{"scene": "idle", "record": ["half_cycles"]}, )", "idle");
+}
+
+TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for the impacts") {
+  const double zeta = 0.004;
+  const FigureRuns runs{{"decay", {"decay.json", exponential_decay(zeta, 40)}}};
+  // The parabola's own bias, (89/30) (zeta pi)^2 relative (loss_factor.hpp), and ten times rounding.
+  const double bias = 89.0 / 30 * zeta * pi * zeta * pi;
+  const Table total = figure_table(loss_figure(LossOrdinate::eta), runs);
+  const TableBlock& curve = block(total, "curve-1");
+  REQUIRE(curve.columns[0].values.size() == 30);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const double exact_amplitude = 6 * std::exp(-zeta * static_cast<double>(i + 5) * pi);
+    CHECK(curve.columns[0].values[i] == doctest::Approx(exact_amplitude).epsilon(2 * bias));
+    CHECK(curve.columns[1].values[i] == doctest::Approx(2 * zeta).epsilon(1.1 * bias));
+  }
+  const Table impacts_only = figure_table(loss_figure(LossOrdinate::specific_secondary), runs);
+  for (const double value : block(impacts_only, "curve-1").columns[1].values) {
+    CHECK(std::abs(value) <= 2 * zeta / 0.02 * 1.1 * bias);
+  }
+  CHECK_FALSE(has_block(total, "one-impact-1"));  // the closed forms are for zeta = 0
+}
+
+TEST_CASE("the closed forms in the tables meet their own landmarks") {
+  Run run = exponential_decay(1e-3, 40);
+  run.scene.damping_ratio = 0;
+  const FigureRuns runs{{"decay", {"decay.json", run}}};
+  const Table table = figure_table(loss_figure(LossOrdinate::specific), runs);
+  const std::vector<double>& loss = block(table, "one-impact-1").columns[1].values;
+  // 120 points over the branch miss its maximum by less than a thousandth.
+  CHECK(*std::ranges::max_element(loss) == doctest::Approx(16 / pi).epsilon(1e-3));  // (4/pi)(1+e)/(1-e)
+  const TableBlock& bounced = block(table, "bounce-down-1");
+  CHECK(bounced.columns[0].values.front() == bounce_down_end(0.6));
+  CHECK(bounced.columns[0].values.back() == 6);
+}
+
+TEST_CASE("the spread is half way between the least and the greatest ordinate of its range") {
+  Run run = exponential_decay(1e-3, 400);
+  run.scene.damping_ratio = 0;
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  figure.range = {2, 4};
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  // A eta / nu = A 2e-3 / 0.02, a straight line through the origin: the points next to 2 and 4 decide.
+  const TableBlock& spread = block(table, "spread");
+  CHECK(spread.columns[1].values[0] == doctest::Approx(0.2).epsilon(2e-3));
+  CHECK(spread.columns[2].values[0] == doctest::Approx(0.4).epsilon(2e-3));
+  CHECK(spread.columns[3].values[0] == doctest::Approx(0.3).epsilon(2e-3));
+  CHECK(spread.columns[3].heading == "0.3 ± 33 %");
+}
+
+TEST_CASE("points that average no peak before impact failure stand apart") {
+  Run run = exponential_decay(1e-3, 60);
+  run.scene.damping_ratio = 0;
+  for (std::size_t i = 40; i < 60; ++i) run.half_cycles->impacts[i] = 0;
+  const Table table = figure_table(loss_figure(LossOrdinate::eta), {{"decay", {"decay.json", run}}});
+  // Peaks 5 to 54 have a point; those from 45 on average only peaks from 40 on.
+  CHECK(block(table, "curve-1").columns[0].values.size() == 40);
+  CHECK(block(table, "failed-1").columns[0].values.size() == 10);
+}
+
+TEST_CASE("a motion begins where its amplitude was first undercut and touches the wall at every impact") {
+  Figure figure;
+  figure.number = "4";
+  figure.table = TableKind::motion;
+  figure.curves = {{"triangle", {}}};
+  figure.window = 7;
+  const FigureRuns runs{{"triangle", {"triangle.json", triangle_motion()}}};
+  const Table table = figure_table(figure, runs);
+  const TableBlock& motion = block(table, "motion");
+  const std::vector<double>& time = motion.columns[0].values;
+  CHECK(time.front() == 0);
+  CHECK(time.back() == doctest::Approx(2 * pi));
+  CHECK(std::ranges::is_sorted(time));
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double x = motion.columns[1].values[i], y = motion.columns[4].values[i];
+    CHECK(motion.columns[2].values[i] == x + 1);
+    CHECK(motion.columns[3].values[i] == x + y);
+    CHECK(x == doctest::Approx(std::sin(time[i])).epsilon(1e-3).scale(1));
+  }
+  const TableBlock& impacts = block(table, "impacts");
+  REQUIRE(impacts.columns[0].values.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto vertex = std::ranges::find(time, impacts.columns[0].values[i]);
+    REQUIRE(vertex != time.end());
+    CHECK(motion.columns[4].values[static_cast<std::size_t>(vertex - time.begin())] ==
+          doctest::Approx(impacts.columns[1].values[i]));
+  }
+  CHECK(block(table, "stuck").columns[1].values[0] == 2.0);
+}
+
+TEST_CASE("the stuck region has one row per half cycle and a gap where the mass did not stick") {
+  // Half cycles of length 1 after row 0; stuck in rows 1, 2 and 4, in row 2 until a little past its end.
+  Run run;
+  run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
+  run.half_cycles = HalfCycles{};
+  run.impacts = Impacts{};
+  for (int i = 0; i < 14; ++i) {
+    run.half_cycles->zero_crossing.push_back(i);
+    run.half_cycles->peak_time.push_back(i - 0.5);
+    run.half_cycles->amplitude.push_back(6 - 0.1 * i);
+    run.half_cycles->impacts.push_back(3);
+    run.impacts->time.push_back(i - 0.75);
+    run.impacts->wall.push_back(Wall::left);
+    run.impacts->relative_velocity.push_back(-1);
+    run.impacts->phase_deg.push_back(i == 0 ? std::nullopt : std::optional(45.0));
+    run.impacts->amplitude.push_back(6 - 0.1 * i);
+  }
+  run.contacts = Contacts{{0.5, 1.75, 3.25}, {1.0, 2.125, 3.5}, {Wall::left, Wall::right, Wall::left}};
+  Figure figure;
+  figure.number = "15";
+  figure.table = TableKind::phase;
+  figure.curves = {{"sticky", {}}};
+  const Table table = figure_table(figure, {{"sticky", {"sticky.json", run}}});
+
+  const TableBlock& stuck = block(table, "stuck");
+  CHECK(stuck.columns[0].values == std::vector{5.9, 5.8, 6 - 0.1 * 4});
+  CHECK(stuck.columns[1].values == std::vector{90.0, 135.0, 45.0});
+  CHECK(stuck.columns[2].values == std::vector{180.0, 180.0, 90.0});
+  CHECK(stuck.gaps == std::vector<std::size_t>{2});
+  CHECK(block(table, "impacts").columns[0].values.size() == 13);  // that of row 0 has no phase
+  CHECK(block(table, "windows").columns[0].values == std::vector{3.0});
+}
+
+TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
+  Run run = simulate({.x0 = 1.5, .until_time = 1200, .until_amplitude = 0.05}, Exact{}, {});
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  figure.down_to = 0.2;
+  figure.curves[0].ensemble = 4;
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const TableBlock &curve = block(table, "curve-1"), &band = block(table, "band-1");
+  REQUIRE(band.columns[0].values.size() > 100);
+  double widest = 0;
+  for (std::size_t i = 0; i < band.columns[0].values.size(); ++i) {
+    const double amplitude = band.columns[0].values[i];
+    const double low = band.columns[1].values[i], high = band.columns[2].values[i];
+    CHECK(low <= high);
+    widest = std::max(widest, high - low);
+    // Two neighbouring points of the curve enclose the band's lower edge, or one of them lies in the band.
+    std::size_t k = 1;
+    while (k + 1 < curve.columns[0].values.size() && curve.columns[0].values[k] >= amplitude) ++k;
+    const double before = curve.columns[1].values[k - 1], behind = curve.columns[1].values[k];
+    CHECK(std::min(before, behind) <= high);
+    CHECK(std::max(before, behind) >= low);
+  }
+  CHECK(widest > 1e-4);  // the decay passes through a chaotic range: the members differ
+}
+
+TEST_CASE("a run that lacks what a figure draws is refused with the figure's and the file's name") {
+  const auto expect = [](const Figure& figure, const Run& run, const std::string& why) {
+    const std::string name = figure.curves[0].scene;
+    const std::string message = refusal(figure, {{name, {"runs/" + name + ".json", run}}});
+    CAPTURE(message);
+    CHECK(message.starts_with("figure " + figure.number + ": runs/" + name + ".json: "));
+    CHECK(message.find(why) != std::string::npos);
+  };
+  Figure loss = loss_figure(LossOrdinate::eta);
+  Run run = exponential_decay(0.01, 11);
+  expect(loss, run, "11 half cycles, the averaging needs at least 12");
+  run = exponential_decay(0.01, 40);
+  loss.down_to = 0.5;
+  expect(loss, run, "must reach an amplitude of 0.5");
+  run.half_cycles->amplitude[20] = std::numeric_limits<double>::quiet_NaN();
+  expect(loss, run, "not finite");
+  run.half_cycles.reset();
+  expect(loss, run, "holds no half_cycles");
+
+  Figure motion;
+  motion.number = "4";
+  motion.table = TableKind::motion;
+  motion.curves = {{"triangle", {}}};
+  motion.window = 0.001;
+  expect(motion, triangle_motion(), "no half cycle has an amplitude below 0.001");
+  motion.window = 5.9;  // undercut in the second half cycle, which ends at pi
+  run = triangle_motion();
+  std::ranges::for_each(run.history->time, [](double& t) { t += 50; });
+  expect(motion, run, "has no window beginning at");
+  motion.window = 7;
+  run = triangle_motion();
+  run.history->y[30] = std::numeric_limits<double>::infinity();
+  expect(motion, run, "must be finite");
+  run = triangle_motion();
+  run.impacts.reset();
+  expect(motion, run, "holds no impacts");
+  run.history.reset();
+  expect(motion, run, "holds no history");
+}
+
+TEST_CASE("curves of one figure must differ in what it varies and in nothing else") {
+  Figure figure = loss_figure(LossOrdinate::eta);
+  figure.curves = {{"one", {}}, {"two", {}}};
+  figure.varied = Varied::mass_ratio;
+  FigureRuns runs{{"one", {"one.json", exponential_decay(0.01, 40)}},
+                  {"two", {"two.json", exponential_decay(0.01, 40)}}};
+  runs["two"].run.scene.mass_ratio = 0.04;
+  const Table table = figure_table(figure, runs);
+  CHECK(block(table, "curve-1").columns[1].heading == "ν = 2 %");
+  CHECK(block(table, "curve-2").columns[1].heading == "ν = 4 %");
+  CHECK(table.header[1] == "Parameters: e = 0.6, ζ = 1 %");
+  runs["two"].run.scene.restitution = 0.5;
+  CHECK(refusal(figure, runs).find("same restitution") != std::string::npos);
+  runs["two"].run.scene.restitution = 0.6;
+  runs["two"].run.engine = Restitution{};
+  CHECK(refusal(figure, runs).find("another engine") != std::string::npos);
+}
+
+TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts lines at gaps") {
+  const Table table{.header = {"title"},
+                    .blocks = {{.name = "curve-1",
+                                .columns = {{"a", "first", {1, 2}}, {"b c", "second", {0.1, 0.25}}},
+                                .gaps = {1}}}};
+  CHECK(to_text(table) ==
+        "# title\n\n\n# curve-1\n# column 1: first\n# column 2: second\n\"a\" \"b c\"\n1 0.1\n\n2 0.25\n");
+  CHECK_THROWS_AS(check({.blocks = {{.name = "empty"}}}), std::domain_error);
+  CHECK_THROWS_AS(check({.blocks = {{.name = "uneven", .columns = {{"a", "", {1}}, {"b", "", {}}}}}}),
+                  std::domain_error);
+}
+
+}  // namespace impact_damper
