@@ -47,10 +47,12 @@ Works<Real> works_of(const System<Real>& system, const Motion& motion, const Rea
   Works<Real> works;
   if (system.zeta == 0 && !system.forcing && wall_damping == 0) return works;
   Real from{0};
+  int panels = 0;
   while (from < duration) {
-    // Ringing that takes more panels than this is so fast that it averages out.
+    // Ringing that has not died away in so many panels is so fast and so lasting that it averages out. Not before:
+    // what a wall's damper takes out of a long contact it takes out at its beginning.
     const Real panel = motion.panel(from), least = duration / 65536;
-    Real to = from + (panel > least ? panel : least);
+    Real to = from + (++panels <= 65536 || panel > least ? panel : least);
     if (!(to < duration)) to = duration;
     const Real half = (to - from) / 2, middle = from + half;
     for (const auto& [abscissa, weight] : gauss_16) {

