@@ -171,8 +171,12 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
                 << std::endl;
       told = now;
     }
-    const Spread ours = measure(runs, claim.measure);
-    all.push_back({&claim, ours, judge(claim, ours.median)});
+    try {
+      const Spread ours = measure(runs, claim.measure);
+      all.push_back({&claim, ours, judge(claim, ours.median)});
+    } catch (const std::invalid_argument& problem) {
+      throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
+    }
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);

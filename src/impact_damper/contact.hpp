@@ -120,12 +120,8 @@ class Contact {
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-    const Real time = begin_ + t;
-    return look({system_.slow, slow.x, slow.v, on_f(system_.slow, system_.drive_slow.x, system_.drive_slow.v),
-                 system_.drive_slow.x, system_.forcing, time},
-                {system_.fast, fast.x, fast.v, on_f(system_.fast, system_.drive_fast.x, system_.drive_fast.v),
-                 system_.drive_fast.x, system_.forcing, time},
-                order, sign, span);
+    return look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
+                instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
   }
 
   // Panels as long as the fast motion allows while its ringing can still be felt in the energy, then as the
@@ -134,15 +130,16 @@ class Contact {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
     Real rate = system_.slow.rate();
     if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
-    const Real ringing = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
-    const Real others = absolute(slow.w) + absolute(slow.v);
-    const Real power = (system_.nu * system_.damping + 2 * system_.zeta) * ringing * (ringing + 2 * others) +
-                       absolute(system_.forcing.amplitude) * ringing * system_.nu / (1 + system_.nu);
+    const Real ringing_w = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
+    const Real ringing_v = instant_of_x(fast, system_.fast, system_.drive_fast, t).transient(1);
+    const Real power = system_.nu * system_.damping * ringing_w * (ringing_w + 2 * absolute(slow.w)) +
+                       2 * system_.zeta * ringing_v * (ringing_v + 2 * absolute(slow.v)) +
+                       absolute(system_.forcing.amplitude) * ringing_v;
     const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
-                       (absolute(slow.q) + absolute(fast.q));
+                       (absolute(slow.q) + absolute(fast.q) + absolute(fast.x));
     const Real forced = system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);
     const Real energy = slow.x * slow.x + slow.v * slow.v + forced * forced;
-    const bool quiet = ringing <= noise || power <= Real(1e-18) * rate * energy;
+    const bool quiet = (ringing_w <= noise && ringing_v <= noise) || power <= Real(1e-18) * rate * energy;
     if (!quiet && system_.fast.rate() > rate) rate = system_.fast.rate();
     return Real(6) / rate;
   }
@@ -152,7 +149,8 @@ class Contact {
  private:
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
                           const ContactState<Real>& drive, const Real& t) const {
-    if (t == 0) return from;
+    // Under forcing x' and q' of a part differ from its v and w by drive.x f and drive.q f, from the start on.
+    if (t == 0 && !system_.forcing) return from;
     const Propagator<Real> p = oscillator.propagate(t);
     const Real s1 = -oscillator.b() * p.s;
     ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
@@ -182,6 +180,10 @@ class Contact {
   Part instant_of_q(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
                     const ContactState<Real>& drive, const Real& t) const {
     return {oscillator, now.q, now.w, on_f(oscillator, drive.q, drive.w), drive.q, system_.forcing, begin_ + t};
+  }
+  Part instant_of_x(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
+                    const ContactState<Real>& drive, const Real& t) const {
+    return {oscillator, now.x, now.v, on_f(oscillator, drive.x, drive.v), drive.x, system_.forcing, begin_ + t};
   }
   static Outlook<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign, const Real& span) {
     const Real slow_third = slow.bound(n + 3, span), fast_third = fast.bound(n + 3, span);

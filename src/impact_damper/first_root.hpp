@@ -126,9 +126,10 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
       // if it has one, that is met at no less than half the slope here.
       near.reset();
       const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
-      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1 &&
-          jet.third * proven * proven * proven < -jet.g1 * least) {
-        near = Root<Real>{time + 2 * jet.g / (square_root(slope_2) - jet.g1), i};
+      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1) {
+        const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
+        const bool nothing_between = root <= proven + proven / 1024;
+        if (nothing_between && jet.third * root * root * root < -jet.g1 * least) near = Root<Real>{time + root, i};
       }
     }
     if (step >= rest_of_horizon) return std::nullopt;

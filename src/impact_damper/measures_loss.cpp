@@ -177,8 +177,10 @@ Spread product_ratio(Runs& runs, const MeasureCall& call) {
 
 Spread tail_loss_ratio(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const Curve tail = loss_curve(run, LossOrdinate::eta, 0, number(call, "below"));
-    return spread_of(tail.y).median / highest(loss_curve(run, LossOrdinate::eta)).second;
+    const Curve all = loss_curve(run, LossOrdinate::eta);
+    const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(number(call, "last")));
+    const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
+    return spread_of(tail).median / highest(all).second;
   });
 }
 
@@ -273,7 +275,7 @@ std::vector<Measure> loss_measures() {
        {"from", "to"},
        product_ratio,
        "mean A eta_s / nu of the first scene by the second's"},
-      {"tail_loss_ratio", 1, 1, {"below"}, tail_loss_ratio, "median eta below an amplitude, by the largest"},
+      {"tail_loss_ratio", 1, 1, {"last"}, tail_loss_ratio, "median of the last so many values of eta, by the largest"},
       {"smoothing_ratio",
        1,
        1,
