@@ -96,10 +96,10 @@ std::string cell(std::string text) {  // of a Markdown table
 }
 
 std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
-  std::string text = "| section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|\n";
+  std::string text = "| id | section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
-    text += "| " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
+    text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
             ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) +
             " |\n";
   }

@@ -157,14 +157,13 @@ Spread stuck_share(Runs& runs, const MeasureCall& call) {
 Spread alternation(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     const auto& impacts = half_cycles_of(run).impacts;
-    double longest = 0, length = 0;
+    double pairs = 0, alternating = 0;
     for (const std::size_t row : rows_between(run, number(call, "from"), number(call, "to"))) {
-      const std::int64_t count = impacts[row];
-      const bool goes_on = length > 0 && impacts[row - 1] + count == 3 && (count == 1 || count == 2);
-      length = goes_on ? length + 1 : (count == 1 || count == 2);
-      longest = std::max(longest, length);
+      if (row == 0) continue;
+      ++pairs;
+      alternating += std::min(impacts[row - 1], impacts[row]) == 1 && impacts[row - 1] + impacts[row] == 3;
     }
-    return longest;
+    return alternating / pairs;
   });
 }
 
@@ -305,7 +304,7 @@ std::vector<Measure> regime_measures() {
        1,
        {"from", "to"},
        alternation,
-       "longest series of half cycles with one and two impacts in turn, amplitude in [from, to]"},
+       "share of the half cycles that, with the one before, have one and two impacts in turn, amplitude in [from, to]"},
       {"phase_difference",
        1,
        1,
