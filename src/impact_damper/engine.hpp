@@ -50,8 +50,8 @@ struct Restitution {
 
 struct Cem {
   static constexpr std::string_view name = "cem";
-  // h, > 0; absent: a hundredth of the shortest of the nominal contact time pi sqrt(nu/k), half a period of
-  // the primary mass, pi, and with forcing half a period of that, pi/omega_f.
+  // h, > 0; absent: a hundredth of the shortest of the nominal contact time, half a period of the primary
+  // mass, pi, and with forcing half a period of that, pi/omega_f.
   std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;    // locate touch and release inside the step
