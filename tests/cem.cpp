@@ -518,6 +518,50 @@ TEST_CASE("a run ends at its time, its amplitude or its budget, and says which")
   CHECK(run.end_time == 40);
 }
 
+TEST_CASE("a run ends when its steps are used up, wherever the last of them leads") {
+  const double h = 1e-3;
+  const auto after = [&](std::int64_t steps, bool locate, const Scene& scene) {
+    return simulated(scene, {.time_step = h, .locate = locate, .max_steps = steps}, everything());
+  };
+  // Without located events the steps are counted from the start; the books close as at a time given.
+  for (const double force_amplitude : {0.0, 1.0}) {
+    const Scene scene{.force_amplitude = force_amplitude, .until_time = 1e6};
+    for (const std::int64_t steps : {1, 2, 1024, 1025, 5000}) {
+      CAPTURE(steps);
+      const Run run = after(steps, false, scene);
+      CHECK(run.stop_reason == StopReason::step_budget);
+      CHECK(run.end_time == doctest::Approx(double(steps) * h).epsilon(1e-13));
+      Scene timed = scene;
+      timed.until_time = run.end_time;
+      const Run same = simulated(timed, {.time_step = h}, everything());
+      CHECK(run.impacts->time == same.impacts->time);
+      CHECK(run.energy->final.total() == doctest::Approx(same.energy->final.total()).epsilon(1e-12));
+      CHECK(std::abs(run.energy->residual - same.energy->residual) < 1e-12);
+    }
+  }
+  // A located event shortens a step, so one step more leads farther by h at most, through contacts as well.
+  const Scene scene{.until_time = 1e6};
+  double last = 0;
+  for (std::int64_t steps = 1; steps < 3000; ++steps) {
+    const Run run = after(steps, true, scene);
+    CHECK(run.stop_reason == StopReason::step_budget);
+    CHECK(run.end_time > last);
+    CHECK(run.end_time <= last + h * (1 + 1e-12));
+    last = run.end_time;
+  }
+  CHECK(last > 2);
+  CHECK(after(3000, true, scene).impacts->time.size() == 3);
+
+  // What ends a run in its last step goes before.
+  CHECK(after(100, false, {.until_time = 99.5 * h}).stop_reason == StopReason::time);
+  CHECK_THROWS_WITH_AS(after(0, false, scene), "max_steps: must be >= 1, got 0", std::invalid_argument);
+}
+
+TEST_CASE("a scene at rest, whose amplitude never comes to an end, stops when its steps are used up") {
+  const Run run = simulated({.x0 = 0, .y0 = 0.5, .until_amplitude = 0.1}, {.max_steps = 100'000}, {});
+  CHECK(run.stop_reason == StopReason::step_budget);
+}
+
 TEST_CASE("extended precision gives the same run to the last digits but a few") {
   for (bool locate : {false, true}) {
     Scene scene{.until_time = 30};

@@ -71,6 +71,7 @@ void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
       {"--damper", {Cem::name}},
       {"--locate", {Cem::name}},
       {"--unstable", {Cem::name}},
+      {"--max-steps", {Cem::name}},
       {"--calibration", {Exact::name, Cem::name}},
       {"--accumulation-tolerance", {Restitution::name}},
   };
@@ -108,6 +109,7 @@ Engine engine_of(Arguments& arguments) {
   engine.locate = arguments.given("--locate");
   engine.unstable = arguments.given("--unstable");
   engine.calibration = calibration;
+  if (const auto most = arguments.whole_number("--max-steps", at_least(1))) engine.max_steps = *most;
   engine.budget = budget;
   return engine;
 }
@@ -239,7 +241,8 @@ void add_engine_options(CLI::App& app) {
       "restitution to a primary mass held still; two-body to a free one");
   add("--time-step", "H",
       "cem: the fixed step, a number > 0 below the stability limit;\n"
-      "default a hundredth of an impact's duration");
+      "default a hundredth of an impact's duration, or of half the\n"
+      "primary mass's or the forcing's period where that is shorter");
   add("--damper", "WHICH",
       "cem: the velocity the wall's damper sees, centred (default)\n"
       "or lagged (one step behind)");
@@ -253,6 +256,7 @@ void add_engine_options(CLI::App& app) {
   add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 10000000");
   add("--max-time", "T",
       "stop at this time if there is no --until-time;\na number > 0 and <= 1e12, default 1e7");
+  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 1000000000");
 }
 
 void add_output_options(CLI::App& app) {
@@ -292,8 +296,8 @@ Command run_command(CLI::App& program) {
       "  impact-damper run --until-amplitude 0.1 -o run.json\n"
       "  impact-damper run --scene data/scenes/my.json --engine cem --time-step 1e-4 -o cem.json\n"
       "  impact-damper run --until-time 50 --record impacts,energy --history 0:50:2001\n\n"
-      "A run that uses up --max-impacts, --max-half-cycles or --max-time ends there and says so\n"
-      "in its stop_reason. Exit codes: 0 done, 2 the command line is not admitted, 3 the scene\n"
+      "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there and\n"
+      "says so in its stop_reason. Exit codes: 0 done, 2 the command line is not admitted, 3 the scene\n"
       "file's content is not admitted, 4 numerical failure, 5 the scene file cannot be read or\n"
       "the run cannot be written.");
   return {app, [app] { return run(*app); }};

@@ -32,6 +32,7 @@ Cem resolved(const Scene& scene, Cem options) {
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
+  if (options.max_steps < 1) return {{"max_steps", "must be >= 1, got " + std::to_string(options.max_steps)}};
   const double h = options.time_step.value();
   if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0 and finite, got " + number_text(h)}};
   const double limit = stability_limit(scene, options.damper, options.calibration);

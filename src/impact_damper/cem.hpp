@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,8 +35,8 @@ namespace impact_damper {
 // period of the primary mass or of the forcing where that is shorter.
 Cem resolved(const Scene& scene, Cem options);
 
-// What is wrong with the (resolved) options: a step that is no positive number, or one beyond the
-// stability limit without `unstable`. Empty if nothing.
+// What is wrong with the (resolved) options: no steps admitted, a step that is no positive number, or one
+// beyond the stability limit without `unstable`. Empty if nothing.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 // Throws them as std::invalid_argument.
 void require_no_problems(const Scene& scene, const Cem& options);
@@ -80,7 +79,7 @@ class CemEngine {
 
   void begin_segment(const Real& time, const State<Real>& state);
   std::int64_t steps_until(const Real& time) const;
-  void take_steps(std::int64_t most);
+  void take_steps(std::int64_t most);  // at least one
   template <Regime regime, bool forced, bool ledger>
   void take_steps(std::int64_t most);
   void look_at_last_step();
@@ -140,6 +139,7 @@ class CemEngine {
   Moment before_{}, now_{};   // the last step went from the one to the other
   Real origin_ = 0;           // time of step 0
   std::int64_t step_ = 0;     // number of now_
+  std::int64_t steps_left_;   // until max_steps are done
   std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;

@@ -24,7 +24,8 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       forced_(bool(force_)),
       ledger_(observer.wants_energy()),
       peaks_(observer.wants_half_cycles() || scene.until_amplitude),
-      initial_{scene.x0, scene.v0, scene.y0, scene.w0} {
+      initial_{scene.x0, scene.v0, scene.y0, scene.w0},
+      steps_left_(options.max_steps) {
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
   // the first derivative of y that is not zero tells.
   const State<Real>& s = initial_;
@@ -47,7 +48,7 @@ Outcome CemEngine<Real, Observer>::run() {
   }
   while (!end_) {
     const Real sample = observer_.next_sample();
-    take_steps(steps_until(sample < end_time_ ? sample : end_time_));
+    take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), steps_left_));
     look_at_last_step();
   }
   return *end_;
@@ -147,6 +148,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   before_ = before;
   now_ = now;
   step_ += n;
+  steps_left_ -= n;
   if constexpr (ledger) {
     viscous_work_ += flight_.zeta * sum_vv / (2 * h_);
     if constexpr (regime == Regime::contact) wall_work_ += contact_.nu * contact_.c * sum_ww / (4 * h_);
@@ -189,6 +191,7 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   if (zero && !zero_first && !end_) cross_zero(*zero);
   if (end_ || restart) return;
   if (last) return finish(end_reason_, span);
+  if (steps_left_ == 0) return finish(StopReason::step_budget, span);
   give_samples(begin + span);
 }
 
@@ -218,6 +221,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
   const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
   if (!wall_ && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
+  if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
 
   if (locate_) {
     // The velocities by the trapezoid of the accelerations, one order better than the arc's slope.

@@ -1,6 +1,5 @@
 #include "impact_damper/claims.hpp"
 
-#include <algorithm>
 #include <set>
 
 #include "impact_damper/engine.hpp"

@@ -143,7 +143,6 @@ class Contact {
     if (!quiet && system_.fast.rate() > rate) rate = system_.fast.rate();
     return Real(6) / rate;
   }
-  static constexpr bool in_contact = true;
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:

@@ -56,7 +56,7 @@ Works<Real> works_of(const System<Real>& system, const Motion& motion, const Rea
     if (!(to < duration)) to = duration;
     const Real half = (to - from) / 2, middle = from + half;
     for (const auto& [abscissa, weight] : gauss_16) {
-      for (const Real side : {Real(-abscissa), Real(abscissa)}) {
+      for (const double side : {-abscissa, abscissa}) {
         const Real t = middle + half * side;
         const State<Real> s = motion.at(t);
         const Real dt = half * weight;

@@ -50,11 +50,14 @@ struct Restitution {
 
 struct Cem {
   static constexpr std::string_view name = "cem";
-  std::optional<double> time_step;  // h, > 0; absent: a hundredth of the nominal contact time
+  // h, > 0; absent: a hundredth of the shortest of the nominal contact time, half a period of the primary
+  // mass, pi, and with forcing half a period of that, pi/omega_f.
+  std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;    // locate touch and release inside the step
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
+  std::int64_t max_steps = 1'000'000'000;  // > 0; a budget like the others, for steps too small for the scene
   Budget budget;
 
   bool operator==(const Cem&) const = default;

@@ -126,7 +126,6 @@ class Flight {
     return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
   }
   Real panel(const Real&) const { return swing_.panel(); }
-  static constexpr bool in_contact = false;
   Real resolution() const { return 1; }
 
  private:
@@ -157,7 +156,6 @@ class Stuck {
     return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
   }
   Real panel(const Real&) const { return swing_.panel(); }
-  static constexpr bool in_contact = false;
   Real resolution() const { return 1; }
 
  private:

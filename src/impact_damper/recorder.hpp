@@ -16,7 +16,6 @@ class Recorder {
   explicit Recorder(const Record& record);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
-  bool wants_impacts() const { return wants_.impacts; }
   bool wants_contacts() const { return wants_.contacts; }
   bool wants_energy() const { return wants_.energy; }
 

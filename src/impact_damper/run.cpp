@@ -9,6 +9,7 @@ std::string_view name_of(StopReason reason) {
     case StopReason::impact_budget: return "impact_budget";
     case StopReason::half_cycle_budget: return "half_cycle_budget";
     case StopReason::time_budget: return "time_budget";
+    case StopReason::step_budget: return "step_budget";
   }
   return {};
 }

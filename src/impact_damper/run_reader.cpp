@@ -69,6 +69,7 @@ Cem read_options(ObjectReader& object, Cem engine) {
   object.required("locate", engine.locate);
   object.required("unstable", engine.unstable);
   engine.calibration = read_calibration(object);
+  object.required("max_steps", engine.max_steps, at_least(1));
   return engine;
 }
 
@@ -191,7 +192,7 @@ Run read_whole(JsonDocument document) {
   run.engine = read_engine(object.required_object("engine"));
   object.required("stop_reason", run.stop_reason,
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
-                   StopReason::half_cycle_budget, StopReason::time_budget});
+                   StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
   object.required("end_time", run.end_time, at_least(0));
   if (const auto section = object.optional_object("half_cycles"))
     run.half_cycles = read_half_cycles(*section);

@@ -125,6 +125,7 @@ void write_options(Writer& out, const Cem& engine) {
   out.field("locate", engine.locate);
   out.field("unstable", engine.unstable);
   out.field("calibration", name_of(engine.calibration));
+  out.field("max_steps", engine.max_steps);
 }
 
 void write(Writer& out, const Engine& engine) {

@@ -1,23 +1,12 @@
 #include "impact_damper/scene.hpp"
 
-#include <limits>
-#include <sstream>
+#include "impact_damper/number_text.hpp"
+#include "impact_damper/wording.hpp"
 
 namespace impact_damper {
 namespace {
 
 constexpr double largest = 1e12;  // keeps every square and product of a scene's numbers finite
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  std::ostringstream brief;
-  brief.imbue(std::locale::classic());
-  brief << value;
-  return std::stod(brief.str()) == value ? brief.str() : text.str();
-}
 
 }  // namespace
 
@@ -36,21 +25,16 @@ const std::array<SceneField, 10> scene_fields{{
 
 std::vector<Problem> problems_of(const Scene& scene) {
   std::vector<Problem> problems;
-  for (const SceneField& field : scene_fields) {
-    const double value = scene.*field.member;
-    const bool above = field.least_is_admitted ? value >= field.least : value > field.least;
-    if (above && value <= field.most) continue;
-    problems.push_back({std::string(field.name),
-                        "must be " + std::string(field.least_is_admitted ? ">= " : "> ") + number(field.least) +
-                            " and <= " + number(field.most) + ", got " + number(value)});
-  }
-  const auto positive = [&](const std::optional<double>& value, const char* name) {
-    if (value && !(*value > 0 && *value <= largest)) {
-      problems.push_back({name, "must be > 0 and <= " + number(largest) + ", got " + number(*value)});
-    }
+  const auto check = [&](std::string_view name, double value, const NumberRange& range) {
+    if (range.admits(value)) return;
+    problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
-  positive(scene.until_time, "until_time");
-  positive(scene.until_amplitude, "until_amplitude");
+  for (const SceneField& field : scene_fields) {
+    check(field.name, scene.*field.member, {field.least, field.most, field.least_is_admitted});
+  }
+  const NumberRange stops{0, largest, false};
+  if (scene.until_time) check("until_time", *scene.until_time, stops);
+  if (scene.until_amplitude) check("until_amplitude", *scene.until_amplitude, stops);
   if (!scene.until_time && !scene.until_amplitude) {
     problems.push_back({"until_time", "until_time, until_amplitude or both must be given"});
   }

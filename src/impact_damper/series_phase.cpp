@@ -1,6 +1,4 @@
 // Figure 15: where in the half cycle the impacts fall, the stuck regime, and the closed forms for both.
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "impact_damper/regimes.hpp"

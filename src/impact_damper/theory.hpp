@@ -39,10 +39,6 @@ double peak_loss(double restitution);
 // g = pi (1 + e)/(2 V), c = A cos(theta): determinant e^2, trace 2 e - (1 + e) c g.
 double equal_spacing_amplitude(double restitution);
 
-// A = 1/2: below it a mass at rest in the middle of its travel is met by neither wall (2 A < 1), so an idle
-// state coexists with the impacting one.
-inline constexpr double idle_amplitude = 0.5;
-
 // --- Bounce-down that ends stuck, nu -> 0 -----------------------------------------------------------------
 // Released at x = 0 by a wall of speed A, the mass flies straight while x = A sin(t): the far wall is met
 // where A (t* - sin t*) = 1, at relative speed w = A (1 - cos t*).

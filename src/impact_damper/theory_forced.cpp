@@ -1,6 +1,5 @@
 // The forced solution of theory.hpp with two symmetric impacts per cycle, and its stability.
 #include <Eigen/Eigenvalues>
-#include <array>
 #include <cmath>
 #include <numbers>
 

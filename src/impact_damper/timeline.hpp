@@ -4,7 +4,6 @@
 // Looking never changes the motion: a motion is restarted at its own events only.
 #pragma once
 
-#include <limits>
 #include <optional>
 
 #include "impact_damper/energy.hpp"

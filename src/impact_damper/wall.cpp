@@ -42,7 +42,6 @@ IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
     (error > 0 ? low : high) = middle;
     found.zeta_m = middle;
     found.velocity_error = std::abs(error);
-    ++found.corrections;
   }
   return found;
 }

@@ -26,7 +26,6 @@ Real zeta_m_closed_form(const Real& restitution) {
 struct IterativeZeta {
   double zeta_m = 0;
   double velocity_error = 0;  // |rebound velocity - e| at the end, <= tolerance
-  int corrections = 0;        // of zeta_m
   int steps = 0;              // taken through the last simulated impact, >= 100
 };
 IterativeZeta zeta_m_iterative(double restitution, double tolerance = 1e-8);
