@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "counted.hpp"
-#include "impact_damper/file_output.hpp"
-#include "impact_damper/number_text.hpp"
-#include "impact_damper/provenance.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/wall.hpp"
 #include "reference.hpp"
 #include "timing.hpp"
 

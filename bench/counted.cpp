@@ -1,8 +1,8 @@
 #include "counted.hpp"
 
-#include "impact_damper/exact.hpp"
-#include "impact_damper/recorder.hpp"
-#include "impact_damper/restitution.hpp"
+#include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/engines/restitution.hpp"
 
 namespace impact_damper::bench {
 namespace {

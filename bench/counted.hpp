@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "impact_damper/elementary.hpp"
 #include "impact_damper/engine.hpp"
-#include "impact_damper/first_root.hpp"
+#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/motion/first_root.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper::bench {

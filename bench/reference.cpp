@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact_damper/elementary.hpp"
-#include "impact_damper/exact.hpp"
-#include "impact_damper/recorder.hpp"
-#include "impact_damper/restitution.hpp"
+#include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/motion/elementary.hpp"
 
 #ifdef HAVE_FLOAT128
 // Boost 1.74's own expm1 of this type does not compile.

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/cem.hpp"
+#include "impact_damper/engines/cem.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,8 @@
 #include <numbers>
 #include <string>
 
-#include "impact_damper/errors.hpp"
-#include "impact_damper/recorder.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/files/errors.hpp"
 
 using namespace impact_damper;
 

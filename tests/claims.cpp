@@ -1,12 +1,12 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/claims.hpp"
+#include "impact_damper/paper/claims.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <string>
 
-#include "impact_damper/errors.hpp"
+#include "impact_damper/files/errors.hpp"
 
 using namespace impact_damper;
 

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/contact.hpp"
+#include "impact_damper/motion/contact.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "impact_damper/wall.hpp"
+#include "impact_damper/motion/wall.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/ensemble.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/exact.hpp"
+#include "impact_damper/engines/exact.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "impact_damper/recorder.hpp"
+#include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/file_output.hpp"
+#include "impact_damper/files/file_output.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -9,8 +9,8 @@
 #include <csignal>
 #include <string>
 
-#include "impact_damper/errors.hpp"
-#include "impact_damper/json_reader.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/json_reader.hpp"
 
 using namespace impact_damper;
 namespace fs = std::filesystem;

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/first_root.hpp"
+#include "impact_damper/motion/first_root.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "impact_damper/motion.hpp"
+#include "impact_damper/motion/motion.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

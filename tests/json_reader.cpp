@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/json_reader.hpp"
+#include "impact_damper/files/json_reader.hpp"
 
 #include <doctest/doctest.h>
 

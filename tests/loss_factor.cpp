@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/loss_factor.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/measures.hpp"
+#include "impact_damper/paper/measures.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <numbers>
 
-#include "impact_damper/file_output.hpp"
-#include "impact_damper/measures_parts.hpp"
-#include "impact_damper/run_file.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/paper/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/theory.hpp"
 
 using namespace impact_damper;
 

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/number_text.hpp"
+#include "impact_damper/files/number_text.hpp"
 
 #include <doctest/doctest.h>
 

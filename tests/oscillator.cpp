@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/oscillator.hpp"
+#include "impact_damper/motion/oscillator.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/regimes.hpp"
+#include "impact_damper/analysis/regimes.hpp"
 
 #include <doctest/doctest.h>
 
-#include "impact_damper/wall.hpp"
+#include "impact_damper/motion/wall.hpp"
 
 using namespace impact_damper;
 

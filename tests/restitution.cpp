@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/restitution.hpp"
+#include "impact_damper/engines/restitution.hpp"
 
 #include <doctest/doctest.h>
 

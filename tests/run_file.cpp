@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/run_file.hpp"
+#include "impact_damper/files/run_file.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "impact_damper/errors.hpp"
-#include "impact_damper/scene_file.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/scene_file.hpp"
 
 using namespace impact_damper;
 

@@ -93,8 +93,7 @@ constexpr double closed = 1e-10;  // 1e4 impacts at most, each a few dozen round
 
 // Known not to close to 1e-10: walls overdamped many times over (nu > 90, e < 0.3), whose x loses digits
 // where it is taken apart.
-constexpr std::array<std::uint64_t, 11> known_open{93,  192, 282, 615,  627, 691,
-                                                   812, 851, 964, 1583, 1851};
+constexpr std::array<std::uint64_t, 11> known_open{93, 192, 282, 615, 627, 691, 812, 851, 964, 1583, 1851};
 // Correct, but slow: long contacts with a ringing that each work's quadrature follows.
 constexpr std::array<std::uint64_t, 4> slow{574, 996, 1051, 1961};
 

@@ -1,6 +1,6 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 // The catalogue, and the tables made from runs whose answer is known beforehand.
-#include "impact_damper/series.hpp"
+#include "impact_damper/paper/series.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,10 +12,10 @@
 #include <numbers>
 #include <set>
 
-#include "impact_damper/errors.hpp"
-#include "impact_damper/scene_file.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/theory.hpp"
 
 namespace impact_damper {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "impact_damper/loss_factor.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/theory.hpp"
 
 using namespace impact_damper;
 
@@ -50,9 +50,11 @@ Phases single_phases(const Run& run) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a slow decay through single impacts follows their closed forms", Model, Exact, Restitution) {
+TEST_CASE_TEMPLATE("a slow decay through single impacts follows their closed forms", Model, Exact,
+                   Restitution) {
   const Run run = decay(Model{}, nu);
-  // The delivered restitution of the compliant wall differs from e by nu (wall.hpp): both models have one e here.
+  // The delivered restitution of the compliant wall differs from e by nu (wall.hpp): both models have one e
+  // here.
   const LossFactor loss = averaged_loss_factor(*run.half_cycles);
   int compared = 0;
   double largest = 0;
@@ -76,8 +78,8 @@ TEST_CASE_TEMPLATE("a slow decay through single impacts follows their closed for
   CHECK(compared > 1000);
 }
 
-TEST_CASE_TEMPLATE("single impacts are unequally spaced above the stated amplitude and equally below", Model, Exact,
-                   Restitution) {
+TEST_CASE_TEMPLATE("single impacts are unequally spaced above the stated amplitude and equally below", Model,
+                   Exact, Restitution) {
   const Phases phases = single_phases(decay(Model{}, nu));
   const double stated = equal_spacing_amplitude(e);
   int above = 0, below = 0;
@@ -104,7 +106,8 @@ TEST_CASE_TEMPLATE("impact failure is the fold of the single impacts", Model, Ex
     const Run run = decay(Model{}, ratio);
     std::size_t i = 1;  // the first impact that was waited for much longer than half a period
     const auto& time = run.impacts->time;
-    while (i < time.size() && !(run.impacts->amplitude[i].value_or(0) < 0.2 && time[i] - time[i - 1] > 4)) ++i;
+    while (i < time.size() && !(run.impacts->amplitude[i].value_or(0) < 0.2 && time[i] - time[i - 1] > 4))
+      ++i;
     REQUIRE(i < time.size());
     const double late = 1 - *run.impacts->amplitude[i - 1] / fold_amplitude(e);
     CHECK(late > -1e-3);

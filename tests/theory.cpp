@@ -1,6 +1,6 @@
 // Each closed form against a small computation that does not use it: maps iterated, integrals stepped.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/theory.hpp"
+#include "impact_damper/analysis/theory.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "impact_damper/wall.hpp"
+#include "impact_damper/motion/wall.hpp"
 
 using namespace impact_damper;
 constexpr double pi = std::numbers::pi;

@@ -1,5 +1,5 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "impact_damper/wall.hpp"
+#include "impact_damper/motion/wall.hpp"
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,8 @@ TEST_CASE("the closed form gives back the restitution it came from") {
   CHECK(zeta_m_closed_form(0.0) == 1);
 }
 
-TEST_CASE("the paper's iterative subroutine finds the closed form's zeta_m to its 1e-8 in at least 100 steps") {
+TEST_CASE(
+    "the paper's iterative subroutine finds the closed form's zeta_m to its 1e-8 in at least 100 steps") {
   for (double e : {1.0, 0.99, 0.8, 0.6, 0.4, 0.1, 0.01}) {
     const IterativeZeta found = zeta_m_iterative(e);
     CHECK(found.steps >= 100);

@@ -1,6 +1,6 @@
 #include "arguments.hpp"
 
-#include "impact_damper/number_text.hpp"
+#include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper::cli {
 

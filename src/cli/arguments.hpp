@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "impact_damper/json_reader.hpp"
+#include "impact_damper/files/json_reader.hpp"
 
 namespace impact_damper::cli {
 

@@ -1,8 +1,8 @@
 // `figures`: what the catalogue draws, as an aligned table.
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/catalogue.hpp"
-#include "impact_damper/file_output.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/paper/catalogue.hpp"
 #include "text_table.hpp"
 
 namespace impact_damper::cli {

@@ -11,8 +11,8 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/errors.hpp"
-#include "impact_damper/provenance.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/provenance.hpp"
 
 namespace {
 
@@ -64,11 +64,8 @@ int main(int argc, char** argv) {
       "not admitted, 4 numerical failure, 5 a file cannot be read or written.");
 
   const std::array commands{
-      cli::run_command(program),
-      cli::scenes_command(program),
-      cli::verify_command(program),
-      cli::series_command(program),
-      cli::figures_command(program),
+      cli::run_command(program),    cli::scenes_command(program),  cli::verify_command(program),
+      cli::series_command(program), cli::figures_command(program),
   };
 
   const auto head = [&] {

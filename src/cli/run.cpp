@@ -4,10 +4,10 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/file_output.hpp"
-#include "impact_damper/number_text.hpp"
-#include "impact_damper/run_file.hpp"
-#include "impact_damper/scene_file.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper::cli {

@@ -1,14 +1,14 @@
 // `series`: the run files of a folder into the tables that the figures draw.
-#include "impact_damper/series.hpp"
+#include "impact_damper/paper/series.hpp"
 
 #include <filesystem>
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/catalogue.hpp"
-#include "impact_damper/errors.hpp"
-#include "impact_damper/file_output.hpp"
-#include "impact_damper/run_file.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/paper/catalogue.hpp"
 
 namespace impact_damper::cli {
 namespace {

@@ -9,12 +9,12 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/catalogue.hpp"
-#include "impact_damper/claims.hpp"
-#include "impact_damper/errors.hpp"
-#include "impact_damper/file_output.hpp"
-#include "impact_damper/measures.hpp"
-#include "impact_damper/number_text.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/paper/catalogue.hpp"
+#include "impact_damper/paper/claims.hpp"
+#include "impact_damper/paper/measures.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -96,12 +96,13 @@ std::string cell(std::string text) {  // of a Markdown table
 }
 
 std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
-  std::string text = "| id | section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|---|\n";
+  std::string text =
+      "| id | section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
-    text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " + cell(claim.printed) + " | " +
-            ours_text(each.ours) + " | " + admitted_text(claim) + " | " + std::string(name_of(each.verdict)) +
-            " |\n";
+    text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
+            cell(claim.printed) + " | " + ours_text(each.ours) + " | " + admitted_text(claim) + " | " +
+            std::string(name_of(each.verdict)) + " |\n";
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {

@@ -8,16 +8,20 @@ std::string_view name_of(const Engine& engine) {
 
 std::string_view name_of(Calibration calibration) {
   switch (calibration) {
-    case Calibration::fixed_wall: return "fixed-wall";
-    case Calibration::two_body: return "two-body";
+    case Calibration::fixed_wall:
+      return "fixed-wall";
+    case Calibration::two_body:
+      return "two-body";
   }
   return {};
 }
 
 std::string_view name_of(Damper damper) {
   switch (damper) {
-    case Damper::centred: return "centred";
-    case Damper::lagged: return "lagged";
+    case Damper::centred:
+      return "centred";
+    case Damper::lagged:
+      return "lagged";
   }
   return {};
 }

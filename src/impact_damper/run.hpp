@@ -26,10 +26,10 @@ std::string_view name_of(StopReason reason);  // the enumerator's own name
 // Row 0 runs from the release to the first zero crossing of x, each further row from one crossing to
 // the next; an unfinished one at the end is no row.
 struct HalfCycles {
-  std::vector<double> zero_crossing;   // time of the crossing that ends the row
-  std::vector<double> peak_time;       // when the amplitude is reached
-  std::vector<double> amplitude;       // largest |x| in the row, by epsilon
-  std::vector<std::int64_t> impacts;   // impacts in the row; a contact that lasts is one
+  std::vector<double> zero_crossing;  // time of the crossing that ends the row
+  std::vector<double> peak_time;      // when the amplitude is reached
+  std::vector<double> amplitude;      // largest |x| in the row, by epsilon
+  std::vector<std::int64_t> impacts;  // impacts in the row; a contact that lasts is one
 };
 
 struct Impacts {

@@ -1,7 +1,7 @@
 #include "impact_damper/scene.hpp"
 
-#include "impact_damper/number_text.hpp"
-#include "impact_damper/wording.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/wording.hpp"
 
 namespace impact_damper {
 namespace {
@@ -13,7 +13,8 @@ constexpr double largest = 1e12;  // keeps every square and product of a scene's
 const std::array<SceneField, 10> scene_fields{{
     {"mass_ratio", &Scene::mass_ratio, 0.0, false, 1e6, "secondary to primary mass, nu"},
     {"restitution", &Scene::restitution, 0.0, true, 1.0, "coefficient of restitution, e"},
-    {"damping_ratio", &Scene::damping_ratio, 0.0, true, 1e6, "viscous damping ratio of the primary mass, zeta"},
+    {"damping_ratio", &Scene::damping_ratio, 0.0, true, 1e6,
+     "viscous damping ratio of the primary mass, zeta"},
     {"wall_stiffness", &Scene::wall_stiffness, 0.0, false, 1e15, "wall to primary spring stiffness, k"},
     {"x0", &Scene::x0, -largest, true, largest, "initial displacement of the primary mass"},
     {"v0", &Scene::v0, -largest, true, largest, "initial velocity of the primary mass"},

@@ -35,9 +35,9 @@ struct Scene {
 struct SceneField {
   std::string_view name;
   double Scene::*member;
-  double least;             // smallest admitted value
-  bool least_is_admitted;   // false: strictly above
-  double most;              // largest admitted value, admitted
+  double least;            // smallest admitted value
+  bool least_is_admitted;  // false: strictly above
+  double most;             // largest admitted value, admitted
   std::string_view meaning;
 };
 extern const std::array<SceneField, 10> scene_fields;

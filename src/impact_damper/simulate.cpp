@@ -3,15 +3,17 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/cem.hpp"
-#include "impact_damper/exact.hpp"
-#include "impact_damper/recorder.hpp"
-#include "impact_damper/restitution.hpp"
+#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/engines/restitution.hpp"
 
 namespace impact_damper {
 namespace {
 
-Outcome run(const Scene& scene, Exact& options, Recorder& recorder) { return run_exact<double>(scene, options, recorder); }
+Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
+  return run_exact<double>(scene, options, recorder);
+}
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
   return run_restitution<double>(scene, options, recorder);
@@ -31,7 +33,8 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   std::string all;
   for (const Problem& problem : problems_of(scene)) collect(all, problem.field, problem.message);
 
-  const Budget& budget = std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
+  const Budget& budget =
+      std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
   if (budget.max_impacts < 0) collect(all, "max_impacts", "must be >= 0");
   if (budget.max_half_cycles < 1) collect(all, "max_half_cycles", "must be >= 1");
   if (!(budget.max_time > 0 && budget.max_time <= 1e12)) collect(all, "max_time", "must be > 0 and <= 1e12");
@@ -50,8 +53,9 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   double last = 0;
   for (const HistoryWindow& window : record.history) {
     if (!(window.begin >= last && window.end > window.begin && window.end <= 1e12 && window.count >= 2)) {
-      collect(all, "history", "each window must begin at or after the end of the one before, end after it begins, "
-                              "and have at least 2 samples");
+      collect(all, "history",
+              "each window must begin at or after the end of the one before, end after it begins, "
+              "and have at least 2 samples");
       break;
     }
     last = window.end;
@@ -59,7 +63,8 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   double above = std::numeric_limits<double>::infinity();
   for (const AmplitudeWindow& window : record.history_below) {
     if (!(window.amplitude > 0 && window.amplitude < above && window.length > 0 && window.count >= 2)) {
-      collect(all, "history_below", "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2");
+      collect(all, "history_below",
+              "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2");
       break;
     }
     above = window.amplitude;
@@ -77,7 +82,8 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   result.scene = scene;
   result.engine = engine;
   Recorder recorder(record);
-  const Outcome outcome = std::visit([&](auto& options) { return run(scene, options, recorder); }, result.engine);
+  const Outcome outcome =
+      std::visit([&](auto& options) { return run(scene, options, recorder); }, result.engine);
   result.stop_reason = outcome.stop_reason;
   result.end_time = outcome.end_time;
   recorder.finish(result);

@@ -45,14 +45,14 @@ endfunction()
 run(${CMAKE_COMMAND} -S . -B build -G Ninja -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1)
 verdicts(0 "no fault")
 
-plant("loss factor per cycle" loss_factor.cpp
+plant("loss factor per cycle" analysis/loss_factor.cpp
       "loss.eta.push_back(-2 *"
       "loss.eta.push_back(-2 * 2 * std::numbers::pi *")
-plant("restitution off by 0.05" wall.hpp
+plant("restitution off by 0.05" motion/wall.hpp
       "-logarithm(restitution)"
       "-logarithm(Real(restitution - Real(0.05)))")
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes.
-plant("contact force clipped at zero" contact.hpp
+plant("contact force clipped at zero" motion/contact.hpp
       "    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                  instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};"
       "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),

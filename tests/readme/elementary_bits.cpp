@@ -12,9 +12,9 @@ int main() {
     seed = seed * 6364136223846793005 + 1442695040888963407;
     const double x = static_cast<double>(seed >> 11) * 0x1p-43;  // [0, 1024): phases as they occur
     const double small = x * 0x1p-10;
-    for (const double result : {std::sin(x), std::cos(x), std::tan(small), std::exp(-small), std::expm1(-small),
-                                std::log(x + small), std::atan2(small, x), std::acos(small), std::hypot(x, small),
-                                std::pow(small, x)})
+    for (const double result : {std::sin(x), std::cos(x), std::tan(small), std::exp(-small),
+                                std::expm1(-small), std::log(x + small), std::atan2(small, x),
+                                std::acos(small), std::hypot(x, small), std::pow(small, x)})
       for (std::uint64_t bits = std::bit_cast<std::uint64_t>(result), byte = 0; byte < 8; ++byte, bits >>= 8)
         hash = (hash ^ (bits & 0xff)) * 0x100000001b3;
   }

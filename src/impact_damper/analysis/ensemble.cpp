@@ -1,0 +1,56 @@
+#include "impact_damper/analysis/ensemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+// Steele, Lea and Flood's splitmix64: the standard library's distributions differ between libraries.
+std::uint64_t draw(std::uint64_t& state) {
+  state += 0x9e3779b97f4a7c15u;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+}  // namespace
+
+std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options) {
+  if (options.members < 1) throw std::invalid_argument("members: must be >= 1");
+  if (options.most_steps < 1) throw std::invalid_argument("most_steps: must be >= 1");
+  std::vector<Scene> scenes{scene};
+  std::uint64_t state = options.seed;
+  while (static_cast<std::int64_t>(scenes.size()) < options.members) {
+    const std::uint64_t drawn = draw(state);
+    const double steps =
+        1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
+    const double factor = 1 + options.step * (drawn & 1 ? steps : -steps);
+    Scene shifted = scene;
+    (scene.x0 != 0 ? shifted.x0 : shifted.v0) *= factor;
+    scenes.push_back(shifted);
+  }
+  return scenes;
+}
+
+std::vector<Run> simulate_ensemble(const Scene& scene, const Engine& engine, const Record& record,
+                                   const EnsembleOptions& options) {
+  std::vector<Run> runs;
+  for (const Scene& member : ensemble_of(scene, options)) runs.push_back(simulate(member, engine, record));
+  return runs;
+}
+
+Spread spread_of(std::vector<double> values) {
+  if (values.empty()) throw std::invalid_argument("spread: of no values");
+  for (const double value : values)
+    if (std::isnan(value)) return {value, value, value};
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,129 @@
+#include "impact_damper/analysis/theory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "impact_damper/motion/wall.hpp"
+
+namespace impact_damper {
+namespace {
+constexpr double pi = std::numbers::pi;
+double square(double x) { return x * x; }
+}  // namespace
+
+double asymmetry(double restitution) { return (1 - restitution) / (1 + restitution); }
+
+std::optional<SingleImpact> single_impact(double restitution, double amplitude) {
+  const double b = asymmetry(restitution), a = amplitude;
+  const double denominator = square(pi) + 4 * square(b);
+  const double discriminant = square(pi) - denominator * (1 - 4 * square(a));
+  if (!(discriminant >= 0)) return std::nullopt;
+  SingleImpact motion;
+  motion.speed = (pi + std::sqrt(discriminant)) / denominator;
+  motion.theta = std::atan2(b * motion.speed, (pi * motion.speed - 1) / 2);
+  motion.phase_deg = 90 + motion.theta * 180 / pi;
+  motion.loss = 4 * b * square(motion.speed / a) / pi;
+  return motion;
+}
+
+double fold_amplitude(double restitution) {
+  const double b = asymmetry(restitution);
+  return b / std::sqrt(square(pi) + 4 * square(b));
+}
+
+double peak_loss_amplitude(double restitution) { return asymmetry(restitution) / pi; }
+
+double peak_loss(double restitution) { return 4 / (pi * asymmetry(restitution)); }
+
+double equal_spacing_amplitude(double restitution) {
+  return std::hypot(2.0, asymmetry(restitution) * pi) / (square(pi) - 4);
+}
+
+StuckRelease stuck_release(double amplitude) {
+  // t - sin t = 1/A: convex and rising on [0, pi], so Newton's steps from pi fall onto the root from above.
+  StuckRelease release;
+  double t = pi;
+  for (double next; (next = t - (t - std::sin(t) - 1 / amplitude) / (1 - std::cos(t))) < t;) t = next;
+  release.time = t;
+  release.speed = 2 * amplitude * square(std::sin(t / 2));
+  release.loss = square(release.speed / amplitude) / pi;
+  return release;
+}
+
+BounceDown bounce_down(double restitution, double amplitude) {
+  constexpr int most_bounces = 1000;
+  constexpr double short_rest = 1e-6;  // of the time left: the acceleration changes by as little in the rest
+  const double e = restitution, a = amplitude;
+  BounceDown bounces;
+  const StuckRelease release = stuck_release(amplitude);
+  double t = release.time, w = release.speed, squares = 0;
+  while (static_cast<int>(bounces.time.size()) < most_bounces) {
+    bounces.time.push_back(t);
+    bounces.speed.push_back(w);
+    const double u = e * w;
+    const double rest = accumulation_time(e, a * std::sin(t), u);
+    if (rest <= short_rest * std::min(1.0, pi - t)) {
+      bounces.sticks = true;
+      bounces.accumulation = t + rest;
+      squares += square(w);
+      break;
+    }
+    squares += (1 - e * e) * square(w);
+    // Distance from the wall after s: u s + A (cos(t) (sin(s) - s) - sin(t) (1 - cos(s))), concave up to
+    // t + s = pi: at most one return, and Newton's steps from the far end fall onto it from above.
+    const auto speed_after = [&](double s) { return u - 2 * a * std::sin(t + s / 2) * std::sin(s / 2); };
+    const auto distance_after = [&](double s) {
+      return u * s + a * (std::cos(t) * (std::sin(s) - s) - 2 * std::sin(t) * square(std::sin(s / 2)));
+    };
+    double s = pi - t;
+    if (!(distance_after(s) < 0)) break;
+    for (double next; (next = s - distance_after(s) / speed_after(s)) < s;) s = next;
+    w = -speed_after(s);  // which reads t
+    t += s;
+  }
+  bounces.loss = squares / (pi * square(a));
+  return bounces;
+}
+
+double bounce_down_end(double restitution) {
+  double low = 1 / pi;
+  if (bounce_down(restitution, low).sticks) return low;
+  double high = 2 * low;
+  while (!bounce_down(restitution, high).sticks) {
+    low = high;
+    high *= 2;
+  }
+  for (double middle; (middle = low + (high - low) / 2) > low && middle < high;)
+    (bounce_down(restitution, middle).sticks ? high : low) = middle;
+  return high;
+}
+
+double accumulation_time(double restitution, double acceleration, double rebound_speed) {
+  return 2 * rebound_speed / (acceleration * (1 - restitution));
+}
+
+ImpactOutcome impact(double mass_ratio, double restitution, double v, double w) {
+  const double nu = mass_ratio, e = restitution;
+  return {v + nu * (1 + e) * w / (1 + nu), -e * w, nu * (1 - e * e) * square(w) / (2 * (1 + nu))};
+}
+
+double restitution_by_displacement(double z) { return std::exp(-pi * z / std::sqrt((1 - z) * (1 + z))); }
+
+double restitution_by_force(double z) {
+  return std::exp(-2 * z * std::acos(z) / std::sqrt((1 - z) * (1 + z)));
+}
+
+double delivered_restitution(double restitution, double mass_ratio) {
+  return restitution_by_displacement(zeta_m_closed_form(restitution) * std::sqrt(1 + mass_ratio));
+}
+
+double delivered_restitution_without_pull(double restitution, double mass_ratio) {
+  return restitution_by_force(zeta_m_closed_form(restitution) * std::sqrt(1 + mass_ratio));
+}
+
+double stable_step_centred() { return 2; }
+
+double stable_step_lagged(double z) { return 2 * (std::sqrt(1 + z * z) - z); }
+
+}  // namespace impact_damper

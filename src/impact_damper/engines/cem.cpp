@@ -1,0 +1,58 @@
+#include "impact_damper/engines/cem.hpp"
+
+#include <charconv>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/number_text.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::string rounded(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
+  return {text, end};
+}
+// At most `value`, so that whoever types it in is not refused.
+std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
+
+}  // namespace
+
+Cem resolved(const Scene& scene, Cem options) {
+  if (!options.time_step) {
+    double half_period = std::min(nominal_contact_time(scene), std::numbers::pi);
+    if (scene.force_amplitude != 0)
+      half_period = std::min(half_period, std::numbers::pi / scene.force_frequency);
+    options.time_step = half_period / 100;
+  }
+  return options;
+}
+
+std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
+  if (options.max_steps < 1) return {{"max_steps", "must be >= 1, got " + std::to_string(options.max_steps)}};
+  const double h = options.time_step.value();
+  if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0 and finite, got " + number_text(h)}};
+  const double limit = stability_limit(scene, options.damper, options.calibration);
+  if (h <= limit || options.unstable) return {};
+  return {{"time_step",
+           "must be <= " + rounded_down(limit) + ", got " + number_text(h) +
+               ": beyond this stability limit the fastest mode in contact grows (angular frequency " +
+               rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
+               " damper); take a smaller step, or run it all the same with --unstable"}};
+}
+
+void require_no_problems(const Scene& scene, const Cem& options) {
+  for (const Problem& problem : problems_of(scene, options)) {
+    throw std::invalid_argument(problem.field + ": " + problem.message);
+  }
+}
+
+void fail_of_overflow(double time, double step) {
+  throw NumericalError("the component element method overflowed near time " + rounded(time) +
+                       " with time_step " + number_text(step));
+}
+
+}  // namespace impact_damper

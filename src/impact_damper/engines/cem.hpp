@@ -1,0 +1,169 @@
+// The component element method: the paper's way of running a scene, equations (3)-(8) by central
+// differences with a fixed step h (cem_scheme.hpp), after a second-order start from the initial state.
+//
+// Contact. As then, the sign of the overlap at a step decides which equations make the next one, so touch
+// and release come up to h late. With a damper in the wall, whose force jumps at touch, this makes the
+// delivered restitution, and all that follows from it, accurate to first order in h only. With `locate`
+// touch and release are put where the parabola through the three steps around them meets the wall: the
+// method steps exactly onto the event and starts anew from there, and is of second order (first with the
+// lagged damper). Two crossings of a wall within one step are not seen.
+//
+// Observations (zero crossing, peak, history, and touch and release without `locate`) are read off the
+// parabola through three steps, errors O(h^3) in position and O(h^2) in velocity. Times are counted, n h
+// from the start or the last located event, not accumulated.
+//
+// Energy. The scheme conserves |d/h|^2_M / 2 + u_n.K u_{n+1} / 2 within a regime but for the sums
+// of damping and forcing power at the steps, so those sums are the ledger's losses. The residual holds what
+// this form of the energy differs from the true one by, O(h^2); it is no measure of the first-order error.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/engines/cem_scheme.hpp"
+#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/motion.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// The options with the step filled in if absent: a hundredth of the nominal contact time, or of half a
+// period of the primary mass or of the forcing where that is shorter.
+Cem resolved(const Scene& scene, Cem options);
+
+// What is wrong with the (resolved) options: no steps admitted, a step that is no positive number, or one
+// beyond the stability limit without `unstable`. Empty if nothing.
+std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
+// Throws them as std::invalid_argument.
+void require_no_problems(const Scene& scene, const Cem& options);
+
+[[noreturn]] void fail_of_overflow(double time, double step);
+
+// The parabola through three successive steps of one coordinate, about the middle one.
+template <class Real>
+struct Arc {
+  Real g, slope, bend;
+
+  Real at(const Real& t) const { return g + t * (slope + t * bend / 2); }
+  Real slope_at(const Real& t) const { return slope + t * bend; }
+  Arc times(const Real& factor) const { return {factor * g, factor * slope, factor * bend}; }
+
+  // Where in [0, h] an arc that begins at or above zero falls through it.
+  Real fall(const Real& h) const {
+    const Real square = slope * slope - 2 * bend * g;
+    const Real root = square > 0 ? square_root(square) : Real(0);
+    if (slope > 0) return bend < 0 ? std::clamp((slope + root) / -bend, Real(0), h) : h;
+    return root > slope ? std::clamp(2 * g / (root - slope), Real(0), h) : Real(0);
+  }
+  // Where in [from, to] its extremum lies, or the end nearest to it.
+  Real extremum(const Real& from, const Real& to) const {
+    return bend == 0 ? from : std::clamp(-slope / bend, from, to);
+  }
+};
+
+template <class Real, class Observer>
+class CemEngine {
+ public:
+  // `options` resolved and free of problems.
+  CemEngine(const Scene& scene, const Cem& options, Observer& observer);
+  Outcome run();
+
+ private:
+  struct Moment {  // positions at a step, and the increments that led there
+    Real x, q, dx, dq;
+  };
+
+  void begin_segment(const Real& time, const State<Real>& state);
+  std::int64_t steps_until(const Real& time) const;
+  void take_steps(std::int64_t most);  // at least one
+  template <Regime regime, bool forced, bool ledger>
+  void take_steps(std::int64_t most);
+  void look_at_last_step();
+  std::optional<Real> wall_crossing() const;
+  void change_regime(const Real& at);
+  void enter(Wall wall, const Real& time, const Real& relative_velocity);
+  void leave(const Real& time);
+  void cross_zero(const Real& at);
+  void consider_peak(const Real& from, const Real& to);
+  void give_samples(const Real& until);
+  void finish(StopReason reason, const Real& at);
+
+  // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
+  Real last_step_begin() const { return origin_ + Real(step_ - 1) * h_; }
+  Arc<Real> arc(Real Moment::*position, Real Moment::*increment) const {
+    const Real &before = before_.*increment, &after = now_.*increment;
+    return {before_.*position, (before + after) / (2 * h_), (after - before) / (h_ * h_)};
+  }
+  Arc<Real> x_arc() const { return arc(&Moment::x, &Moment::dx); }
+  Arc<Real> q_arc() const { return arc(&Moment::q, &Moment::dq); }
+  State<Real> state_at(const Real& at) const {
+    const Arc<Real> x = x_arc(), q = q_arc();
+    return {x.at(at), x.slope_at(at), origin_of_q() + q.at(at), q.slope_at(at)};
+  }
+
+  Real origin_of_q() const { return wall_ == Wall::right ? Real(1) : Real(0); }
+  auto acceleration(const Real& time, const State<Real>& s) const {
+    return equations().acceleration(s.x, s.v, s.y - origin_of_q(), s.w, forcing(time));
+  }
+  static Real sign(const Real& value) { return Real((value > 0) - (value < 0)); }
+  const RegimeEquations<Real>& equations() const { return wall_ ? contact_ : flight_; }
+  Real forcing(const Real& time) const {
+    return forced_ ? force_.amplitude * sin_cos(Real(force_.frequency * time)).sin : Real(0);
+  }
+
+  Energy energy(const State<Real>& state);
+  void add_powers(const Real& weight, const Real& time, const State<Real>& state);
+  void close_powers(const Real& at);
+
+  const Budget budget_;
+  const std::optional<double> until_amplitude_;
+  const Real end_time_;
+  const StopReason end_reason_;
+  const Damper damper_;
+  const bool locate_;
+  Observer& observer_;
+
+  const System<Real> system_;
+  const Forcing<Real> force_;
+  const Real h_;
+  const RegimeEquations<Real> flight_, contact_;
+  const CemStep<Real> flight_step_, contact_step_;
+  const bool forced_, ledger_;
+  const bool peaks_;  // somebody looks at amplitudes
+  const State<Real> initial_;
+
+  Moment before_{}, now_{};   // the last step went from the one to the other
+  Real origin_ = 0;           // time of step 0
+  std::int64_t step_ = 0;     // number of now_
+  std::int64_t steps_left_;   // until max_steps are done
+  std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
+  Real contact_begin_ = 0;
+  bool impact_began_contact_ = false;
+
+  Real side_ = 0;   // sign of x in this half cycle, 0 before x has moved
+  Real trend_ = 0;  // sign of x' since the last turn
+  Real row_begin_ = 0, peak_ = 0, peak_time_ = 0;
+  std::int64_t impacts_ = 0, rows_ = 0;
+
+  Real wall_work_ = 0;  // in the contact under way
+  Real viscous_work_ = 0, forcing_work_ = 0, losses_ = 0;
+  double largest_energy_ = 0;
+  std::optional<Outcome> end_;
+};
+
+// Runs the scene for an observer with the members of Recorder. Checks the step first: throws
+// std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
+template <class Real = double, class Observer>
+Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
+  const Cem complete = resolved(scene, options);
+  require_no_problems(scene, complete);
+  return CemEngine<Real, Observer>(scene, complete, observer).run();
+}
+
+}  // namespace impact_damper
+
+#include "impact_damper/engines/cem_engine.hpp"

@@ -1,0 +1,349 @@
+// The members of CemEngine (cem.hpp).
+#pragma once
+
+#include "impact_damper/engines/cem.hpp"
+
+namespace impact_damper {
+
+template <class Real, class Observer>
+CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Observer& observer)
+    : budget_(options.budget),
+      until_amplitude_(scene.until_amplitude),
+      end_time_(scene.until_time.value_or(options.budget.max_time)),
+      end_reason_(scene.until_time ? StopReason::time : StopReason::time_budget),
+      damper_(options.damper),
+      locate_(options.locate),
+      observer_(observer),
+      system_(scene),
+      force_(system_.forcing),
+      h_(options.time_step.value()),
+      flight_(regime_equations<Real>(scene, options.calibration, Regime::flight)),
+      contact_(regime_equations<Real>(scene, options.calibration, Regime::contact)),
+      flight_step_(cem_step(flight_, options.damper, h_)),
+      contact_step_(cem_step(contact_, options.damper, h_)),
+      forced_(bool(force_)),
+      ledger_(observer.wants_energy()),
+      peaks_(observer.wants_half_cycles() || scene.until_amplitude),
+      initial_{scene.x0, scene.v0, scene.y0, scene.w0},
+      steps_left_(options.max_steps) {
+  // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
+  // the first derivative of y that is not zero tells.
+  const State<Real>& s = initial_;
+  const Real bend = acceleration(Real(0), s).q, jerk = s.v - force_.amplitude * force_.frequency;
+  const Real inwards = s.w != 0 ? Real(0) : bend != 0 ? bend : jerk;
+  if (s.y < 0 || (s.y == 0 && inwards < 0)) wall_ = Wall::left;
+  if (s.y > 1 || (s.y == 1 && inwards > 0)) wall_ = Wall::right;
+
+  side_ = sign(s.x != 0 ? s.x : s.v);
+  if (peaks_) trend_ = sign(s.v);
+  peak_ = absolute(s.x);
+}
+
+template <class Real, class Observer>
+Outcome CemEngine<Real, Observer>::run() {
+  begin_segment(Real(0), initial_);
+  if (ledger_) observer_.ledger().initial = energy(initial_);
+  if (observer_.next_sample() <= 0) {
+    observer_.sample(0, double(initial_.x), double(initial_.v), double(initial_.y), double(initial_.w));
+  }
+  while (!end_) {
+    const Real sample = observer_.next_sample();
+    take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), steps_left_));
+    look_at_last_step();
+  }
+  return *end_;
+}
+
+// The second-order start: the step before the first is u - h u' + h^2 u''/2.
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real>& s) {
+  const auto a = acceleration(time, s);
+  now_ = {s.x, s.y - origin_of_q(), h_ * (s.v - h_ * a.x / 2), h_ * (s.w - h_ * a.q / 2)};
+  origin_ = time;
+  step_ = 0;
+  if (ledger_) add_powers(-h_ / 2, time, s);
+}
+
+// At least one; a rounding error short of `time` is made good by the next call.
+template <class Real, class Observer>
+std::int64_t CemEngine<Real, Observer>::steps_until(const Real& time) const {
+  // Where x still rests, its first movement has to be seen, to know the sides.
+  const bool at_rest = !forced_ && !wall_ && now_.x == 0 && now_.dx == 0;
+  if ((side_ == 0 || (peaks_ && trend_ == 0)) && !at_rest) return 1;
+  constexpr double many = 1e15;
+  const double steps = double((time - origin_) / h_ - Real(step_));
+  return steps < 1 ? 1 : steps < many ? std::int64_t(std::ceil(steps)) : std::int64_t(many);
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
+  const auto choose = [&]<Regime regime>() {
+    if (forced_) {
+      ledger_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
+    } else {
+      ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
+    }
+  };
+  wall_ ? choose.template operator()<Regime::contact>() : choose.template operator()<Regime::flight>();
+}
+
+// Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer with forcing).
+template <class Real, class Observer>
+template <Regime regime, bool forced, bool ledger>
+void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
+  const CemStep<Real> a = regime == Regime::contact ? contact_step_ : flight_step_;
+  const Real side = side_, trend = trend_, overlap = wall_ == Wall::left ? Real(-1) : Real(1);
+  const bool centred = damper_ == Damper::centred;
+  Moment now = now_, before = now_;
+
+  // f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n, begun afresh before rounding can add up.
+  Real f = 0, df = 0, curb = 0;
+  if constexpr (forced) {
+    most = std::min<std::int64_t>(most, 1024);
+    const Real half = force_.frequency * h_ / 2, time = origin_ + Real(step_) * h_;
+    const Real sin_half = sin_cos(half).sin;
+    f = forcing(time);
+    df = 2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos;
+    curb = 4 * sin_half * sin_half;
+  }
+  Real sum_vv = 0, sum_ww = 0, sum_fv = 0;  // of 2 h v and 2 h w, v and w centred
+
+  bool uneventful;
+  std::int64_t n = 0;
+  do {
+    before = now;
+    if constexpr (regime == Regime::flight) {
+      now.dx = a.dx_dx * before.dx + a.dx_x * before.x;
+      if constexpr (forced) now.dx += a.dx_f * f;
+      now.dq = before.dq - (now.dx - before.dx);
+    } else {
+      now.dx = (a.dx_dx * before.dx + a.dx_x * before.x) + (a.dx_dq * before.dq + a.dx_q * before.q);
+      now.dq = (a.dq_dq * before.dq + a.dq_q * before.q) + (a.dq_dx * before.dx + a.dq_x * before.x);
+      if constexpr (forced) {
+        now.dx += a.dx_f * f;
+        now.dq += a.dq_f * f;
+      }
+    }
+    now.x = before.x + now.dx;
+    now.q = before.q + now.dq;
+    if constexpr (ledger) {
+      const Real v = before.dx + now.dx, w = before.dq + now.dq;
+      sum_vv += v * v;
+      if constexpr (regime == Regime::contact) sum_ww += (centred ? w : 2 * before.dq) * w;
+      if constexpr (forced) sum_fv += f * v;
+    }
+    if constexpr (forced) {
+      f += df;
+      df -= curb * f;
+    }
+    ++n;
+    if constexpr (regime == Regime::flight) {
+      uneventful = (now.q >= 0) & (now.q <= 1);
+    } else {
+      uneventful = overlap * now.q > 0;
+    }
+    uneventful &= (side * now.x >= 0) & (trend * now.dx >= 0);
+  } while (uneventful && n < most);
+
+  before_ = before;
+  now_ = now;
+  step_ += n;
+  steps_left_ -= n;
+  if constexpr (ledger) {
+    viscous_work_ += flight_.zeta * sum_vv / (2 * h_);
+    if constexpr (regime == Regime::contact) wall_work_ += contact_.nu * contact_.c * sum_ww / (4 * h_);
+    if constexpr (forced) forcing_work_ += sum_fv / 2;
+  }
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::look_at_last_step() {
+  const Real begin = last_step_begin();
+  if (!std::isfinite(double(now_.x)) || !std::isfinite(double(now_.q))) {
+    fail_of_overflow(double(begin), double(h_));
+  }
+  const bool last = !(begin + h_ < end_time_);
+  Real span = last ? std::max(end_time_ - begin, Real(0)) : h_;
+
+  std::optional<Real> change = wall_crossing();
+  if (change && *change > span) change.reset();
+  const bool restart = change && locate_;
+  if (restart) span = *change;
+  std::optional<Real> zero;
+  if (side_ * now_.x < 0) zero = x_arc().times(side_).fall(h_);
+  if (zero && *zero > span) zero.reset();
+
+  if (trend_ * now_.dx < 0) {
+    consider_peak(step_ == 1 ? Real(0) : -h_ / 2, span);
+    trend_ = -trend_;
+  } else if (restart && peaks_) {
+    consider_peak(Real(0), span);
+  }
+  if (side_ == 0) side_ = sign(now_.x);
+  if (peaks_ && trend_ == 0) trend_ = sign(now_.dx);
+
+  const bool zero_first = zero && !(change && *change < *zero);
+  if (zero_first) cross_zero(*zero);
+  if (change && !end_) {
+    give_samples(begin + *change);
+    change_regime(*change);
+  }
+  if (zero && !zero_first && !end_) cross_zero(*zero);
+  if (end_ || restart) return;
+  if (last) return finish(end_reason_, span);
+  if (steps_left_ == 0) return finish(StopReason::step_budget, span);
+  give_samples(begin + span);
+}
+
+// Where in the last step the mass came to a wall or away from it.
+template <class Real, class Observer>
+std::optional<Real> CemEngine<Real, Observer>::wall_crossing() const {
+  if (wall_) {
+    const Real overlap = *wall_ == Wall::left ? Real(-1) : Real(1);
+    if (overlap * now_.q > 0) return {};
+    return q_arc().times(overlap).fall(h_);
+  }
+  if (now_.q < 0) return q_arc().fall(h_);
+  if (now_.q > 1) {
+    Arc<Real> gap = q_arc().times(Real(-1));
+    gap.g += 1;
+    return gap.fall(h_);
+  }
+  return {};
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::change_regime(const Real& at) {
+  const Real time = last_step_begin() + at;
+  State<Real> s = state_at(at);
+  const Real y = now_.q + origin_of_q();
+  // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
+  const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
+  const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
+  if (!wall_ && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
+  if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
+
+  if (locate_) {
+    // The velocities by the trapezoid of the accelerations, one order better than the arc's slope.
+    const auto a = acceleration(time, s);
+    const Arc<Real> x = x_arc(), q = q_arc();
+    s.v = x.slope + at * (x.bend + a.x) / 2;
+    s.w = q.slope + at * (q.bend + a.q) / 2;
+    s.y = (wall_ ? *wall_ : wall) == Wall::right ? 1 : 0;
+    if (ledger_) close_powers(at);
+  }
+  const Real old_origin = origin_of_q();
+  if (wall_) leave(time);
+  if (met) enter(wall, time, s.w);
+  if (locate_) {
+    if (peaks_) trend_ = sign(s.v);
+    begin_segment(time, s);
+  } else {
+    before_.q += old_origin - origin_of_q();
+    now_.q += old_origin - origin_of_q();
+  }
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::enter(Wall wall, const Real& time, const Real& relative_velocity) {
+  wall_ = wall;
+  contact_begin_ = time;
+  impact_began_contact_ = true;
+  ++impacts_;
+  observer_.impact(double(time), wall, double(relative_velocity));
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::leave(const Real& time) {
+  if (observer_.wants_contacts()) observer_.contact(double(contact_begin_), double(time), *wall_);
+  if (ledger_) {
+    if (impact_began_contact_) {
+      observer_.ledger().impact_loss.push_back(double(wall_work_));
+    } else {
+      observer_.ledger().contact_loss += double(wall_work_);
+    }
+    losses_ += wall_work_;
+    wall_work_ = 0;
+  }
+  wall_.reset();
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::cross_zero(const Real& at) {
+  const Real time = last_step_begin() + at;
+  if (observer_.wants_half_cycles()) {
+    observer_.half_cycle(double(row_begin_), double(time), double(peak_time_), double(peak_));
+  }
+  if (ledger_) energy(state_at(at));
+  ++rows_;
+  const bool small = until_amplitude_ && peak_ < Real(*until_amplitude_);
+  side_ = -side_;
+  if (peaks_) trend_ = sign(now_.dx);
+  row_begin_ = time;
+  peak_ = 0;
+  peak_time_ = time;
+  if (small) return finish(StopReason::amplitude, at);
+  if (rows_ >= budget_.max_half_cycles) finish(StopReason::half_cycle_budget, at);
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::consider_peak(const Real& from, const Real& to) {
+  const Arc<Real> x = x_arc();
+  const Real at = x.extremum(from, to), height = side_ * x.at(at);
+  if (!(height > peak_)) return;
+  peak_ = height;
+  peak_time_ = last_step_begin() + at;
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::give_samples(const Real& until) {
+  while (observer_.next_sample() <= until) {
+    const double time = observer_.next_sample();
+    const State<Real> s = state_at(Real(time) - last_step_begin());
+    observer_.sample(time, double(s.x), double(s.v), double(s.y), double(s.w));
+  }
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
+  const Real time = reason == end_reason_ ? end_time_ : last_step_begin() + at;
+  give_samples(time);
+  if (ledger_) {
+    close_powers(at);
+    observer_.ledger().final = energy(state_at(at));
+  }
+  if (wall_) leave(time);
+  if (ledger_) {
+    EnergyLedger& ledger = observer_.ledger();
+    ledger.viscous_work = double(viscous_work_);
+    ledger.forcing_work = double(forcing_work_);
+    const double largest = std::max(largest_energy_, std::abs(ledger.forcing_work));
+    const Real open =
+        (ledger.initial.total() + forcing_work_) - (ledger.final.total() + losses_ + viscous_work_);
+    ledger.residual = largest > 0 ? double(open) / largest : 0.0;
+  }
+  end_ = Outcome{reason, double(time)};
+}
+
+template <class Real, class Observer>
+Energy CemEngine<Real, Observer>::energy(const State<Real>& s) {
+  const Energy energy = energy_of(system_, s, wall_ ? absolute(Real(s.y - origin_of_q())) : Real(0));
+  largest_energy_ = std::max(largest_energy_, energy.total());
+  return energy;
+}
+
+// The ledger's integrals are trapezoids over the steps: the loop adds whole powers, these the ends.
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time, const State<Real>& s) {
+  viscous_work_ += weight * 2 * flight_.zeta * s.v * s.v;
+  forcing_work_ += weight * forcing(time) * s.v;
+  wall_work_ += weight * equations().nu * equations().c * s.w * s.w;
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::close_powers(const Real& at) {
+  add_powers((at - h_) / 2, last_step_begin(), state_at(Real(0)));
+  add_powers(at / 2, last_step_begin() + at, state_at(at));
+}
+
+}  // namespace impact_damper

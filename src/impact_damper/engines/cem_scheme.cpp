@@ -1,0 +1,35 @@
+#include "impact_damper/engines/cem_scheme.hpp"
+
+#include <cmath>
+
+namespace impact_damper {
+
+double fastest_contact_frequency(const Scene& scene) {
+  const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;
+  // (1 + K (1 + nu))^2 - 4 K as a sum of squares: no cancellation for heavy or light secondary masses.
+  const double difference = std::hypot(1 - k_by_nu * (1 - nu), 2 * k_by_nu * std::sqrt(nu));
+  return std::sqrt((1 + k_by_nu * (1 + nu) + difference) / 2);
+}
+
+double stability_limit(const Scene& scene, Damper damper, Calibration calibration) {
+  const double centred = 2 / fastest_contact_frequency(scene);
+  if (damper == Damper::centred) return centred;
+
+  // 4 M - 2 h C'' - h^2 K in absolute coordinates, the row and the column of z divided by sqrt(nu).
+  const double nu = scene.mass_ratio, k = scene.wall_stiffness;
+  const double c = 2 * omega_m(scene) * zeta_m(scene, calibration);
+  const auto semidefinite = [&](double h) {
+    const double wall = h * (2 * c + h * k / nu);  // damper and spring of the wall, by nu
+    const double primary = 4 - h * h - nu * wall, secondary = 4 - wall;
+    return primary >= 0 && secondary >= 0 && primary * secondary >= nu * wall * wall;
+  };
+  double stable = 0, unstable = centred;
+  if (semidefinite(unstable)) return unstable;
+  for (;;) {
+    const double middle = stable + (unstable - stable) / 2;
+    if (!(middle > stable && middle < unstable)) return stable;
+    (semidefinite(middle) ? stable : unstable) = middle;
+  }
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,101 @@
+// Central differences for one regime of the impact damper, solved for the new step once and for all.
+//
+// With u = (x, q), q the overlap's coordinate (y in flight and at the left wall, y - 1 at the right),
+// equations (3)-(8) read M u'' + C u' + K u = (f, 0),
+//     M = [1 0; 1 1],   C = [2 zeta, -nu c; 0, c],   K = [1, -k; 0, k/nu],   c = 2 omega_m zeta_m,
+// and c = k = 0 in flight. u'' -> (u_{n+1} - 2 u_n + u_{n-1}) / h^2, u' -> (u_{n+1} - u_{n-1}) / 2h. Written
+// for the increments d_n = u_n - u_{n-1} instead of the positions (a rounding error then costs eps t / h,
+// not eps t / h^2):
+//     (M + h C/2) d_{n+1} = (M - h C/2) d_n + h^2 ((f_n, 0) - K u_n).
+// `lagged` takes the wall damper's velocity from d_n / h: its c moves from the left side to the right and
+// counts twice there. The damper of the primary mass is centred always: that costs nothing, and a limit
+// h < 1/zeta would have nothing to do with the wall.
+#pragma once
+
+#include "impact_damper/engine.hpp"
+#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/scene.hpp"
+
+namespace impact_damper {
+
+enum class Regime { flight, contact };
+
+// A regime's equations as the numbers in them.
+template <class Real>
+struct RegimeEquations {
+  Real nu{}, zeta{};
+  Real c{};        // 2 omega_m zeta_m, 0 in flight
+  Real omega_2{};  // omega_m^2 = k/nu, 0 in flight
+
+  struct Acceleration {
+    Real x, q;
+  };
+  Acceleration acceleration(const Real& x, const Real& v, const Real& q, const Real& w, const Real& f) const {
+    const Real force = c * w + omega_2 * q;
+    const Real primary = f + nu * force - (2 * zeta * v + x);
+    return {primary, -force - primary};
+  }
+};
+
+template <class Real>
+RegimeEquations<Real> regime_equations(const Scene& scene, Calibration calibration, Regime regime) {
+  RegimeEquations<Real> equations{.nu = scene.mass_ratio, .zeta = scene.damping_ratio, .c = 0, .omega_2 = 0};
+  if (regime == Regime::flight) return equations;
+  equations.omega_2 = Real(scene.wall_stiffness) / equations.nu;
+  equations.c = 2 * square_root(equations.omega_2) * zeta_m<Real>(scene, calibration);
+  return equations;
+}
+
+// x_{n+1} - x_n = dx_dx (x_n - x_{n-1}) + dx_dq (q_n - q_{n-1}) + dx_x x_n + dx_q q_n + dx_f f_n, and so on.
+template <class Real>
+struct CemStep {
+  Real dx_dx, dx_dq, dx_x, dx_q, dx_f;
+  Real dq_dx, dq_dq, dq_x, dq_q, dq_f;
+};
+
+template <class Real>
+CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, const Real& h) {
+  const auto& [nu, zeta, c, omega_2] = equations;
+  const bool centred = damper == Damper::centred;
+  const Real ahead = centred ? h * c / 2 : Real(0);  // the wall damper's share of the left side,
+  const Real behind = centred ? h * c / 2 : h * c;   // and of the right
+  const Real outer = h * zeta, h_2 = h * h, spring = h_2 * omega_2;
+  const Real determinant = (1 + outer) * (1 + ahead) + nu * ahead;
+  // The inverse of M + h C/2, times h^2 for the forces.
+  const Real xx = (1 + ahead) / determinant, xq = nu * ahead / determinant;
+  const Real qx = -1 / determinant, qq = (1 + outer) / determinant;
+  return {
+      .dx_dx = xx * (1 - outer) + xq,
+      .dx_dq = xx * nu * behind + xq * (1 - behind),
+      .dx_x = -h_2 * xx,
+      .dx_q = spring * (xx * nu - xq),
+      .dx_f = h_2 * xx,
+      .dq_dx = qx * (1 - outer) + qq,
+      .dq_dq = qx * nu * behind + qq * (1 - behind),
+      .dq_x = -h_2 * qx,
+      .dq_q = spring * (qx * nu - qq),
+      .dq_f = h_2 * qx,
+  };
+}
+
+// The fastest of the undamped modes in contact. With K = k/nu,
+//     omega^2 = (1 + K (1 + nu) + sqrt((1 + K (1 + nu))^2 - 4 K)) / 2 > max(1, K).
+double fastest_contact_frequency(const Scene& scene);
+
+// The largest step at which no mode grows, in flight or in contact.
+//
+// A mode u_n = lambda^n u of the symmetric form of the equations (absolute coordinates x, z; M, C, K
+// positive semidefinite) satisfies, with m, c, k the three quadratic forms of u and c split into the
+// centred c' and the lagged c'',
+//     m (lambda - 1)^2 + h c' (lambda^2 - 1)/2 + h c'' (lambda - 1) + h^2 k lambda = 0,
+// and by Jury's conditions |lambda| <= 1 if 4 m - 2 h c'' - h^2 k >= 0. So no mode grows as long as
+// 4 M - 2 h C'' - h^2 K is positive semidefinite; where it ceases to be, its determinant, which is the
+// characteristic polynomial at lambda = -1, changes sign and one real lambda passes -1: the limit is sharp.
+//     centred: C'' = 0, h = 2 / omega with omega the fastest contact frequency, whatever the damping.
+//     lagged:  the determinant's first root; for a free primary mass it is
+//              2 (sqrt(1 + z^2) - z) / omega_c, z = zeta_m sqrt(1 + nu), omega_c = omega_m sqrt(1 + nu).
+// The limit in flight is 2 and never the lower one, for omega > 1.
+double stability_limit(const Scene& scene, Damper damper, Calibration calibration);
+
+}  // namespace impact_damper

@@ -1,0 +1,84 @@
+// The exact engine: compliant walls, every motion a closed form, every event solved for.
+//
+// A scene is a chain of free flights (motion.hpp) and contacts (contact.hpp). A flight ends where a wall is
+// met, a contact where the secondary mass is back at the wall's position (a displacement criterion: near the
+// end of a contact the wall's damper pulls). Both ends are found by first_root.hpp, which can miss none.
+// There is no time step, and no error but rounding.
+#pragma once
+
+#include "impact_damper/engines/timeline.hpp"
+#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/wall.hpp"
+
+namespace impact_damper {
+
+// Runs a scene that problems_of finds nothing wrong with, telling `observer` (recorder.hpp) what it wants.
+template <class Real, class Observer>
+Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
+  const System<Real> system(scene);
+  const ContactSystem<Real> walls(system, zeta_m<Real>(scene, options.calibration));
+  Timeline<Real, Observer> timeline(scene, system, options.budget, observer);
+
+  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
+  const auto depth_of = [](const State<Real>& s) {
+    return s.y < 0 ? Real(-s.y) : s.y > 1 ? Real(s.y - 1) : Real(0);
+  };
+  timeline.begin(state, depth_of(state));
+  const Real wall_damping = system.nu * walls.damping;
+  Real losses{0};
+
+  // A release on a wall: in contact if pressed against it, which the first derivative of y that is not zero
+  // tells.
+  const auto pressed = [&](Real towards_cavity) {
+    const auto departure = Flight<Real>(system, timeline.now(), state).departure(timeline.span());
+    for (const Real& lead : {departure.acceleration, departure.jerk}) {
+      if (state.w != 0 || towards_cavity * lead > 0) return false;
+      if (lead != 0) return true;
+    }
+    return false;
+  };
+  bool in_contact =
+      state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));
+  bool by_impact = false;
+  Wall wall = state.y <= 0 ? Wall::left : Wall::right;
+
+  while (!timeline.stopped()) {
+    if (!in_contact) {
+      const Flight<Real> flight(system, timeline.now(), state);
+      const auto met = first_root<Real>([&](const Real& t) { return flight.gaps(t, timeline.span()); },
+                                        Real(0), timeline.remaining(), timeline.span(), flight.resolution());
+      timeline.pass(flight, met ? met->time : timeline.remaining(), Real(0));
+      state = flight.at(timeline.passed());
+      if (timeline.stopped()) break;
+      wall = met->which == 0 ? Wall::left : Wall::right;
+      state.y = met->which == 0 ? 0 : 1;
+      if (!timeline.impact(wall, state.w)) break;
+      in_contact = by_impact = true;
+    } else {
+      const Contact<Real> contact(walls, timeline.now(), state, wall);
+      const auto left =
+          first_root<Real>([&](const Real& t) { return contact.depth(t, timeline.span()); }, Real(0),
+                           timeline.remaining(), timeline.span(), contact.resolution());
+      const Real begin = timeline.now();
+      const Works<Real> works =
+          timeline.pass(contact, left ? left->time : timeline.remaining(), wall_damping);
+      state = contact.at(timeline.passed());
+      if (observer.wants_contacts()) observer.contact(double(begin), double(timeline.now()), wall);
+      if (observer.wants_energy()) {
+        losses += works.wall;
+        if (by_impact) {
+          observer.ledger().impact_loss.push_back(double(works.wall));
+        } else {
+          observer.ledger().contact_loss += double(works.wall);
+        }
+      }
+      if (timeline.stopped()) break;
+      state.y = wall == Wall::left ? 0 : 1;
+      in_contact = by_impact = false;
+    }
+  }
+  timeline.finish(state, in_contact ? depth_of(state) : Real(0), losses);
+  return {*timeline.stopped(), timeline.end_time()};
+}
+
+}  // namespace impact_damper

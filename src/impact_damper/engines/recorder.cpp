@@ -1,0 +1,90 @@
+#include "impact_damper/engines/recorder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace impact_damper {
+
+Recorder::Recorder(const Record& record)
+    : wants_(record),
+      wants_half_cycles_(record.half_cycles || record.impacts || !record.history_below.empty()),
+      windows_(record.history) {
+  advance_window();
+}
+
+void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, double amplitude) {
+  if (wants_.half_cycles) {
+    half_cycles_.zero_crossing.push_back(zero_crossing);
+    half_cycles_.peak_time.push_back(peak_time);
+    half_cycles_.amplitude.push_back(amplitude);
+    half_cycles_.impacts.push_back(impacts_in_row_);
+  }
+  for (std::size_t i = first_impact_in_row_; i < impacts_.time.size(); ++i) {
+    if (row_ > 0) impacts_.phase_deg[i] = 180 * ((impacts_.time[i] - begin) / (zero_crossing - begin));
+    impacts_.amplitude[i] = amplitude;
+  }
+  first_impact_in_row_ = impacts_.time.size();
+  impacts_in_row_ = 0;
+  ++row_;
+
+  while (next_below_ < wants_.history_below.size() &&
+         amplitude < wants_.history_below[next_below_].amplitude) {
+    const AmplitudeWindow& window = wants_.history_below[next_below_++];
+    // Where the decay falls through two amplitudes within one window, the second window follows the first.
+    const double from = windows_.empty() ? zero_crossing : std::max(zero_crossing, windows_.back().end);
+    windows_.push_back({from, from + window.length, window.count});
+    advance_window();
+  }
+}
+
+void Recorder::impact(double time, Wall wall, double relative_velocity) {
+  ++impacts_in_row_;
+  if (!wants_.impacts) return;
+  impacts_.time.push_back(time);
+  impacts_.wall.push_back(wall);
+  impacts_.relative_velocity.push_back(relative_velocity);
+  impacts_.phase_deg.emplace_back();
+  impacts_.amplitude.emplace_back();
+}
+
+void Recorder::contact(double begin, double end, Wall wall) {
+  contacts_.begin.push_back(begin);
+  contacts_.end.push_back(end);
+  contacts_.wall.push_back(wall);
+}
+
+void Recorder::sample(double time, double x, double v, double y, double w) {
+  history_.time.push_back(time);
+  history_.x.push_back(x);
+  history_.v.push_back(v);
+  history_.y.push_back(y);
+  history_.w.push_back(w);
+  ++sample_in_window_;
+  advance_window();
+}
+
+void Recorder::advance_window() {
+  while (window_ < windows_.size() && sample_in_window_ >= windows_[window_].count) {
+    ++window_;
+    sample_in_window_ = 0;
+  }
+  if (window_ == windows_.size()) {
+    next_sample_ = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const HistoryWindow& now = windows_[window_];
+  const double fraction = now.count > 1 ? double(sample_in_window_) / double(now.count - 1) : 0.0;
+  next_sample_ = sample_in_window_ == now.count - 1 && now.count > 1
+                     ? now.end
+                     : now.begin + fraction * (now.end - now.begin);
+}
+
+void Recorder::finish(Run& run) {
+  if (wants_.half_cycles) run.half_cycles = std::move(half_cycles_);
+  if (wants_.impacts) run.impacts = std::move(impacts_);
+  if (wants_.contacts) run.contacts = std::move(contacts_);
+  if (wants_.energy) run.energy = std::move(ledger_);
+  if (!wants_.history.empty() || !wants_.history_below.empty()) run.history = std::move(history_);
+}
+
+}  // namespace impact_damper

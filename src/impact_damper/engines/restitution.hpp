@@ -1,0 +1,113 @@
+// The restitution engine: Brown and North's model. Rigid walls, impacts that take no time.
+//
+// An impact turns the relative velocity w into -e w and keeps (1+nu) v + nu w; it costs
+// nu (1 - e^2) w^2 / (2 (1+nu)). Between impacts the secondary mass flies free (motion.hpp).
+//
+// Bounce-down is an infinite sequence of impacts in finite time. Under a constant relative acceleration a
+// towards the wall and a first rebound speed w it is over after
+//     T = 2 w / (a (1 - e)).
+// The impacts are stepped through one by one until a changes by less than the fraction
+// Restitution::accumulation_tolerance within T; then the engine jumps: the masses join (plastically, as far
+// as momentum goes) and move on as one, stuck from T later on. With the tolerance tol and |a'| <= m, w is
+// then about tol a^2 (1-e) / 2m, the displacement that the jump ignores nu w^2 / 2a, and both are below
+// rounding. Of a bounce-down that begins with w the engine so steps through about ln(2 m w / (tol a^2 (1-e)))
+// / -ln e impacts; the energy of those jumped over, nu w^2 / (2 (1+nu)), stands in the ledger as
+// bounce_down_loss.
+//
+// Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
+#pragma once
+
+#include "impact_damper/engines/timeline.hpp"
+
+namespace impact_damper {
+
+// Runs a scene that problems_of finds nothing wrong with and that begins between the walls, 0 <= y0 <= 1.
+template <class Real, class Observer>
+Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
+  const System<Real> system(scene);
+  Timeline<Real, Observer> timeline(scene, system, options.budget, observer);
+  const Real nu = system.nu, e = system.e, tolerance = options.accumulation_tolerance;
+
+  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
+  timeline.begin(state, Real(0));
+  Real losses{0};
+
+  // What happens to a secondary mass on a wall with w >= 0 away from it: it bounces on, it is stuck after a
+  // time `accumulation` of bouncing too short to follow, or (at rest, not pushed) it is released.
+  Wall wall = state.y <= Real(0.5) ? Wall::left : Wall::right;
+  Real accumulation{0};
+  const auto sticks = [&] {
+    const Real away = wall == Wall::left ? 1 : -1;
+    const Real speed = away * state.w;
+    if (speed < 0) return false;
+    const auto departure = Flight<Real>(system, timeline.now(), state).departure(timeline.span());
+    const Real push = -away * departure.acceleration;
+    accumulation = 0;
+    if (speed == 0) return push > 0 || (push == 0 && away * departure.jerk < 0);
+    if (!(push > 0) || e == 1) return false;
+    accumulation = 2 * speed / (push * (1 - e));
+    const Real change = (absolute(departure.jerk) + departure.fourth * accumulation) * accumulation;
+    return accumulation < timeline.span() && change <= tolerance * push;
+  };
+
+  bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0;
+  while (!timeline.stopped()) {
+    if (on_wall && sticks()) {
+      const Real joined = nu * state.w / (1 + nu);
+      if (observer.wants_energy() && state.w != 0) {
+        const Real loss = joined * state.w / 2;
+        losses += loss;
+        ++observer.ledger().bounce_downs;
+        observer.ledger().bounce_down_loss += double(loss);
+      }
+      const Stuck<Real> stuck(system, timeline.now(), state.x, state.v + joined, wall);
+      const Real begin = timeline.now() + accumulation;
+      const auto released =
+          first_root<Real>([&](const Real& t) { return stuck.push(t, timeline.span()); }, accumulation,
+                           timeline.remaining(), timeline.span(), stuck.resolution());
+      timeline.pass(stuck, released ? released->time : timeline.remaining(), Real(0));
+      state = stuck.at(timeline.passed());
+      if (observer.wants_contacts() && begin <= timeline.now()) {
+        observer.contact(double(begin), double(timeline.now()), wall);
+      }
+      if (timeline.stopped()) break;
+    }
+
+    const Flight<Real> flight(system, timeline.now(), state);
+    // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4
+    // y'''/|y''''|. Half of that is passed over, within which the sign of a y'' that is zero to rounding
+    // would decide; but no more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of
+    // the travel.
+    Real from{0};
+    if (on_wall && state.w == 0) {
+      const auto departure = flight.departure(timeline.span());
+      const Real jerk = (wall == Wall::left ? 1 : -1) * departure.jerk;
+      const Real acceleration = (wall == Wall::left ? 1 : -1) * departure.acceleration;
+      if (jerk > 0 && acceleration < jerk * Real(1e-6)) {
+        from = 2 * jerk / departure.fourth;
+        const Real near = 1 / square_root(Real(1 + jerk));
+        if (near < from) from = near;
+      }
+    }
+    const auto met = first_root<Real>([&](const Real& t) { return flight.gaps(t, timeline.span()); }, from,
+                                      timeline.remaining(), timeline.span(), flight.resolution());
+    timeline.pass(flight, met ? met->time : timeline.remaining(), Real(0));
+    state = flight.at(timeline.passed());
+    if (timeline.stopped()) break;
+    wall = met->which == 0 ? Wall::left : Wall::right;
+    state.y = met->which == 0 ? 0 : 1;
+    if (!timeline.impact(wall, state.w)) break;
+    if (observer.wants_energy()) {
+      const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));
+      losses += loss;
+      observer.ledger().impact_loss.push_back(double(loss));
+    }
+    state.v += nu * (1 + e) * state.w / (1 + nu);
+    state.w *= -e;
+    on_wall = true;
+  }
+  timeline.finish(state, Real(0), losses);
+  return {*timeline.stopped(), timeline.end_time()};
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,191 @@
+// What both closed-form engines share: a scene passes as a chain of motions, and what is looked at is read
+// off each of them: zero crossings and peaks of x, history samples, works; and where the scene ends.
+//
+// Looking never changes the motion: a motion is restarted at its own events only.
+#pragma once
+
+#include <optional>
+
+#include "impact_damper/motion/energy.hpp"
+
+namespace impact_damper {
+
+// Time since the release, summed over thousands of motions with what each sum rounded off carried along.
+template <class Real>
+class Clock {
+ public:
+  const Real& now() const { return now_; }
+  void advance(const Real& duration) {
+    const Real added = duration + rounded_off_, sum = now_ + added;
+    const Real back = sum - now_;
+    rounded_off_ = (now_ - (sum - back)) + (added - back);
+    now_ = sum;
+  }
+
+ private:
+  Real now_{0}, rounded_off_{0};
+};
+
+template <class Real, class Observer>
+class Timeline {
+ public:
+  Timeline(const Scene& scene, const System<Real>& system, const Budget& budget, Observer& observer)
+      : scene_(scene),
+        system_(system),
+        budget_(budget),
+        observer_(observer),
+        end_(scene.until_time ? *scene.until_time : budget.max_time),
+        span_(bounded_span(system.forcing)),
+        tracks_half_cycles_(observer.wants_half_cycles() || scene.until_amplitude.has_value()) {}
+
+  const Real& now() const { return clock_.now(); }
+  Real remaining() const { return Real(end_) - clock_.now(); }
+  const std::optional<StopReason>& stopped() const { return stopped_; }
+  // When the scene ended: on the dot where a time ended it.
+  double end_time() const {
+    const bool by_time = stopped_ == StopReason::time || stopped_ == StopReason::time_budget;
+    return by_time ? end_ : double(clock_.now());
+  }
+  // For how long a bound on a motion may be asked for.
+  const Real& span() const { return span_; }
+
+  void begin(const State<Real>& start, const Real& depth) {
+    row_best_ = absolute(start.x);
+    // Which way x starts: by its first derivative that is not zero.
+    const Flight<Real> flight(system_, Real(0), start);
+    const auto departure = flight.departure(span_);
+    for (const Real& lead : {start.x, start.v, Real(-departure.acceleration), Real(-departure.jerk)}) {
+      if (lead == 0) continue;
+      side_ = lead > 0 ? 1 : -1;
+      break;
+    }
+    if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
+  }
+
+  // Lets `duration` of a motion pass, less if the scene ends in it. Returns the works in it.
+  template <class Motion>
+  Works<Real> pass(const Motion& motion, Real duration, const Real& wall_damping) {
+    if (!(duration < remaining())) {
+      duration = remaining();
+      stopped_ = scene_.until_time ? StopReason::time : StopReason::time_budget;
+    }
+    if (tracks_half_cycles_) duration = follow(motion, duration);
+    while (observer_.next_sample() <= double(now() + duration)) {
+      Real t = Real(observer_.next_sample()) - now();
+      if (t < 0) t = 0;
+      const State<Real> s = motion.at(t < duration ? t : duration);
+      observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
+    }
+    Works<Real> works;
+    if (observer_.wants_energy()) {
+      works = works_of(system_, motion, now(), duration, wall_damping);
+      viscous_ += works.viscous;
+      forcing_ += works.forcing;
+      turnover_ += works.turnover;
+    }
+    last_ = duration;
+    clock_.advance(duration);
+    return works;
+  }
+  // How much of the last motion has passed.
+  const Real& passed() const { return last_; }
+
+  // An impact that is about to happen. False: it was one too many, and the scene ends before it.
+  bool impact(Wall wall, const Real& relative_velocity) {
+    if (impacts_ >= budget_.max_impacts) {
+      stopped_ = StopReason::impact_budget;
+      return false;
+    }
+    ++impacts_;
+    observer_.impact(double(now()), wall, double(relative_velocity));
+    return true;
+  }
+
+  void finish(const State<Real>& last, const Real& depth, const Real& losses) {
+    if (!observer_.wants_energy()) return;
+    EnergyLedger& ledger = observer_.ledger();
+    ledger.final = energy_of(system_, last, depth);
+    ledger.viscous_work = double(viscous_);
+    ledger.forcing_work = double(forcing_);
+    const Real handled = ledger.initial.total() + turnover_;
+    const Real open = (ledger.initial.total() + forcing_) - (ledger.final.total() + losses + viscous_);
+    ledger.residual = handled > 0 ? double(open / handled) : 0.0;
+  }
+
+ private:
+  // Follows x through [0, duration]: returns where the scene ends in it, or duration.
+  template <class Motion>
+  Real follow(const Motion& motion, const Real& duration) {
+    Real from{0};
+    if (side_ == 0) {  // at rest until now
+      const Jet<Real> x = motion.derivative_of_x(0, Real(1), from, span_).whole;
+      for (const Real& lead : {x.g, x.g1, x.g2}) {
+        if (side_ == 0 && lead != 0) side_ = lead > 0 ? 1 : -1;
+      }
+      if (side_ == 0) return duration;
+    }
+    notice_peak(motion, from);
+    for (;;) {
+      const auto crossing = first_root<Real>(
+          [&](const Real& t) { return std::array{motion.derivative_of_x(0, side_, t, span_)}; }, from,
+          duration, span_, motion.resolution());
+      const Real until = crossing ? crossing->time : duration;
+      find_peaks(motion, from, until);
+      if (!crossing) return duration;
+      const Real zero = now() + crossing->time;
+      observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
+      ++rows_;
+      const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
+      if (low || rows_ >= budget_.max_half_cycles) {
+        stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
+        return crossing->time;
+      }
+      side_ = -side_;
+      row_begin_ = zero;
+      row_best_ = 0;
+      row_peak_time_ = zero;
+      from = crossing->time;
+    }
+  }
+  // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
+  template <class Motion>
+  void find_peaks(const Motion& motion, Real from, const Real& until) {
+    const Jet<Real> v = motion.derivative_of_x(1, side_, from, span_).whole;
+    bool rising = v.g > 0 || (v.g == 0 && v.g1 > 0);  // away from zero
+    for (;;) {
+      const Real sign = rising ? side_ : -side_;
+      const auto turn = first_root<Real>(
+          [&](const Real& t) { return std::array{motion.derivative_of_x(1, sign, t, span_)}; }, from, until,
+          span_, motion.resolution());
+      if (!turn) return;
+      if (rising) notice_peak(motion, turn->time);
+      rising = !rising;
+      from = turn->time;
+    }
+  }
+  template <class Motion>
+  void notice_peak(const Motion& motion, const Real& t) {
+    const Real height = side_ * motion.at(t).x;
+    if (!(height > row_best_)) return;
+    row_best_ = height;
+    row_peak_time_ = now() + t;
+  }
+
+  const Scene& scene_;
+  const System<Real>& system_;
+  const Budget& budget_;
+  Observer& observer_;
+  Clock<Real> clock_;
+  double end_;
+  Real span_;
+  bool tracks_half_cycles_;
+  std::optional<StopReason> stopped_;
+  Real last_{0};
+  std::int64_t impacts_ = 0, rows_ = 0;
+  // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
+  // its largest |x| so far.
+  Real side_{0}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
+  Real viscous_{0}, forcing_{0}, turnover_{0};
+};
+
+}  // namespace impact_damper

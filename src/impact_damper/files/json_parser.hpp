@@ -1,0 +1,52 @@
+// The first half of the strict reader (json_reader.hpp): from a text to its value, and the list of what was
+// found wrong on the way and later. No other file needs to know it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace impact_damper {
+
+// What a document collects while it is read: problems, and which keys of its objects are known.
+class JsonProblems {
+ public:
+  explicit JsonProblems(std::string file);
+
+  void add(const std::string& pointer, std::string_view what);
+
+  // The index of the known keys of `object`.
+  std::size_t open(const std::string& pointer, const nlohmann::json& object);
+  void know(std::size_t opened, std::string_view key) { opened_[opened].known.emplace(key); }
+
+  // Throw InputError.
+  void throw_if_any() const;
+  void throw_if_any_or_unknown() const;
+
+ private:
+  struct Opened {
+    std::string pointer;
+    const nlohmann::json* object;
+    std::set<std::string, std::less<>> known;
+  };
+
+  std::string file_;
+  std::vector<std::string> lines_;
+  std::size_t count_ = 0;
+  std::vector<Opened> opened_;
+  std::map<const nlohmann::json*, std::size_t> index_;
+};
+
+// A key as a part of a JSON pointer.
+std::string json_token(std::string_view key);
+
+// Parses `text` into `root`. Whatever is not JSON, duplicate keys and nesting deeper than 64 go to
+// `problems`; then `root` may hold a part only.
+void parse_json(const std::string& text, nlohmann::json& root, JsonProblems& problems);
+
+}  // namespace impact_damper

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/files/scene_file.hpp"
+
+namespace impact_damper {
+namespace {
+
+// The columns of one section: reads each, and holds its length against that of the first.
+class Columns {
+ public:
+  explicit Columns(ObjectReader& object) : object_(object) {}
+
+  template <typename Element>
+  bool read(std::string_view name, std::vector<Element>& column, NumberRange range = {}) {
+    if (!object_.required(name, column, range)) return false;
+    if (!length_) length_ = column.size();
+    if (column.size() == *length_) return true;
+    object_.refuse(name, "must be as long as the section's first column, " + std::to_string(*length_) +
+                             ", got a length of " + std::to_string(column.size()));
+    return false;
+  }
+
+  bool read(std::string_view name, std::vector<Wall>& column) {
+    std::vector<std::int64_t> numbers;
+    const bool is_read = read(name, numbers, within(0, 1));
+    for (const std::int64_t number : numbers) column.push_back(number == 0 ? Wall::left : Wall::right);
+    return is_read;
+  }
+
+  bool read_times(std::string_view name, std::vector<double>& column) {
+    if (!read(name, column, at_least(0))) return false;
+    const auto drop = std::is_sorted_until(column.begin(), column.end());
+    if (drop == column.end()) return true;
+    object_.refuse(
+        name, static_cast<std::size_t>(drop - column.begin()),
+        "must not be below the one before it, " + number_text(*(drop - 1)) + ", got " + number_text(*drop));
+    return false;
+  }
+
+ private:
+  ObjectReader& object_;
+  std::optional<std::size_t> length_;
+};
+
+Calibration read_calibration(ObjectReader& object) {
+  Calibration calibration{};
+  object.required("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
+  return calibration;
+}
+
+Exact read_options(ObjectReader& object, Exact engine) {
+  engine.calibration = read_calibration(object);
+  return engine;
+}
+
+Restitution read_options(ObjectReader& object, Restitution engine) {
+  object.required("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
+  return engine;
+}
+
+Cem read_options(ObjectReader& object, Cem engine) {
+  object.required("time_step", engine.time_step, above(0));
+  object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
+  object.required("locate", engine.locate);
+  object.required("unstable", engine.unstable);
+  engine.calibration = read_calibration(object);
+  object.required("max_steps", engine.max_steps, at_least(1));
+  return engine;
+}
+
+Engine read_engine(ObjectReader object) {
+  constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
+  if (!object.require("name")) return {};
+  const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
+  if (!name) {
+    object.keys();  // which of them are known depends on the name
+    return {};
+  }
+  Engine engine = *name == 0 ? Engine(Exact{}) : *name == 1 ? Engine(Restitution{}) : Engine(Cem{});
+  std::visit(
+      [&](auto& options) {
+        options = read_options(object, options);
+        object.required("max_impacts", options.budget.max_impacts, at_least(0));
+        object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
+        object.required("max_time", options.budget.max_time, NumberRange{0, 1e12, false});
+      },
+      engine);
+  return engine;
+}
+
+HalfCycles read_half_cycles(ObjectReader object) {
+  HalfCycles half_cycles;
+  Columns columns(object);
+  columns.read_times("zero_crossing", half_cycles.zero_crossing);
+  columns.read_times("peak_time", half_cycles.peak_time);
+  columns.read("amplitude", half_cycles.amplitude, at_least(0));
+  columns.read("impacts", half_cycles.impacts, at_least(0));
+  return half_cycles;
+}
+
+Impacts read_impacts(ObjectReader object) {
+  Impacts impacts;
+  Columns columns(object);
+  columns.read_times("time", impacts.time);
+  columns.read("wall", impacts.wall);
+  columns.read("relative_velocity", impacts.relative_velocity);
+  columns.read("phase_deg", impacts.phase_deg, within(0, 180));
+  columns.read("amplitude", impacts.amplitude, at_least(0));
+  return impacts;
+}
+
+Contacts read_contacts(ObjectReader object) {
+  Contacts contacts;
+  Columns columns(object);
+  const bool begun = columns.read_times("begin", contacts.begin);
+  const bool ended = columns.read_times("end", contacts.end);
+  columns.read("wall", contacts.wall);
+  for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
+    if (contacts.begin[i] <= contacts.end[i]) continue;
+    object.refuse("end", i,
+                  "must not be before its begin, " + number_text(contacts.begin[i]) + ", got " +
+                      number_text(contacts.end[i]));
+    break;
+  }
+  return contacts;
+}
+
+// A sum that the file states beside its parts.
+void check_sum(ObjectReader& object, std::string_view name, double sum) {
+  double given = 0;
+  if (object.required(name, given) && given != sum) {
+    object.refuse(name, "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
+  }
+}
+
+Energy read_energy(ObjectReader object) {
+  Energy energy;
+  bool all_read = object.required("kinetic", energy.kinetic);
+  all_read = object.required("spring", energy.spring) && all_read;
+  all_read = object.required("wall", energy.wall) && all_read;
+  object.required("paper", energy.paper);
+  if (all_read || !object.has("total")) check_sum(object, "total", energy.total());
+  return energy;
+}
+
+EnergyLedger read_ledger(ObjectReader object) {
+  EnergyLedger ledger;
+  ledger.initial = read_energy(object.required_object("initial"));
+  ledger.final = read_energy(object.required_object("final"));
+  if (object.required("impact_loss", ledger.impact_loss) || !object.has("impact_loss_total")) {
+    check_sum(object, "impact_loss_total",
+              std::accumulate(ledger.impact_loss.begin(), ledger.impact_loss.end(), 0.0));
+  }
+  object.required("contact_loss", ledger.contact_loss);
+  object.required("bounce_downs", ledger.bounce_downs, at_least(0));
+  object.required("bounce_down_loss", ledger.bounce_down_loss);
+  object.required("viscous_work", ledger.viscous_work);
+  object.required("forcing_work", ledger.forcing_work);
+  object.required("residual", ledger.residual);
+  return ledger;
+}
+
+History read_history(ObjectReader object) {
+  History history;
+  Columns columns(object);
+  columns.read_times("time", history.time);
+  columns.read("x", history.x);
+  columns.read("v", history.v);
+  columns.read("y", history.y);
+  columns.read("w", history.w);
+  return history;
+}
+
+// Every field of a run file's scene is there, absent stops as null.
+Scene read_full_scene(ObjectReader object) {
+  for (const SceneField& field : scene_fields) object.require(field.name);
+  object.require("until_time");
+  object.require("until_amplitude");
+  return read_scene_fields(object);
+}
+
+Run read_whole(JsonDocument document) {
+  Run run;
+  ObjectReader object = document.root();
+  if (object.require("schema")) object.word("schema", {run_schema});
+  run.scene = read_full_scene(object.required_object("scene"));
+  run.engine = read_engine(object.required_object("engine"));
+  object.required("stop_reason", run.stop_reason,
+                  {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
+                   StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
+  object.required("end_time", run.end_time, at_least(0));
+  if (const auto section = object.optional_object("half_cycles"))
+    run.half_cycles = read_half_cycles(*section);
+  if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section);
+  if (const auto section = object.optional_object("contacts")) run.contacts = read_contacts(*section);
+  if (const auto section = object.optional_object("energy")) run.energy = read_ledger(*section);
+  if (const auto section = object.optional_object("history")) run.history = read_history(*section);
+  object.required_object("provenance").keys();  // says who made the file, not what is in it
+  document.finish();
+  return run;
+}
+
+}  // namespace
+
+Run read_run(const std::filesystem::path& file) { return read_whole(JsonDocument::read(file)); }
+
+Run parse_run(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text));
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,214 @@
+// Contact with a compliant wall: the full coupled system, in closed form.
+//
+// With q the overlap coordinate (y at the left wall, y - 1 at the right; q < 0 and q > 0 in contact),
+// K = omega_m^2 = k/nu and c = 2 omega_m zeta_m, equations (5)-(8) read
+//     x'' + 2 zeta x' + x = nu (c q' + K q) + f,      x'' + q'' + c q' + K q = 0.
+// Their characteristic polynomial
+//     P(s) = s^4 + [2 zeta + c(1+nu)] s^3 + [1 + 2 zeta c + K(1+nu)] s^2 + [c + 2 zeta K] s + K
+// is factored once per scene into two real quadratics: one oscillator that is slow (both masses moving
+// together) and one that is fast (the wall ringing). A state is split into the part that lives in either,
+// and each part moves by its own oscillator's C and S (oscillator.hpp), critically damped or not.
+//
+// The split. Q1 = s^2 + p s + b slow, Q2 = s^2 + p2 s + b2 fast. Q2(d/dt) removes the fast part of a motion
+// u and leaves r = (alpha d/dt + beta) u1 of the slow one, alpha = p2 - p, beta = b2 - b, and on slow motions
+// (alpha s + beta)(gamma s + delta) = 1 with gamma = -alpha/R, delta = (beta - alpha p)/R,
+// R = beta^2 - alpha beta p + alpha^2 b, so u1 = gamma r' + delta r.
+#pragma once
+
+#include "impact_damper/motion/contact_factors.hpp"
+#include "impact_damper/motion/motion.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct ContactState {
+  Real x, v, q, w;
+};
+
+template <class Real>
+class ContactSystem {
+ public:
+  ContactSystem(const System<Real>& system, const Real& zeta_m)
+      : nu(system.nu),
+        zeta(system.zeta),
+        stiffness(system.k / system.nu),
+        damping(2 * zeta_m * square_root(stiffness)),
+        forcing(system.forcing) {
+    const ContactFactors<Real> factors = factor_contact(nu, zeta, stiffness, damping);
+    p_ = factors.p;
+    b_ = factors.b;
+    p2_ = factors.p2;
+    b2_ = factors.b2;
+    slow = Oscillator<Real>(p_ / 2, b_);
+    fast = Oscillator<Real>(p2_ / 2, b2_);
+    const Real alpha = p2_ - p_, beta = b2_ - b_;
+    const Real resultant = beta * beta - alpha * beta * p_ + alpha * alpha * b_;
+    gamma_ = -alpha / resultant;
+    delta_ = (beta - alpha * p_) / resultant;
+    // On fast motions x = nu (c s + K) / (s^2 + 2 zeta s + 1) q: its inverse denominator, reduced by Q2.
+    const Real free = 1 + 2 * zeta;
+    stiff_ = b2_ > 16 * free * free;
+    const Real a = 2 * zeta - p2_, o = 1 - b2_;
+    const Real free_resultant = o * o + a * (2 * zeta * b2_ - p2_);  // a b2 - o p2, its large terms cancelled
+    shape_s_ = -a / free_resultant;
+    shape_1_ = (o - a * p2_) / free_resultant;
+    // What one unit of forcing accelerates: x'' by 1, q'' by -1.
+    split({0, 1, 0, -1}, drive_slow, drive_fast);
+  }
+
+  // u = slow + fast.
+  void split(const ContactState<Real>& u, ContactState<Real>& slow_part,
+             ContactState<Real>& fast_part) const {
+    const Real force = damping * u.w + stiffness * u.q;
+    const Real x2 = nu * force - 2 * zeta * u.v - u.x, q2 = -force - x2;
+    // r = Q2(d/dt) applied to q and x, and its derivative. For q the large terms cancel exactly:
+    // p2 - c(1+nu) = 2 zeta - p and b2 - K(1+nu) = 1 + 2 zeta c - b - p p2, by the coefficients of P.
+    const Real on_w = 2 * zeta - p_, on_q = 1 + 2 * zeta * damping - b_ - p_ * p2_;
+    const Real r_q = on_w * u.w + on_q * u.q + 2 * zeta * u.v + u.x;
+    const Real r_w = on_w * q2 + on_q * u.w + 2 * zeta * x2 + u.v;
+    slow_part.q = gamma_ * r_w + delta_ * r_q;
+    slow_part.w = gamma_ * (-p_ * r_w - b_ * r_q) + delta_ * r_w;
+    fast_part.q = u.q - slow_part.q;
+    fast_part.w = u.w - slow_part.w;
+    if (stiff_) {
+      // From the shape of the fast motion: a rounding error of x must not ring with the wall's frequency.
+      const auto shape = [&](const Real& now, const Real& rate) {
+        // (c s + K)(shape_s s + shape_1) q, with s^2 = -p2 s - b2
+        const Real square = damping * shape_s_;
+        return nu * ((stiffness * shape_1_ - square * b2_) * now +
+                     (damping * shape_1_ + stiffness * shape_s_ - square * p2_) * rate);
+      };
+      fast_part.x = shape(fast_part.q, fast_part.w);
+      fast_part.v = shape(fast_part.w, -p2_ * fast_part.w - b2_ * fast_part.q);
+      slow_part.x = u.x - fast_part.x;
+      slow_part.v = u.v - fast_part.v;
+    } else {
+      const Real x3 = nu * (damping * q2 + stiffness * u.w) - 2 * zeta * x2 - u.v;
+      const Real r_x = x2 + p2_ * u.v + b2_ * u.x, r_v = x3 + p2_ * x2 + b2_ * u.v;
+      slow_part.x = gamma_ * r_v + delta_ * r_x;
+      slow_part.v = gamma_ * (-p_ * r_v - b_ * r_x) + delta_ * r_v;
+      fast_part.x = u.x - slow_part.x;
+      fast_part.v = u.v - slow_part.v;
+    }
+  }
+
+  Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
+  Forcing<Real> forcing;
+  Oscillator<Real> slow, fast;
+  ContactState<Real> drive_slow, drive_fast;
+
+ private:
+  Real p_, b_, p2_, b2_, gamma_, delta_, shape_s_, shape_1_;
+  bool stiff_;
+};
+
+template <class Real>
+class Contact {
+ public:
+  Contact(const ContactSystem<Real>& system, const Real& begin, const State<Real>& start, Wall wall)
+      : system_(system),
+        begin_(begin),
+        start_(start),
+        wall_(wall == Wall::left ? 0 : 1),
+        inward_(wall == Wall::left ? -1 : 1) {
+    system.split({start.x, start.v, start.y - wall_, start.w}, slow_, fast_);
+  }
+
+  State<Real> at(const Real& t) const {
+    if (t == 0) return start_;
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
+  }
+
+  // Towards zero: how deep the secondary mass is in the wall.
+  std::array<Outlook<Real>, 1> depth(const Real& t, const Real& span) const {
+    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};
+  }
+  Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    return look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
+                instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
+  }
+
+  // Panels as long as the fast motion allows while its ringing can still be felt in the energy, then as the
+  // slow one and the forcing allow.
+  Real panel(const Real& t) const {
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    Real rate = system_.slow.rate();
+    if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
+    const Real ringing_w = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
+    const Real ringing_v = instant_of_x(fast, system_.fast, system_.drive_fast, t).transient(1);
+    const Real power = system_.nu * system_.damping * ringing_w * (ringing_w + 2 * absolute(slow.w)) +
+                       2 * system_.zeta * ringing_v * (ringing_v + 2 * absolute(slow.v)) +
+                       absolute(system_.forcing.amplitude) * ringing_v;
+    const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
+                       (absolute(slow.q) + absolute(fast.q) + absolute(fast.x));
+    const Real forced =
+        system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);
+    const Real energy = slow.x * slow.x + slow.v * slow.v + forced * forced;
+    const bool quiet = (ringing_w <= noise && ringing_v <= noise) || power <= Real(1e-18) * rate * energy;
+    if (!quiet && system_.fast.rate() > rate) rate = system_.fast.rate();
+    return Real(6) / rate;
+  }
+  Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
+
+ private:
+  ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
+                          const ContactState<Real>& drive, const Real& t) const {
+    // Under forcing x' and q' of a part differ from its v and w by drive.x f and drive.q f, from the start
+    // on.
+    if (t == 0 && !system_.forcing) return from;
+    const Propagator<Real> p = oscillator.propagate(t);
+    const Real s1 = -oscillator.b() * p.s;
+    ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
+                          p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
+    if (system_.forcing) {
+      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
+      const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
+      const Real on_displacement = driven.d1 + 2 * oscillator.a() * driven.d;  // response to C instead of S
+      const Real on_velocity = f - oscillator.b() * driven.d;                  // its derivative
+      to.x += drive.v * driven.d + drive.x * on_displacement;
+      to.v += drive.v * driven.d1 + drive.x * on_velocity;
+      to.q += drive.w * driven.d + drive.q * on_displacement;
+      to.w += drive.w * driven.d1 + drive.q * on_velocity;
+    }
+    return to;
+  }
+
+  ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
+  ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
+
+  // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation
+  // under (drive1 + 2 a drive) f + drive f'.
+  using Part = Instant<Real, 6>;
+  static Real on_f(const Oscillator<Real>& oscillator, const Real& drive, const Real& drive1) {
+    return drive1 + 2 * oscillator.a() * drive;
+  }
+  Part instant_of_q(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
+                    const ContactState<Real>& drive, const Real& t) const {
+    return {oscillator, now.q,           now.w,     on_f(oscillator, drive.q, drive.w),
+            drive.q,    system_.forcing, begin_ + t};
+  }
+  Part instant_of_x(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
+                    const ContactState<Real>& drive, const Real& t) const {
+    return {oscillator, now.x,           now.v,     on_f(oscillator, drive.x, drive.v),
+            drive.x,    system_.forcing, begin_ + t};
+  }
+  static Outlook<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign,
+                            const Real& span) {
+    const Real slow_third = slow.bound(n + 3, span), fast_third = fast.bound(n + 3, span);
+    return {{sign * (slow[n] + fast[n]), sign * (slow[n + 1] + fast[n + 1]),
+             sign * (slow[n + 2] + fast[n + 2]), slow_third + fast_third},
+            {sign * slow[n], sign * slow[n + 1], sign * slow[n + 2], slow_third},
+            fast.bound(n, span)};
+  }
+
+  const ContactSystem<Real>& system_;
+  Real begin_;
+  State<Real> start_;
+  Real wall_, inward_;
+  ContactState<Real> slow_, fast_;
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,61 @@
+#include "impact_damper/motion/contact_factors.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+namespace impact_damper {
+namespace {
+
+using Complex = std::complex<double>;
+
+double separation(const std::array<Complex, 4>& roots, int first, int second) {
+  double least = INFINITY;
+  for (int i : {first, second}) {
+    for (int j = 0; j < 4; ++j) {
+      if (j == first || j == second) continue;
+      least = std::min(least, std::abs(roots[i] - roots[j]) / (std::abs(roots[i]) + std::abs(roots[j])));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
+  // In s = scale t the roots lie about 1.
+  const double scale = std::sqrt(std::sqrt(c0));
+  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
+  companion(0, 0) = -c3 / scale;
+  companion(0, 1) = -c2 / (scale * scale);
+  companion(0, 2) = -c1 / (scale * scale * scale);
+  companion(0, 3) = -1;
+  companion(1, 0) = companion(2, 1) = companion(3, 2) = 1;
+  const auto eigenvalues = companion.eigenvalues();
+  std::array<Complex, 4> roots;
+  for (int i = 0; i < 4; ++i) roots[i] = scale * eigenvalues[i];
+
+  // Eigen returns conjugates exactly, so two roots make a real factor if they are conjugate or both real.
+  double best = -1;
+  QuadraticFactor factor{};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i + 1; j < 4; ++j) {
+      const Complex sum = roots[i] + roots[j], product = roots[i] * roots[j];
+      if (sum.imag() != 0 || (roots[i].imag() == 0) != (roots[j].imag() == 0)) continue;
+      if (product.real() > scale * scale * (1 + 1e-6)) continue;  // the faster of two factors
+      int others_imaginary = 0;
+      for (int m = 0; m < 4; ++m) others_imaginary += m != i && m != j && roots[m].imag() != 0;
+      if (others_imaginary == 1) continue;
+      const double apart = separation(roots, i, j);
+      if (apart > best || (apart == best && product.real() < factor.b)) {
+        best = apart;
+        factor = {-sum.real(), product.real()};
+      }
+    }
+  }
+  return factor;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,80 @@
+// Energies of the two masses and the walls, and the works that change them.
+//
+// Works are integrals of the motion itself, by Gauss-Legendre quadrature, not differences of energies: so
+// that the ledger's residual is a test of the motion and not an identity.
+#pragma once
+
+#include <array>
+
+#include "impact_damper/motion/motion.hpp"
+
+namespace impact_damper {
+
+// Energy of a state, by K epsilon^2; `depth` is how deep the secondary mass is in a compliant wall.
+// Kinetic energy with the cross term that the paper's sum of squares drops: m is carried along with x'.
+template <class Real>
+Energy energy_of(const System<Real>& system, const State<Real>& s, const Real& depth) {
+  Energy energy;
+  const Real z1 = s.v + s.w;
+  energy.kinetic = double((s.v * s.v + system.nu * z1 * z1) / 2);
+  energy.spring = double(s.x * s.x / 2);
+  energy.wall = double(system.k * depth * depth / 2);
+  energy.paper = double((s.v * s.v + system.nu * (s.v * s.v + s.w * s.w) + s.x * s.x) / 2);
+  return energy;
+}
+
+template <class Real>
+struct Works {
+  Real wall{0}, viscous{0}, forcing{0};
+  Real turnover{0};  // integral of the forcing's |power|: what rounding errors of its work are measured by
+};
+
+// Abscissae (positive half) and weights of the 16-point Gauss-Legendre rule on [-1, 1]
+// (Abramowitz and Stegun, table 25.4).
+struct GaussPoint {
+  double abscissa, weight;
+};
+inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1894506104550684963},
+                                                     {0.2816035507792589132, 0.1826034150449235889},
+                                                     {0.4580167776572273863, 0.1691565193950025382},
+                                                     {0.6178762444026437484, 0.1495959888165767321},
+                                                     {0.7554044083550030339, 0.1246289712555338720},
+                                                     {0.8656312023878317439, 0.0951585116824927848},
+                                                     {0.9445750230732325761, 0.0622535239386478929},
+                                                     {0.9894009349916499326, 0.0271524594117540949}}};
+
+// Works over [0, duration] of a motion that begins at `begin`; wall_damping is nu c in contact, else 0.
+template <class Real, class Motion>
+Works<Real> works_of(const System<Real>& system, const Motion& motion, const Real& begin,
+                     const Real& duration, const Real& wall_damping) {
+  Works<Real> works;
+  if (system.zeta == 0 && !system.forcing && wall_damping == 0) return works;
+  Real from{0};
+  int panels = 0;
+  while (from < duration) {
+    // Ringing that has not died away in so many panels is so fast and so lasting that it averages out. Not
+    // before: what a wall's damper takes out of a long contact it takes out at its beginning.
+    const Real panel = motion.panel(from), least = duration / 65536;
+    Real to = from + (++panels <= 65536 || panel > least ? panel : least);
+    if (!(to < duration)) to = duration;
+    const Real half = (to - from) / 2, middle = from + half;
+    for (const auto& [abscissa, weight] : gauss_16) {
+      for (const double side : {-abscissa, abscissa}) {
+        const Real t = middle + half * side;
+        const State<Real> s = motion.at(t);
+        const Real dt = half * weight;
+        works.viscous += dt * (2 * system.zeta) * (s.v * s.v);
+        works.wall += dt * wall_damping * (s.w * s.w);
+        if (system.forcing) {
+          const Real work = dt * s.v * system.forcing.template derivatives<2>(begin + t)[0];
+          works.forcing += work;
+          works.turnover += absolute(work);
+        }
+      }
+    }
+    from = to;
+  }
+  return works;
+}
+
+}  // namespace impact_damper

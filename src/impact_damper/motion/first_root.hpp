@@ -1,0 +1,143 @@
+// The first root of a function from above, certified: none is ever missed, however grazing.
+//
+// Where g, g', g'' are known at a point and |g'''| <= m from there on,
+//     g(s) >= p(s) = g + g' s + g'' s^2 / 2 - m s^3 / 6,
+// so g cannot vanish before p does. Stepping to the first root of p, again and again, walks towards the
+// first root of g without ever passing it, and converges with third order where g' is not zero there.
+//
+// Where g = main + rest with a bound on |rest| (a slow motion with a fast ringing on top; a straight flight
+// with an oscillation on top), main - bound > 0 is a second proof, which steps over many swings of the rest.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "impact_damper/motion/elementary.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct Jet {
+  Real g{0}, g1{0}, g2{0};  // a function and its first two derivatives at a point
+  Real third{0};            // bound on |g'''| from there on
+};
+
+template <class Real>
+struct Outlook {
+  Jet<Real> whole;
+  Jet<Real> main;  // whole = main + rest
+  Real rest{0};    // bound on |rest| from there on; infinity: no such splitting
+};
+
+// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits.
+// Needs jet.g >= 0.
+template <class Real>
+Real certified_step(const Jet<Real>& jet, const Real& most) {
+  const auto& [g, g1, g2, third] = jet;
+  const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
+  const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
+  const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };
+  Real low{0};
+  // Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
+  // rising ground there is none.
+  const Real inflection = g2 > 0 ? (third * most > g2 ? Real(g2 / third) : most) : Real(0);
+  if (g1 < 0 && g2 > 0) {
+    bool falling = true;
+    for (int i = 0; falling && i < 8; ++i) {
+      const Real next = low - p(low) / slope(low);
+      if (!(next < inflection)) break;
+      if (next - low <= next / 1048576) return low > 0 ? low : next;
+      low = next;
+      falling = slope(low) < 0;
+      if (i == 7 && falling) return low;
+    }
+  }
+  // Beyond it p is concave, and has one root: chords come from below, Newton's steps from above.
+  if (low < inflection) low = inflection;
+  if (!(low < most) || p(most) >= 0) return most;
+  Real high = most;
+  if (slope(low) < 0) {
+    const Real tangent = low - p(low) / slope(low);
+    if (tangent < high) high = tangent;
+  } else if (g2 < 0) {
+    const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
+    if (parabola < high) high = parabola;
+  }
+  // Wherever p is still positive lies before the root.
+  Real nearer = low + (high - low) / 4;
+  while (p(nearer) < 0) {
+    high = nearer;
+    nearer = low + (high - low) / 4;
+    if (!(low < nearer)) return low;
+  }
+  low = nearer;
+  for (int i = 0; i < 8 && high - low > high / 1048576; ++i) {
+    const Real below = p(low), above = p(high);
+    if (!(above < 0)) return high;
+    const Real chord = low + (high - low) * (below / (below - above));
+    const Real newton = high - above / slope(high);
+    if (!(chord > low) && !(newton < high)) break;
+    low = chord;
+    if (newton < high) high = newton;
+  }
+  return low;
+}
+
+template <class Real>
+struct Root {
+  Real time;
+  std::size_t which;  // of the functions that were watched
+};
+
+// The first time in [from, horizon) at which one of several functions reaches zero from above.
+//   outlook(t)   std::array<Outlook<Real>, N>: where each function stands and what bounds it for a time
+//   `span` resolution   a time in which nothing happens, times epsilon of which is the accuracy of the root
+// A function that is not positive but rising is one that has just been left.
+template <class Real, class Watch>
+std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
+                                     const Real& resolution) {
+  Real time = from;
+  while (time < horizon) {
+    const auto functions = outlook(time);
+    const Real rest_of_horizon = horizon - time;
+    const Real most = rest_of_horizon < span ? rest_of_horizon : span;
+    const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
+    Real step = most;
+    std::optional<Root<Real>> near;
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+      Jet<Real> jet = functions[i].whole;
+      if (jet.g <= 0) {
+        if (jet.g1 < 0) return Root<Real>{time, i};
+        jet.g = 0;
+      }
+      Real proven = certified_step(jet, most);
+      const Outlook<Real>& function = functions[i];
+      if (proven < most && function.main.g > function.rest) {
+        Jet<Real> main = function.main;
+        main.g -= function.rest;
+        const Real proven_without_rest = certified_step(main, most);
+        if (proven_without_rest > proven) proven = proven_without_rest;
+      }
+      if (!(proven < step)) continue;
+      step = proven;
+      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
+      // if it has one, that is met at no less than half the slope here.
+      near.reset();
+      const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
+      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1) {
+        const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
+        const bool nothing_between = root <= proven + proven / 1024;
+        if (nothing_between && jet.third * root * root * root < -jet.g1 * least)
+          near = Root<Real>{time + root, i};
+      }
+    }
+    if (step >= rest_of_horizon) return std::nullopt;
+    if (near) return near;
+    time += step > least ? step : least;
+  }
+  return std::nullopt;
+}
+
+}  // namespace impact_damper

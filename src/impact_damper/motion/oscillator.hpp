@@ -1,0 +1,264 @@
+// u'' + 2 a u' + b u = f(t), a >= 0, b > 0: the one equation of which every regime is made.
+//
+// Free flight is one such oscillator (a = zeta, b = 1, equation 3), the stuck regime another
+// (a = zeta/(1+nu), b = 1/(1+nu), equation 9), a contact two of them (contact.hpp).
+//
+// With S and C the solutions for S(0) = 0, S'(0) = 1 and C(0) = 1, C'(0) = 0,
+//     u = u0 C + u'0 S + response to f from rest,      S' = C - 2 a S,   C' = -b S.
+// All damping ratios are admitted; each formula keeps its full relative accuracy through the critical
+// case, for short times (C - 1 and S - t come without cancellation) and through resonance.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <limits>
+
+#include "impact_damper/motion/elementary.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct Propagator {
+  Real c{1}, s{0};    // C, S
+  Real c1{0}, s1{0};  // C - 1, S - t
+  Real v{1};          // S' = C - 2 a S, which would cancel where overdamped
+};
+
+// f(t) = amplitude sin(frequency t) and its derivatives at one instant.
+template <class Real>
+struct Forcing {
+  Real amplitude{0}, frequency{1};
+  explicit operator bool() const { return amplitude != 0; }
+
+  template <std::size_t N>
+  std::array<Real, N> derivatives(const Real& time) const {
+    const auto [sin, cos] = sin_cos(frequency * time);
+    std::array<Real, N> f;
+    f[0] = amplitude * sin;
+    f[1] = amplitude * frequency * cos;
+    for (std::size_t n = 2; n < N; ++n) f[n] = -frequency * frequency * f[n - 2];
+    return f;
+  }
+};
+
+// Displacement and velocity, from rest, of an oscillator under f.
+template <class Real>
+struct DrivenResponse {
+  Real d{0}, d1{0};
+};
+
+template <class Real>
+class Oscillator {
+ public:
+  Oscillator() = default;
+  Oscillator(const Real& a, const Real& b) : a_(a), b_(b) {
+    const Real discriminant = b - a * a;
+    underdamped_ = discriminant > 0;
+    omega_ = square_root(absolute(discriminant));
+    rate_ = underdamped_ ? square_root(b) : Real(a + omega_);
+    if (!underdamped_) slow_rate_ = b / rate_;
+  }
+
+  const Real& a() const { return a_; }
+  const Real& b() const { return b_; }
+  const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
+
+  Propagator<Real> propagate(const Real& t) const {
+    if (t == 0) return {};
+    if (t * rate_ < Real(0.5)) return propagate_shortly(t);
+    Propagator<Real> p;
+    if (underdamped_) {
+      const auto [sin, cos] = sin_cos(omega_ * t);
+      p.s = sin / omega_;
+      if (a_ == 0) {
+        p.c = cos;
+        p.c1 = cos > 0 ? -sin * sin / (1 + cos) : cos - 1;
+        p.s1 = p.s - t;
+        p.v = cos;
+        return p;
+      }
+      const Real decay = exponential(-a_ * t);
+      p.s *= decay;
+      p.c = decay * cos + a_ * p.s;
+      p.v = decay * cos - a_ * p.s;
+    } else {
+      const Real decay = exponential(-slow_rate_ * t),
+                 fast_decay = exponential(Real(-(slow_rate_ + 2 * omega_) * t));
+      p.s = omega_ == 0 ? Real(t * decay)
+                        : Real(-decay * exponential_minus_1(Real(-2 * omega_ * t)) / (2 * omega_));
+      p.v = fast_decay - slow_rate_ * p.s;
+      p.c = decay + slow_rate_ * p.s;
+      p.c1 = exponential_minus_1(Real(-slow_rate_ * t)) + slow_rate_ * p.s;
+      p.s1 = p.s - t;
+      return p;
+    }
+    p.c1 = p.c - 1;
+    p.s1 = p.s - t;
+    return p;
+  }
+
+  // Response, from rest at time `begin`, after a time t. `p` is propagate(t).
+  DrivenResponse<Real> respond(const Forcing<Real>& forcing, const Real& begin, const Real& t,
+                               const Propagator<Real>& p) const {
+    if (t == 0) return {};
+    const auto [sin, cos] = sin_cos(forcing.frequency * begin);
+    const Real fastest = rate_ > forcing.frequency ? rate_ : forcing.frequency;
+    if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
+    // The response z to exp(i omega_f t), turned by the phase at the beginning:
+    // sin(phase + omega_f t) = Im(exp(i phase) exp(i omega_f t)).
+    const bool may_resonate = a_ * a_ * 2 < b_ && forcing.frequency * forcing.frequency < 2 * b_;
+    const auto [z, z1] = may_resonate ? respond_by_difference(forcing.frequency, t)
+                                      : respond_by_steady_state(forcing.frequency, t, p);
+    return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
+            forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
+  }
+
+ private:
+  using Complex = std::complex<Real>;
+  struct ComplexResponse {
+    Complex z, z1;
+  };
+
+  // Taylor series, term by term from the equation itself: S = sum s_n with s_n of order t^n, C - 1 = -b int
+  // S.
+  Propagator<Real> propagate_shortly(const Real& t) const {
+    const Real at = 2 * a_ * t, bt = b_ * t * t;
+    Real before = t, now = -a_ * t * t;
+    Real s1 = now, integral = t / 2 + now / 3;
+    for (int n = 3;; ++n) {
+      const Real next = -(at * now / n + bt * before / (n * (n - 1)));
+      s1 += next;
+      integral += next / (n + 1);
+      before = now;
+      now = next;
+      if (absolute(before) + absolute(now) <= std::numeric_limits<Real>::epsilon() / 16 * absolute(s1)) break;
+    }
+    Propagator<Real> p;
+    p.s1 = s1;
+    p.s = t + s1;
+    p.c1 = -b_ * t * integral;
+    p.c = 1 + p.c1;
+    p.v = p.c - 2 * a_ * p.s;
+    return p;
+  }
+
+  DrivenResponse<Real> respond_shortly(const Forcing<Real>& forcing, const Real& sin, const Real& cos,
+                                       const Real& t) const {
+    const Real at = 2 * a_ * t, bt = b_ * t * t, phase = forcing.frequency * t;
+    // d_n, f_n: terms of order t^n of the response and of the force times t^2.
+    Real f_now = forcing.amplitude * t * t * sin, f_next = forcing.amplitude * t * t * phase * cos;
+    Real d_now = 0, d_next = 0, d = 0, d1 = 0;
+    for (int n = 0;; ++n) {
+      const Real term = (f_now - at * (n + 1) * d_next - bt * d_now) / ((n + 1) * (n + 2));
+      d += term;
+      d1 += (n + 2) * term;
+      const Real f_after = -phase * phase * f_now / ((n + 1) * (n + 2));
+      f_now = f_next;
+      f_next = f_after;
+      d_now = d_next;
+      d_next = term;
+      if (n > 1 &&
+          absolute(d_now) + absolute(d_next) <= std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
+        break;
+      if (n > 200) break;  // a response that is zero to the last bit
+    }
+    return {d, d1 / t};
+  }
+
+  // Steady state minus the transient it starts with: safe wherever the steady state cannot be large.
+  ComplexResponse respond_by_steady_state(const Real& frequency, const Real& t,
+                                          const Propagator<Real>& p) const {
+    const Real sin = sin_cos(frequency * t).sin, half = sin_cos(frequency * t / 2).sin;
+    const Real cos_minus_c = -2 * half * half - p.c1;
+    const Complex h(b_ - frequency * frequency, 2 * a_ * frequency);
+    return {Complex(cos_minus_c, sin - frequency * p.s) / h,
+            Complex(b_ * p.s - frequency * sin, frequency * (cos_minus_c + 2 * a_ * p.s)) / h};
+  }
+
+  // Underdamped, eigenvalues lambda = -a +- i omega: z = (E(lambda) - E(conj lambda)) / (2 i omega) with
+  // E(lambda) = (exp(i omega_f t) - exp(lambda t)) / (i omega_f - lambda), which tends to t exp(lambda t) in
+  // resonance and is evaluated so that nothing cancels on the way there.
+  ComplexResponse respond_by_difference(const Real& frequency, const Real& t) const {
+    const auto forced = sin_cos(frequency * t);
+    const Real decay = exponential(-a_ * t), loss = -exponential_minus_1(-a_ * t);
+    const auto difference = [&](const Real& omega) {
+      const Real detuning = frequency - omega;
+      const auto [sin, cos] = sin_cos(detuning * t);
+      const Real half = sin_cos(detuning * t / 2).sin;
+      const Complex denominator(a_, detuning);
+      if (denominator == Complex(0)) return Complex(t) * Complex(forced.cos, forced.sin);
+      return Complex(forced.cos, forced.sin) *
+             (Complex(loss * cos + 2 * half * half, decay * sin) / denominator);
+    };
+    const Complex e1 = difference(omega_), e2 = difference(-omega_);
+    const Complex lambda(-a_, omega_), twice_i_omega(0, 2 * omega_);
+    return {(e1 - e2) / twice_i_omega, (lambda * e1 - std::conj(lambda) * e2) / twice_i_omega};
+  }
+
+  Real a_{0}, b_{1};
+  bool underdamped_ = true;
+  Real omega_{1};      // sqrt|b - a^2|
+  Real slow_rate_{0};  // of the slower exponential, where there are two
+  Real rate_{1};
+};
+
+// An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
+// from there on.
+template <class Real, std::size_t N>
+class Instant {
+ public:
+  Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
+          const Real& on_f1, const Forcing<Real>& forcing, const Real& time)
+      : root_b_(square_root(oscillator.b())), frequency_(forcing.frequency) {
+    d_[0] = u;
+    d_[1] = u1;
+    if (!forcing) {
+      for (std::size_t n = 2; n < N; ++n)
+        d_[n] = -2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
+      return;
+    }
+    const auto f = forcing.template derivatives<N + 1>(time);
+    for (std::size_t n = 2; n < N; ++n) {
+      d_[n] =
+          on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
+    }
+    // The steady state: |H|^2 u = Re(conj H) (on_f f + on_f1 f') + Im(conj H) (their integral's) ..., with
+    // H = b - omega_f^2 + 2 a i omega_f and i omega_f f standing for f'.
+    const Real re = oscillator.b() - frequency_ * frequency_, im = 2 * oscillator.a() * frequency_;
+    const Real h2 = re * re + im * im;
+    const Real on_sin = (re * on_f + im * on_f1 * frequency_) / h2;
+    const Real on_cos = (re * on_f1 - im * on_f / frequency_) / h2;
+    for (std::size_t n = 0; n < N; ++n) steady_[n] = on_sin * f[n] + on_cos * f[n + 1];
+    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency_ * frequency_));
+    force_ = absolute(forcing.amplitude) * size;
+    steady_size_ = force_ / square_root(h2);
+  }
+
+  const Real& operator[](std::size_t n) const { return d_[n]; }
+
+  // |u^(n)| stays within this for a time `span`, without forcing for ever. Every derivative obeys the same
+  // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per
+  // time. Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
+  Real bound(std::size_t n, const Real& span) const {
+    const Real free = size_of(d_[n], d_[n + 1]);
+    if (force_ == 0) return free;
+    Real power{1};
+    for (std::size_t i = 0; i < n; ++i) power *= frequency_;
+    const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
+    return steady < growing ? steady : growing;
+  }
+  // What of u^(n) is not the steady state, at most, from here on.
+  Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
+
+ private:
+  Real size_of(const Real& u, const Real& u1) const {
+    const Real scaled = u1 / root_b_;
+    return square_root(Real(u * u + scaled * scaled));
+  }
+
+  std::array<Real, N> d_, steady_{};
+  Real root_b_, frequency_, force_{0}, steady_size_{0};
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,55 @@
+#include "impact_damper/motion/wall.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace impact_damper {
+namespace {
+
+// The velocity with which a unit velocity comes back from the wall, in time units of 1/omega_m:
+// q'' + 2 zeta q' + q = 0, q(0) = 0, q'(0) = -1, until q = 0 again at t = pi/omega, omega^2 = 1 - zeta^2.
+// Walked through in `steps` equal closed-form steps, as the paper's subroutine does.
+double rebound_velocity(double zeta, int steps) {
+  const double omega = std::sqrt((1 - zeta) * (1 + zeta));
+  const double h = std::numbers::pi / omega / steps;
+  const double decay = std::exp(-zeta * h);
+  const double s = decay * std::sin(omega * h) / omega;
+  const double c = decay * std::cos(omega * h) + zeta * s;
+  double q = 0, w = -1;
+  for (int i = 0; i < steps; ++i) {
+    const double next = c * q + s * w;
+    w = (c - 2 * zeta * s) * w - s * q;
+    q = next;
+  }
+  return w;
+}
+
+}  // namespace
+
+IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
+  constexpr int steps = 100;
+  // The rebound velocity falls from 1 to 0 as zeta goes from 0 to 1, so bisection cannot fail. It starts,
+  // as the paper's subroutine, from a small assumed damping ratio and corrects it until the error is met.
+  IterativeZeta found;
+  found.steps = steps;
+  double low = 0, high = 1;
+  found.zeta_m = 0;
+  found.velocity_error = std::abs(rebound_velocity(found.zeta_m, steps) - restitution);
+  while (found.velocity_error > tolerance) {
+    const double middle = low + (high - low) / 2;
+    if (middle == low || middle == high) break;
+    const double error = rebound_velocity(middle, steps) - restitution;
+    (error > 0 ? low : high) = middle;
+    found.zeta_m = middle;
+    found.velocity_error = std::abs(error);
+  }
+  return found;
+}
+
+double omega_m(const Scene& scene) { return std::sqrt(scene.wall_stiffness / scene.mass_ratio); }
+
+double nominal_contact_time(const Scene& scene) {
+  return std::numbers::pi / (omega_m(scene) * std::sqrt(1 + scene.mass_ratio));
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,54 @@
+// The wall: a spring k and a damper that together give the restitution e.
+//
+// In contact the wall pushes with F = 2 omega_m zeta_m q' + omega_m^2 q per unit secondary mass
+// (equations 5-8), omega_m = sqrt(k/nu). Contact lasts from the wall position to the return to it.
+#pragma once
+
+#include "impact_damper/engine.hpp"
+#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/scene.hpp"
+
+namespace impact_damper {
+
+// zeta_m for which a secondary mass bouncing on a wall that stands still keeps the fraction e of its
+// speed: e = exp(-pi zeta_m / sqrt(1 - zeta_m^2)), hence zeta_m = L / sqrt(pi^2 + L^2), L = -ln e.
+// e in [0, 1]: 0 gives 1 (no rebound), 1 gives 0.
+template <class Real>
+Real zeta_m_closed_form(const Real& restitution) {
+  if (restitution <= 0) return 1;
+  const Real l = -logarithm(restitution), p = half_turn<Real>();
+  return l / square_root(Real(p * p + l * l));
+}
+
+// The same number as the paper's subroutine finds it: simulate the impact of a unit velocity on the
+// spring and damper by stepping closed-form solutions through at least 100 steps, compare the velocity
+// at the return to the wall with e, and correct zeta_m until they agree.
+struct IterativeZeta {
+  double zeta_m = 0;
+  double velocity_error = 0;  // |rebound velocity - e| at the end, <= tolerance
+  int steps = 0;              // taken through the last simulated impact, >= 100
+};
+IterativeZeta zeta_m_iterative(double restitution, double tolerance = 1e-8);
+
+// zeta_m that an engine uses: fixed_wall as above; two_body divides by sqrt(1 + nu), so that the
+// delivered restitution between two free masses is e exactly.
+template <class Real = double>
+Real zeta_m(const Scene& scene, Calibration calibration) {
+  const Real fixed = zeta_m_closed_form(Real(scene.restitution));
+  switch (calibration) {
+    case Calibration::fixed_wall:
+      return fixed;
+    case Calibration::two_body:
+      return fixed / square_root(Real(1 + Real(scene.mass_ratio)));
+  }
+  return fixed;
+}
+
+// omega_m = sqrt(k/nu), and what a contact between two otherwise free masses makes of it:
+// omega_c = omega_m sqrt(1 + nu), damping ratio zeta_m sqrt(1 + nu).
+double omega_m(const Scene& scene);
+
+// pi / omega_c: half a period of the contact, the nominal duration of one impact.
+double nominal_contact_time(const Scene& scene);
+
+}  // namespace impact_damper

@@ -1,0 +1,299 @@
+// Measures on the curves of the averaged loss factor.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/measures_parts.hpp"
+
+namespace impact_damper {
+
+Curve loss_curve(const Run& run, LossOrdinate which, double from, double to, int half_cycles) {
+  const LossFactor loss = averaged_loss_factor(half_cycles_of(run), {half_cycles});
+  const std::vector<double> y = ordinate(loss, run.scene, which);
+  Curve curve;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (!(loss.amplitude[i] >= from && loss.amplitude[i] <= to)) continue;
+    curve.x.push_back(loss.amplitude[i]);
+    curve.y.push_back(y[i]);
+  }
+  return curve;
+}
+
+double log_slope(const Curve& curve) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    const double x = std::log(curve.x[i]), y = std::log(curve.y[i]);
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+double spread_percent(const std::vector<Curve>& curves, double from, double to) {
+  // Twelve bins, equal in ln A: wide enough to hold several half cycles of every run, narrow enough to see
+  // the structure of the curve.
+  constexpr int bins = 12;
+  double sum = 0;
+  int used = 0;
+  for (int bin = 0; bin < bins; ++bin) {
+    const double low = from * std::pow(to / from, double(bin) / bins);
+    const double high = from * std::pow(to / from, double(bin + 1) / bins);
+    double least = std::numeric_limits<double>::infinity(), most = -least, total = 0;
+    bool all = true;
+    for (const Curve& curve : curves) {
+      double mean = 0;
+      int points = 0;
+      for (std::size_t i = 0; i < curve.x.size(); ++i)
+        if (curve.x[i] >= low && curve.x[i] < high) mean += curve.y[i], ++points;
+      all = all && points > 0;
+      if (points == 0) break;
+      mean /= points;
+      least = std::min(least, mean);
+      most = std::max(most, mean);
+      total += mean;
+    }
+    if (!all) continue;
+    sum += (most - least) / (total / static_cast<double>(curves.size()));
+    ++used;
+  }
+  return 100 * sum / used;  // no bin that all curves reach: NaN
+}
+
+namespace {
+
+std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which, double from,
+                                   double to) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Run* run : runs) {
+    for (const double y : loss_curve(*run, which, from, to).y) {
+      least = std::min(least, y);
+      most = std::max(most, y);
+    }
+  }
+  return {least, most};
+}
+
+template <LossOrdinate which>
+Spread collapse(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    std::vector<Curve> curves;
+    for (const Run* run : group) curves.push_back(loss_curve(*run, which, from, to));
+    return spread_percent(curves, from, to);
+  });
+}
+
+// The point of the highest ordinate.
+std::pair<double, double> highest(const Curve& curve) {
+  const auto top = std::max_element(curve.y.begin(), curve.y.end());
+  if (top == curve.y.end()) return {std::nan(""), std::nan("")};
+  return {curve.x[static_cast<std::size_t>(top - curve.y.begin())], *top};
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+Spread product_mid_range(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    const auto [least, most] =
+        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    return (least + most) / 2;
+  });
+}
+
+Spread product_half_range(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    const auto [least, most] =
+        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    return 100 * (most - least) / (most + least);
+  });
+}
+
+Spread loss_slope(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    return log_slope(
+        loss_curve(run, LossOrdinate::specific_secondary, number(call, "from"), number(call, "to")));
+  });
+}
+
+Spread largest_loss(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call,
+                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).second; });
+}
+
+Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call,
+                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).first; });
+}
+
+Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"),
+                              static_cast<int>(number(call, "half_cycles"))))
+        .first;
+  });
+}
+
+Spread loss_near_span(Runs& runs, const MeasureCall& call) {
+  const double eta = number(call, "eta"), factor = number(call, "factor");
+  return over_members(runs, call, [&](const Run& run) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    const Curve curve = loss_curve(run, LossOrdinate::eta, number(call, "from"), number(call, "to"));
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
+      least = std::min(least, curve.x[i]);
+      most = std::max(most, curve.x[i]);
+    }
+    return most / least;
+  });
+}
+
+Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    Curve points;
+    for (const Run* run : group) {
+      const Curve curve =
+          loss_curve(*run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+      points.x.push_back(run->scene.mass_ratio);
+      points.y.push_back(run->scene.mass_ratio * mean(curve.y));
+    }
+    return log_slope(points);
+  });
+}
+
+Spread product_ratio(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    const auto average = [&](const Run& run) {
+      return mean(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to")).y);
+    };
+    return average(*group[0]) / average(*group[1]);
+  });
+}
+
+Spread tail_loss_ratio(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    const Curve all = loss_curve(run, LossOrdinate::eta);
+    const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(number(call, "last")));
+    const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
+    return spread_of(tail).median / highest(all).second;
+  });
+}
+
+Spread smoothing_ratio(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    const auto top = [&](int half_cycles) {
+      return highest(loss_curve(run, LossOrdinate::eta, 0, everywhere, half_cycles)).second;
+    };
+    return top(18) / top(10);
+  });
+}
+
+Spread single_impact_advantage(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    const auto window = longest_window(regular_windows(run), 1);
+    if (!window) return std::nan("");
+    return highest(loss_curve(run, LossOrdinate::eta, 0, window->upper)).second /
+           highest(loss_curve(run, LossOrdinate::eta, window->upper)).second;
+  });
+}
+
+}  // namespace
+
+std::vector<Measure> loss_measures() {
+  return {
+      {"product_mid_range",
+       1,
+       8,
+       {"from", "to"},
+       product_mid_range,
+       "mean of the least and the largest A eta_s / nu of all scenes, A in [from, to]"},
+      {"product_half_range_percent",
+       1,
+       8,
+       {"from", "to"},
+       product_half_range,
+       "half their difference, in percent of their mean"},
+      {"loss_slope",
+       1,
+       1,
+       {"from", "to"},
+       loss_slope,
+       "d ln eta_s / d ln A by least squares, A in [from, to]"},
+      {"largest_loss", 1, 1, {}, largest_loss, "largest averaged eta"},
+      {"largest_loss_amplitude", 1, 1, {}, largest_loss_amplitude, "amplitude at which it is met"},
+      {"product_peak_amplitude",
+       1,
+       1,
+       {"from", "to", "half_cycles"},
+       product_peak_amplitude,
+       "amplitude of the largest A eta_s / nu, A in [from, to], averaged over half_cycles"},
+      {"loss_near_span",
+       1,
+       1,
+       {"eta", "factor", "from", "to"},
+       loss_near_span,
+       "ratio of the largest to the least amplitude at which the averaged loss factor is within a factor of "
+       "eta"},
+      {"collapse_eta_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::eta>,
+       "spread of eta between the scenes at equal amplitude, in percent"},
+      {"collapse_specific_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific>,
+       "the same of eta/nu"},
+      {"collapse_secondary_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific_secondary>,
+       "the same of (eta - 2 zeta)/nu"},
+      {"collapse_restitution_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::by_restitution>,
+       "the same of A (eta - 2 zeta)/nu/(1 - e)"},
+      {"mass_ratio_exponent",
+       2,
+       8,
+       {"from", "to"},
+       mass_ratio_exponent,
+       "d ln (mean of A eta_s) / d ln nu by least squares over the scenes"},
+      {"product_ratio",
+       2,
+       2,
+       {"from", "to"},
+       product_ratio,
+       "mean A eta_s / nu of the first scene by the second's"},
+      {"tail_loss_ratio",
+       1,
+       1,
+       {"last"},
+       tail_loss_ratio,
+       "median of the last so many values of eta, by the largest"},
+      {"smoothing_ratio",
+       1,
+       1,
+       {},
+       smoothing_ratio,
+       "largest eta averaged over 18 half cycles, by that over 10"},
+      {"single_impact_advantage",
+       1,
+       1,
+       {},
+       single_impact_advantage,
+       "largest eta in and below the window of single impacts, by the largest above it"},
+  };
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,44 @@
+// What the measures_*.cpp share.
+#pragma once
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/paper/claims.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+inline constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+struct Curve {
+  std::vector<double> x, y;
+};
+
+// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to].
+Curve loss_curve(const Run& run, LossOrdinate which, double from = 0, double to = everywhere,
+                 int half_cycles = 10);
+
+// Slope of ln y against ln x by least squares.
+double log_slope(const Curve& curve);
+
+// How far curves lie apart at equal x: the largest minus the least of their bin means by the mean of these,
+// averaged over the bins that all of them reach, in percent. Bins are equal in ln x on [from, to].
+double spread_percent(const std::vector<Curve>& curves, double from, double to);
+
+inline const HalfCycles& half_cycles_of(const Run& run) {
+  if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");
+  return *run.half_cycles;
+}
+
+inline double number(const MeasureCall& call, const std::string& name) {
+  const auto found = call.numbers.find(name);
+  if (found == call.numbers.end())
+    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
+  return found->second;
+}
+
+}  // namespace impact_damper

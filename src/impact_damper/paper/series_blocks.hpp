@@ -1,0 +1,25 @@
+// The blocks of the figures' tables, by kind; parts of series.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/paper/series.hpp"
+
+namespace impact_damper {
+
+// What is said when a figure cannot be made from a file: "figure 8: FILE: why".
+InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why);
+
+// The run's half cycles, at least one, reaching down to Figure::down_to.
+const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source);
+
+void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table);
+void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
+                    const std::string& number, const std::string& legend, Table& table);
+void add_spread_block(const Figure& figure, Table& table);
+void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table);
+void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table);
+
+}  // namespace impact_damper
