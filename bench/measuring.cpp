@@ -69,7 +69,9 @@ TEST_CASE("the reference and long double agree where double is seen to differ") 
   // Impacts amplify rounding errors. Two of the last bits of an amplitude of 4.5, 2^-50, are the recorder's.
   const std::vector<double> reference = reference_amplitudes(tiny, Exact{});
   const double last_bits = 0x1p-49;
-  CHECK(*amplitude_error(long_double_amplitudes(tiny, Exact{}), reference) <= last_bits);
+  if (reference_scalar() != "long double") {
+    CHECK(*amplitude_error(long_double_amplitudes(tiny, Exact{}), reference) <= last_bits);
+  }
   CHECK(*amplitude_error(amplitudes(tiny, Exact{}), reference) > 0);
   CHECK(*amplitude_error(amplitudes(tiny, Exact{}), reference) < 1e-11);
   CHECK(*amplitude_error(amplitudes(tiny, Restitution{}), reference_amplitudes(tiny, Restitution{})) < 1e-11);

@@ -64,7 +64,8 @@ struct Energy {
   double total() const { return kinetic + spring + wall; }
 };
 
-// initial.total() + forcing_work = final.total() + sum of impact_loss + bounce_down_loss + viscous_work
+// initial.total() + forcing_work
+//     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work
 struct EnergyLedger {
   Energy initial, final;
   std::vector<double> impact_loss;  // per impact, in the order of Impacts

@@ -1,5 +1,6 @@
 #include "impact_damper/simulate.hpp"
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper {
 namespace {
@@ -43,7 +45,9 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
       collect(all, "accumulation_tolerance", "must be > 0 and <= 0.001");
     }
     if (!(scene.y0 >= 0 && scene.y0 <= 1)) {
-      collect(all, "y0", "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid");
+      collect(all, "y0",
+              "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid, got " +
+                  number_text(scene.y0));
     }
   }
 

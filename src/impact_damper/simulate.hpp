@@ -7,7 +7,8 @@ namespace impact_damper {
 
 // Runs `scene` with `engine`, recording what `record` asks for.
 // Throws std::invalid_argument naming every problem if the scene, the engine's options or the record
-// are not admitted (an unstable time step of the component element method among them).
+// are not admitted (an unstable time step of the component element method among them), and NumericalError
+// (files/errors.hpp) where that method overflows.
 Run simulate(const Scene& scene, const Engine& engine, const Record& record);
 
 }  // namespace impact_damper

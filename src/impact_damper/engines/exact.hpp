@@ -27,15 +27,13 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   const Real wall_damping = system.nu * walls.damping;
   Real losses{0};
 
-  // A release on a wall: in contact if pressed against it, which the first derivative of y that is not zero
-  // tells.
+  // A release at rest on a wall: in contact if pressed against it, which y'' tells, or y''' where that is
+  // zero. (With a velocity towards the wall it is an impact, which the flight meets at once.)
   const auto pressed = [&](Real towards_cavity) {
+    if (state.w != 0) return false;
     const auto departure = Flight<Real>(system, timeline.now(), state).departure(timeline.span());
-    for (const Real& lead : {departure.acceleration, departure.jerk}) {
-      if (state.w != 0 || towards_cavity * lead > 0) return false;
-      if (lead != 0) return true;
-    }
-    return false;
+    const Real lead = departure.acceleration != 0 ? departure.acceleration : departure.jerk;
+    return towards_cavity * lead < 0;
   };
   bool in_contact =
       state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));

@@ -9,10 +9,10 @@
 // The impacts are stepped through one by one until a changes by less than the fraction
 // Restitution::accumulation_tolerance within T; then the engine jumps: the masses join (plastically, as far
 // as momentum goes) and move on as one, stuck from T later on. With the tolerance tol and |a'| <= m, w is
-// then about tol a^2 (1-e) / 2m, the displacement that the jump ignores nu w^2 / 2a, and both are below
-// rounding. Of a bounce-down that begins with w the engine so steps through about ln(2 m w / (tol a^2 (1-e)))
-// / -ln e impacts; the energy of those jumped over, nu w^2 / (2 (1+nu)), stands in the ledger as
-// bounce_down_loss.
+// then about tol a^2 (1-e) / 2m; at the default tolerance that is some 1e-9, and the displacement that the
+// jump ignores, nu w^2 / 2a, is below rounding. Of a bounce-down that begins with w the engine so steps
+// through about ln(2 m w / (tol a^2 (1-e))) / -ln e impacts; the energy of those jumped over,
+// nu w^2 / (2 (1+nu)), stands in the ledger as bounce_down_loss.
 //
 // Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once

@@ -51,14 +51,6 @@ class Timeline {
 
   void begin(const State<Real>& start, const Real& depth) {
     row_best_ = absolute(start.x);
-    // Which way x starts: by its first derivative that is not zero.
-    const Flight<Real> flight(system_, Real(0), start);
-    const auto departure = flight.departure(span_);
-    for (const Real& lead : {start.x, start.v, Real(-departure.acceleration), Real(-departure.jerk)}) {
-      if (lead == 0) continue;
-      side_ = lead > 0 ? 1 : -1;
-      break;
-    }
     if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
@@ -117,12 +109,22 @@ class Timeline {
   template <class Motion>
   Real follow(const Motion& motion, const Real& duration) {
     Real from{0};
-    if (side_ == 0) {  // at rest until now
-      const Jet<Real> x = motion.derivative_of_x(0, Real(1), from, span_).whole;
-      for (const Real& lead : {x.g, x.g1, x.g2}) {
-        if (side_ == 0 && lead != 0) side_ = lead > 0 ? 1 : -1;
+    if (side_ ==
+        0) {  // x has not moved until now: which way it goes, its first derivative that is not zero tells
+      if (duration == 0) return duration;
+      const auto leads = motion.leads_of_x();
+      std::size_t order = 0;
+      while (order < leads.size() && leads[order] == 0) ++order;
+      if (order == leads.size()) return duration;
+      side_ = leads[order] > 0 ? 1 : -1;
+      if (order == 3) {
+        // x''' t^3/6 outweighs |x''''| t^4/24 until t = 4 x'''/|x''''|. Half of that is passed over, within
+        // which the sign of an x'' that is zero to rounding would decide.
+        const Real fourth = motion.derivative_of_x(1, side_, from, span_).whole.third;
+        const Real leap = 2 * absolute(leads[order]) / fourth;
+        from = leap < duration ? leap : duration;
+        if (span_ < from) from = span_;
       }
-      if (side_ == 0) return duration;
     }
     notice_peak(motion, from);
     for (;;) {

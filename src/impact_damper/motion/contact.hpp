@@ -131,6 +131,17 @@ class Contact {
                 instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
   }
 
+  // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
+  // rounding errors would decide where one is zero.
+  std::array<Real, 4> leads_of_x() const {
+    const ContactSystem<Real>& c = system_;
+    const auto f = c.forcing.template derivatives<2>(begin_);
+    const Real force = c.damping * start_.w + c.stiffness * (start_.y - wall_);
+    const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
+    const Real x3 = c.nu * (c.damping * w1 + c.stiffness * start_.w) - 2 * c.zeta * x2 - start_.v + f[1];
+    return {start_.x, start_.v, x2, x3};
+  }
+
   // Panels as long as the fast motion allows while its ringing can still be felt in the energy, then as the
   // slow one and the forcing allow.
   Real panel(const Real& t) const {

@@ -1,5 +1,6 @@
 // The elementary functions of the result path, all in one place: whatever a run's numbers go through
-// besides + - * / and sqrt is called from here and nowhere else.
+// besides + - * / and sqrt is called from here and nowhere else (but for the start values in
+// contact_factors.cpp, which are iterated away).
 #pragma once
 
 #include <cmath>

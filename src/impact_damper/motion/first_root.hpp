@@ -92,8 +92,8 @@ struct Root {
 };
 
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
-//   outlook(t)   std::array<Outlook<Real>, N>: where each function stands and what bounds it for a time
-//   `span` resolution   a time in which nothing happens, times epsilon of which is the accuracy of the root
+// outlook(t), a std::array<Outlook<Real>, N>, says where each function stands and what bounds it for a time
+// `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
 // A function that is not positive but rising is one that has just been left.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,

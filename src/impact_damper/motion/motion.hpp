@@ -1,4 +1,4 @@
-// The two motions with rigid walls, each a closed form from its beginning: free flight and stuck.
+// The two motions in which no wall gives, each a closed form from its beginning: free flight and stuck.
 // (The third, contact with a compliant wall, has a file of its own: contact.hpp.)
 //
 // A motion answers, for a time t since its beginning: the state, and the outlooks that first_root needs.
@@ -126,6 +126,11 @@ class Flight {
     const State<Real> now = at(t);
     return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
   }
+  // x and its first three derivatives at the beginning.
+  std::array<Real, 4> leads_of_x() const {
+    const auto x = swing_.instant(start_.x, start_.v, Real(0));
+    return {x[0], x[1], x[2], x[3]};
+  }
   Real panel(const Real&) const { return swing_.panel(); }
   Real resolution() const { return 1; }
 
@@ -156,6 +161,11 @@ class Stuck {
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const State<Real> now = at(t);
     return outlook(swing_.instant(now.x, now.v, t), order, sign, span);
+  }
+  // x and its first three derivatives at the beginning.
+  std::array<Real, 4> leads_of_x() const {
+    const auto x = swing_.instant(start_.x, start_.v, Real(0));
+    return {x[0], x[1], x[2], x[3]};
   }
   Real panel(const Real&) const { return swing_.panel(); }
   Real resolution() const { return 1; }

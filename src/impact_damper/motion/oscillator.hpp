@@ -223,8 +223,9 @@ class Instant {
       d_[n] =
           on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
     }
-    // The steady state: |H|^2 u = Re(conj H) (on_f f + on_f1 f') + Im(conj H) (their integral's) ..., with
-    // H = b - omega_f^2 + 2 a i omega_f and i omega_f f standing for f'.
+    // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
+    // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the
+    // other.
     const Real re = oscillator.b() - frequency_ * frequency_, im = 2 * oscillator.a() * frequency_;
     const Real h2 = re * re + im * im;
     const Real on_sin = (re * on_f + im * on_f1 * frequency_) / h2;
@@ -246,7 +247,7 @@ class Instant {
     Real power{1};
     for (std::size_t i = 0; i < n; ++i) power *= frequency_;
     const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
-    return steady < growing ? steady : growing;
+    return steady < growing ? steady : growing;  // growing where steady is NaN
   }
   // What of u^(n) is not the steady state, at most, from here on.
   Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
