@@ -7,6 +7,9 @@ BUILD := build
 # The component element method takes a hundred times as long as the others: a smaller ensemble.
 MEMBERS := $(if $(filter cem,$(ENGINE)),--members 8)
 FIGURES := $(BUILD)/figures$(if $(filter-out exact,$(ENGINE)),/$(ENGINE))
+ifeq ($(filter $(ENGINE),exact restitution cem),)
+$(error ENGINE must be exact, restitution or cem, got $(ENGINE))
+endif
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \

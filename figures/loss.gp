@@ -28,8 +28,8 @@ band = ""
 do for [i=1:words(styles)] { if (has(sprintf("band-%d", i))) { band = band.sprintf( \
   'table index "band-%d" using 1:2:3 with filledcurves lc rgb sky title columnheader(3),', i) } }
 behind_failure = !words(failed) ? "" : \
-  ', for [i in failed] table index "failed-".i using 1:2 with points ls style_of(i + 0) pt 7 ps 0.15'.\
-  ' title (i eq word(failed, 1) ? "after impact failure" : "")'
+  ', for [i in failed] table index "failed-".i using 1:2 with points ls style_of(i + 0) pt 7 ps 0.15 notitle'.\
+  ', keyentry with points pt 7 ps 0.3 lc rgb black title "after impact failure"'
 bounce_down = !words(bounced) ? "" : \
   ', for [i in bounced] table index "bounce-down-".i using 1:2 with lines ls 9 notitle'
 eval 'plot '.spread.band.\

@@ -13,7 +13,7 @@ set rmargin at screen 0.975
 set tmargin at screen 0.875
 set bmargin at screen 0.385
 set format x ""
-set xtics 2 nomirror
+set xtics 2 nomirror scale 0
 set mxtics 2
 set ytics ("0" 0, "0.5" 0.5, "1" 1)
 set yrange [-0.14:1.14]
@@ -37,6 +37,7 @@ unset label
 unset arrow
 set tmargin at screen 0.355
 set bmargin at screen 0.13
+set xtics 2 nomirror scale 1
 set format x "%g"
 set xlabel "dimensionless time t"
 set ylabel "cavity x" offset 1,0
