@@ -1,5 +1,6 @@
 // `run`: one scene through one engine into one run file.
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "arguments.hpp"
@@ -198,7 +199,14 @@ int run(const CLI::App& app) {
   const Record record = record_of(arguments);
   const std::optional<std::string> file = arguments.file("--output");
   arguments.finish();
-  if (file) require_writable(*file);
+  if (file) {
+    const std::optional<std::string> scene_file = arguments.file("--scene");
+    std::error_code none;  // a file that does not exist is not the same as another
+    if (scene_file && std::filesystem::equivalent(*file, *scene_file, none)) {
+      throw UsageError("--output: is the scene's own file, which would be lost; name another");
+    }
+    require_writable(*file);
+  }
   const std::string text = run_text(simulate_as_asked(scene, engine, record));
   if (file) {
     write_file(*file, text);
