@@ -87,6 +87,11 @@ int main(int argc, char** argv) {
     return program.exit(asked_for_help_or_version);
   } catch (const CLI::ExtrasError&) {
     return fail(usage, head(), unknown_arguments(program, command_of()));
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string text = error.what(), option = text.substr(0, text.find(':'));
+    const bool missing = text.find("missing") != std::string::npos;
+    return fail(usage, head(),
+                option + (missing ? ": needs a value, none is given" : ": is given more than once"));
   } catch (const CLI::ParseError& error) {
     return fail(usage, head(), error.what());
   } catch (const cli::UsageError& error) {
