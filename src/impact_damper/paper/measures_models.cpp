@@ -23,16 +23,22 @@ std::vector<Run> again(Runs& runs, const Scene& scene, const Engine& engine) {
   return simulate_ensemble(scene, engine, Record{}, runs.options());
 }
 
-Spread models_difference(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+// How far apart the curves of A eta_s / nu of two ensembles lie over [from, to], in percent, release by
+// release.
+Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs, double from, double to) {
   std::vector<double> values;
   for (std::size_t i = 0; i < ours.size(); ++i)
     values.push_back(spread_percent({loss_curve(ours[i], LossOrdinate::amplitude_times, from, to),
                                      loss_curve(theirs[i], LossOrdinate::amplitude_times, from, to)},
                                     from, to));
   return spread_of(values);
+}
+
+Spread models_difference(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  return curves_apart(ours, theirs, from, to);
 }
 
 Spread time_saved(Runs& runs, const MeasureCall& call) {
@@ -69,12 +75,7 @@ Spread later_release_difference(Runs& runs, const MeasureCall& call) {
   higher.until_time.reset();
   higher.until_amplitude = from / 2;
   const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
-  std::vector<double> values;
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(spread_percent({loss_curve(ours[i], LossOrdinate::amplitude_times, from, to),
-                                     loss_curve(theirs[i], LossOrdinate::amplitude_times, from, to)},
-                                    from, to));
-  return spread_of(values);
+  return curves_apart(ours, theirs, from, to);
 }
 
 Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
@@ -83,12 +84,7 @@ Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
   Scene other = ours.front().scene;
   other.wall_stiffness = number(call, "stiffness");
   const std::vector<Run> theirs = again(runs, other, ours.front().engine);
-  std::vector<double> values;
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(spread_percent({loss_curve(ours[i], LossOrdinate::amplitude_times, from, to),
-                                     loss_curve(theirs[i], LossOrdinate::amplitude_times, from, to)},
-                                    from, to));
-  return spread_of(values);
+  return curves_apart(ours, theirs, from, to);
 }
 
 Spread zeta_error(Runs&, const MeasureCall& call) {
