@@ -43,24 +43,20 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   while (!timeline.stopped()) {
     if (!in_contact) {
       const Flight<Real> flight(system, timeline.now(), state);
-      const auto met = first_root<Real>([&](const Real& t) { return flight.gaps(t, timeline.span()); },
-                                        Real(0), timeline.remaining(), timeline.span(), flight.resolution());
-      timeline.pass(flight, met ? met->time : timeline.remaining(), Real(0));
-      state = flight.at(timeline.passed());
+      const auto met = flight.next_wall(Real(0), timeline.remaining(), timeline.span());
+      if (met) state = met->state;
+      timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
-      wall = met->which == 0 ? Wall::left : Wall::right;
-      state.y = met->which == 0 ? 0 : 1;
+      wall = met->wall;
       if (!timeline.impact(wall, state.w)) break;
       in_contact = by_impact = true;
     } else {
       const Contact<Real> contact(walls, timeline.now(), state, wall);
-      const auto left =
-          first_root<Real>([&](const Real& t) { return contact.depth(t, timeline.span()); }, Real(0),
-                           timeline.remaining(), timeline.span(), contact.resolution());
+      const auto left = contact.leave(timeline.remaining(), timeline.span());
       const Real begin = timeline.now();
+      if (left) state = left->state;
       const Works<Real> works =
-          timeline.pass(contact, left ? left->time : timeline.remaining(), wall_damping);
-      state = contact.at(timeline.passed());
+          timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
       if (observer.wants_contacts()) observer.contact(double(begin), double(timeline.now()), wall);
       if (observer.wants_energy()) {
         losses += works.wall;
@@ -71,7 +67,6 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
         }
       }
       if (timeline.stopped()) break;
-      state.y = wall == Wall::left ? 0 : 1;
       in_contact = by_impact = false;
     }
   }

@@ -62,11 +62,9 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
       }
       const Stuck<Real> stuck(system, timeline.now(), state.x, state.v + joined, wall);
       const Real begin = timeline.now() + accumulation;
-      const auto released =
-          first_root<Real>([&](const Real& t) { return stuck.push(t, timeline.span()); }, accumulation,
-                           timeline.remaining(), timeline.span(), stuck.resolution());
-      timeline.pass(stuck, released ? released->time : timeline.remaining(), Real(0));
-      state = stuck.at(timeline.passed());
+      const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
+      if (released) state = stuck.at(*released);
+      timeline.pass(stuck, released ? *released : timeline.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= timeline.now()) {
         observer.contact(double(begin), double(timeline.now()), wall);
       }
@@ -89,13 +87,11 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
         if (near < from) from = near;
       }
     }
-    const auto met = first_root<Real>([&](const Real& t) { return flight.gaps(t, timeline.span()); }, from,
-                                      timeline.remaining(), timeline.span(), flight.resolution());
-    timeline.pass(flight, met ? met->time : timeline.remaining(), Real(0));
-    state = flight.at(timeline.passed());
+    const auto met = flight.next_wall(from, timeline.remaining(), timeline.span());
+    if (met) state = met->state;
+    timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
     if (timeline.stopped()) break;
-    wall = met->which == 0 ? Wall::left : Wall::right;
-    state.y = met->which == 0 ? 0 : 1;
+    wall = met->wall;
     if (!timeline.impact(wall, state.w)) break;
     if (observer.wants_energy()) {
       const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));

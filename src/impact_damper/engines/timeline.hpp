@@ -54,14 +54,20 @@ class Timeline {
     if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
-  // Lets `duration` of a motion pass, less if the scene ends in it. Returns the works in it.
+  // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to. Returns
+  // the works in it.
   template <class Motion>
-  Works<Real> pass(const Motion& motion, Real duration, const Real& wall_damping) {
+  Works<Real> pass(const Motion& motion, Real duration, State<Real>& end, const Real& wall_damping) {
     if (!(duration < remaining())) {
       duration = remaining();
       stopped_ = scene_.until_time ? StopReason::time : StopReason::time_budget;
+      end = motion.at(duration);
     }
-    if (tracks_half_cycles_) duration = follow(motion, duration);
+    if (tracks_half_cycles_) {
+      const Real ends = follow(motion, duration, end);
+      if (ends < duration) end = motion.at(ends);
+      duration = ends;
+    }
     while (observer_.next_sample() <= double(now() + duration)) {
       Real t = Real(observer_.next_sample()) - now();
       if (t < 0) t = 0;
@@ -75,12 +81,9 @@ class Timeline {
       forcing_ += works.forcing;
       turnover_ += works.turnover;
     }
-    last_ = duration;
     clock_.advance(duration);
     return works;
   }
-  // How much of the last motion has passed.
-  const Real& passed() const { return last_; }
 
   // An impact that is about to happen. False: it was one too many, and the scene ends before it.
   bool impact(Wall wall, const Real& relative_velocity) {
@@ -107,15 +110,15 @@ class Timeline {
  private:
   // Follows x through [0, duration]: returns where the scene ends in it, or duration.
   template <class Motion>
-  Real follow(const Motion& motion, const Real& duration) {
+  Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
     Real from{0};
     if (side_ ==
         0) {  // x has not moved until now: which way it goes, its first derivative that is not zero tells
       if (duration == 0) return duration;
       const auto leads = motion.leads_of_x();
       std::size_t order = 0;
-      while (order < leads.size() && leads[order] == 0) ++order;
-      if (order == leads.size()) return duration;
+      while (order < 4 && leads[order] == 0) ++order;
+      if (order == 4) return duration;
       side_ = leads[order] > 0 ? 1 : -1;
       if (order == 3) {
         // x''' t^3/6 outweighs |x''''| t^4/24 until t = 4 x'''/|x''''|. Half of that is passed over, within
@@ -127,26 +130,25 @@ class Timeline {
       }
     }
     notice_peak(motion, from);
+    if (motion.runs_on(side_, end, duration)) return duration;
     for (;;) {
-      const auto crossing = first_root<Real>(
-          [&](const Real& t) { return std::array{motion.derivative_of_x(0, side_, t, span_)}; }, from,
-          duration, span_, motion.resolution());
-      const Real until = crossing ? crossing->time : duration;
+      const auto crossing = motion.falls(0, side_, from, duration, span_);
+      const Real until = crossing ? *crossing : duration;
       find_peaks(motion, from, until);
       if (!crossing) return duration;
-      const Real zero = now() + crossing->time;
+      const Real zero = now() + *crossing;
       observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
       ++rows_;
       const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
       if (low || rows_ >= budget_.max_half_cycles) {
         stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
-        return crossing->time;
+        return *crossing;
       }
       side_ = -side_;
       row_begin_ = zero;
       row_best_ = 0;
       row_peak_time_ = zero;
-      from = crossing->time;
+      from = *crossing;
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
@@ -156,13 +158,11 @@ class Timeline {
     bool rising = v.g > 0 || (v.g == 0 && v.g1 > 0);  // away from zero
     for (;;) {
       const Real sign = rising ? side_ : -side_;
-      const auto turn = first_root<Real>(
-          [&](const Real& t) { return std::array{motion.derivative_of_x(1, sign, t, span_)}; }, from, until,
-          span_, motion.resolution());
+      const auto turn = motion.falls(1, sign, from, until, span_);
       if (!turn) return;
-      if (rising) notice_peak(motion, turn->time);
+      if (rising) notice_peak(motion, *turn);
       rising = !rising;
-      from = turn->time;
+      from = *turn;
     }
   }
   template <class Motion>
@@ -182,7 +182,6 @@ class Timeline {
   Real span_;
   bool tracks_half_cycles_;
   std::optional<StopReason> stopped_;
-  Real last_{0};
   std::int64_t impacts_ = 0, rows_ = 0;
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
   // its largest |x| so far.

@@ -17,13 +17,9 @@
 
 #include "impact_damper/motion/contact_factors.hpp"
 #include "impact_damper/motion/motion.hpp"
+#include "impact_damper/motion/rebound.hpp"
 
 namespace impact_damper {
-
-template <class Real>
-struct ContactState {
-  Real x, v, q, w;
-};
 
 template <class Real>
 class ContactSystem {
@@ -54,6 +50,14 @@ class ContactSystem {
     shape_1_ = (o - a * p2_) / free_resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
     split({0, 1, 0, -1}, drive_slow, drive_fast);
+    std::array<ContactParts<Real>, 3> touch;
+    split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    if (!forcing)
+      rebound = Rebound<Real>(slow, fast, touch, [&](const ContactState<Real>& state, auto& x, auto& q) {
+        derive(state, x, q);
+      });
   }
 
   // u = slow + fast.
@@ -92,10 +96,26 @@ class ContactSystem {
     }
   }
 
+  // Derivatives of x and q without forcing, from the equations themselves.
+  template <std::size_t N>
+  void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q) const {
+    x[0] = state.x;
+    x[1] = state.v;
+    q[0] = state.q;
+    q[1] = state.w;
+    for (std::size_t n = 2; n < N; ++n) {
+      const Real force = damping * q[n - 1] + stiffness * q[n - 2];
+      x[n] = nu * force - 2 * zeta * x[n - 1] - x[n - 2];
+      q[n] = -force - x[n];
+    }
+  }
+
   Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
   Forcing<Real> forcing;
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;
+
+  Rebound<Real> rebound;
 
  private:
   Real p_, b_, p2_, b2_, gamma_, delta_, shape_s_, shape_1_;
@@ -110,9 +130,7 @@ class Contact {
         begin_(begin),
         start_(start),
         wall_(wall == Wall::left ? 0 : 1),
-        inward_(wall == Wall::left ? -1 : 1) {
-    system.split({start.x, start.v, start.y - wall_, start.w}, slow_, fast_);
-  }
+        inward_(wall == Wall::left ? -1 : 1) {}
 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
@@ -120,10 +138,43 @@ class Contact {
     return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
   }
 
+  // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
+  std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
+    const Wall wall = wall_ == 0 ? Wall::left : Wall::right;
+    if (start_.y == wall_) {
+      if (const auto end = system_.rebound(start_.x, start_.v, start_.w)) {
+        if (!(end->time < horizon)) return {};
+        return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
+      }
+    }
+    const auto left = search_fall<Real>([&](const Real& t) { return depth(t, span); }, Real(0), horizon, span,
+                                        resolution());
+    if (!left) return {};
+    Arrival<Real> end{*left, wall, at(*left)};
+    end.state.y = wall_;
+    return end;
+  }
   // Towards zero: how deep the secondary mass is in the wall.
-  std::array<Outlook<Real>, 1> depth(const Real& t, const Real& span) const {
-    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};
+  Outlook<Real> depth(const Real& t, const Real& span) const {
+    return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+                instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
+  }
+  bool runs_on(const Real& side, const State<Real>& end, const Real& t) const {
+    if (!(side * start_.x > 0 && side * end.x > 0 && start_.v * end.v > 0)) return false;
+    const auto& [x, v, y, w] = start_;
+    const Rebound<Real>& rebound = system_.rebound;
+    if (y == wall_ && !system_.forcing)
+      return keeps_sign(x, end.x, rebound.second_of_x(x, v, w), t) &&
+             keeps_sign(v, end.v, rebound.third_of_x(x, v, w), t);
+    const auto slow = instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0));
+    const auto fast = instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0));
+    return keeps_sign(x, end.x, Real(slow.bound(2, t) + fast.bound(2, t)), t) &&
+           keeps_sign(v, end.v, Real(slow.bound(3, t) + fast.bound(3, t)), t);
+  }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            const Real& span) const {
+    return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
+                             until, span, resolution());
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
@@ -187,8 +238,20 @@ class Contact {
     return to;
   }
 
-  ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
-  ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
+  ContactState<Real> slow_at(const Real& t) const {
+    return move(system_.slow, parts().slow, system_.drive_slow, t);
+  }
+  ContactState<Real> fast_at(const Real& t) const {
+    return move(system_.fast, parts().fast, system_.drive_fast, t);
+  }
+  // Taken apart when first asked for: a brisk rebound never asks.
+  const ContactParts<Real>& parts() const {
+    if (!parts_) {
+      parts_.emplace();
+      system_.split({start_.x, start_.v, start_.y - wall_, start_.w}, parts_->slow, parts_->fast);
+    }
+    return *parts_;
+  }
 
   // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation
   // under (drive1 + 2 a drive) f + drive f'.
@@ -219,7 +282,7 @@ class Contact {
   Real begin_;
   State<Real> start_;
   Real wall_, inward_;
-  ContactState<Real> slow_, fast_;
+  mutable std::optional<ContactParts<Real>> parts_;
 };
 
 }  // namespace impact_damper

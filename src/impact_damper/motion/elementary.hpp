@@ -36,6 +36,13 @@ Real logarithm(const Real& x) {
   return log(x);
 }
 
+// The angle in (-pi, pi] of the point (x, y).
+template <class Real>
+Real angle_of(const Real& y, const Real& x) {
+  using std::atan2;
+  return atan2(y, x);
+}
+
 template <class Real>
 Real half_turn() {
   using std::acos;

@@ -18,6 +18,14 @@
 
 namespace impact_damper {
 
+// 1/n, by which the series are summed: a division is worth four products.
+template <class Real>
+inline const std::array<Real, 64> reciprocals = [] {
+  std::array<Real, 64> all{};
+  for (int n = 1; n < 64; ++n) all[n] = Real(1) / n;
+  return all;
+}();
+
 template <class Real>
 struct Propagator {
   Real c{1}, s{0};    // C, S
@@ -57,12 +65,21 @@ class Oscillator {
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
     rate_ = underdamped_ ? square_root(b) : Real(a + omega_);
+    half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
   }
 
   const Real& a() const { return a_; }
   const Real& b() const { return b_; }
   const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
+  // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
+  const Real& half_period() const { return half_period_; }
+
+  // When a free motion that begins with u >= 0 and u' falls through zero for the first time, and every two
+  // half periods from there; only where underdamped. Its phase grows by omega t, up to half a turn.
+  Real fall(const Real& u, const Real& u1) const {
+    return half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
+  }
 
   Propagator<Real> propagate(const Real& t) const {
     if (t == 0) return {};
@@ -123,16 +140,18 @@ class Oscillator {
   // Taylor series, term by term from the equation itself: S = sum s_n with s_n of order t^n, C - 1 = -b int
   // S.
   Propagator<Real> propagate_shortly(const Real& t) const {
-    const Real at = 2 * a_ * t, bt = b_ * t * t;
+    const auto& over = reciprocals<Real>;
+    const Real at = 2 * a_ * t, bt = b_ * t * t, enough = std::numeric_limits<Real>::epsilon() / 16;
     Real before = t, now = -a_ * t * t;
     Real s1 = now, integral = t / 2 + now / 3;
-    for (int n = 3;; ++n) {
-      const Real next = -(at * now / n + bt * before / (n * (n - 1)));
-      s1 += next;
-      integral += next / (n + 1);
-      before = now;
-      now = next;
-      if (absolute(before) + absolute(now) <= std::numeric_limits<Real>::epsilon() / 16 * absolute(s1)) break;
+    for (int n = 3; n + 2 < 64; n += 2) {
+      const Real next = -(at * now * over[n] + bt * before * (over[n] * over[n - 1]));
+      const Real after = -(at * next * over[n + 1] + bt * now * (over[n + 1] * over[n]));
+      s1 += next + after;
+      integral += next * over[n + 1] + after * over[n + 2];
+      before = next;
+      now = after;
+      if (absolute(before) + absolute(now) <= enough * absolute(s1)) break;
     }
     Propagator<Real> p;
     p.s1 = s1;
@@ -201,6 +220,7 @@ class Oscillator {
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
+  Real half_period_{0};
 };
 
 // An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
@@ -237,6 +257,7 @@ class Instant {
   }
 
   const Real& operator[](std::size_t n) const { return d_[n]; }
+  const std::array<Real, N>& derivatives() const { return d_; }
 
   // |u^(n)| stays within this for a time `span`, without forcing for ever. Every derivative obeys the same
   // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per

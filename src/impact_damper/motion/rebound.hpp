@@ -1,0 +1,160 @@
+// A brisk rebound: a contact that begins on the wall and lasts little more or less than half a swing of the
+// fast motion, T. Most impacts are one, and for these the whole contact is a linear map.
+//
+// From the wall, q = 0, the state at T is linear in (x, x', y') at the touch, and so is each derivative
+// there; both are numbers of the scene. A contact then costs the sums
+//     q(T + s) = sum_n s^n (Q_n . (x, x', y')),      x(T + s) = x + sum_n s^n (X_n . (x, x', y')),
+// and solving the first for s, which must be so short that a term more would be a rounding error. Where the
+// motion hardly changes in T it is the change that is tabulated, and of y' what differs from -E y': so that no
+// rounding error is the same in every impact.
+//
+// The proof that q has not been back at zero before T + s is that of arrival.hpp, for exp(a t) q, a the fast
+// motion's decay: the fast part of that is a plain sine, so that its fourth derivative does not outgrow what
+// the damper leaves of the rebound.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "impact_damper/motion/arrival.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct ContactState {
+  Real x, v, q, w;
+};
+
+template <class Real>
+struct ContactParts {
+  ContactState<Real> slow, fast;
+};
+
+template <class Real>
+class Rebound {
+ public:
+  Rebound() = default;
+  // `start`: what x, v and w at the touch, one each, are split into. `derive` extends (x, v, q, w) by the
+  // higher derivatives.
+  template <class Derive>
+  Rebound(const Oscillator<Real>& slow, const Oscillator<Real>& fast,
+          const std::array<ContactParts<Real>, 3>& start, Derive&& derive) {
+    swing_ = fast.half_period();
+    if (!(swing_ < std::numeric_limits<Real>::infinity())) return;
+    const Real epsilon = std::numeric_limits<Real>::epsilon();
+    left_ = exponential(Real(-fast.a() * swing_));
+    const Propagator<Real> p = slow.propagate(swing_);
+    const Real omega = half_turn<Real>() / swing_;
+    // The term left out, (omega s)^9 / 9! in the velocity.
+    reach_ = exponential(Real(logarithm(Real(362880 * epsilon / 16)) / 9)) / fast.rate();
+    accurate_ = square_root(Real(epsilon / 16)) / fast.rate();
+    least_growth_ = exponential(Real(fast.a() * (swing_ - reach_)));
+    const Real growth = exponential(Real(fast.a() * (swing_ + reach_)));
+    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
+    const auto fastest = [](const Oscillator<Real>& o) {
+      const Real root_b = square_root(o.b()), z = o.a() / root_b;
+      return Real(root_b * (z + square_root(Real(1 + z * z))));
+    };
+    const auto size = [](const Oscillator<Real>& o, const Real& u, const Real& u1) {
+      return Real(square_root(Real(u * u + u1 * u1 / o.b())));
+    };
+    const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& [s, f] = start[i];
+      const Real b = slow.b();
+      const ContactState<Real> moved{p.c1 * s.x + p.s * s.v, (p.v - 1) * s.v - b * p.s * s.x,
+                                     p.c * s.q + p.s * s.w, p.v * s.w - b * p.s * s.q};
+      const Real gone = 1 + left_;
+      const ContactState<Real> by_T{moved.x - gone * f.x, moved.v - gone * f.v, moved.q - left_ * f.q,
+                                    i == 2 ? Real(moved.w + left_ * s.w) : Real(moved.w - left_ * f.w)};
+      const ContactState<Real> at_T{by_T.x + (i == 0 ? 1 : 0), by_T.v + (i == 1 ? 1 : 0), by_T.q,
+                                    by_T.w - (i == 2 ? left_ : Real(0))};
+      Terms x, q;
+      derive(at_T, x, q);
+      Real factorial{1};
+      for (std::size_t n = 0; n < terms; ++n) {
+        if (n > 1) factorial *= Real(n);
+        x_[n][i] = x[n] / factorial;
+        q_[n][i] = q[n] / factorial;
+      }
+      x_[0][i] = by_T.x;
+      x_[1][i] = by_T.v;
+      q_[1][i] = by_T.w;
+      const Real along = (f.w + fast.a() * f.q) / omega;
+      fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along)) +
+                   growth * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
+      const Real slow_x = slow_rate * slow_rate * size(slow, s.x, s.v);
+      const Real fast_x = fast_rate * fast_rate * size(fast, f.x, f.v);
+      second_of_x_[i] = slow_x + fast_x;
+      third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
+    }
+  }
+
+  // The end of a contact that begins with x, v and w, inwards; nothing if it is not that brisk.
+  struct End {
+    Real time, x, v, w;
+  };
+  std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
+    if (!(reach_ > 0)) return {};
+    const Start start{x, v, w};
+    Terms q;
+    for (std::size_t n = 0; n < terms; ++n) q[n] = of(q_[n], start);
+    q[1] -= left_ * w;
+    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
+    Real s = t * (1 - a + (2 * a * a - b)), rest = s;
+    const Terms q1 = slopes(q);
+    for (int i = 0; i < 4 && !(absolute(rest) < accurate_); ++i) {
+      if (!(absolute(s) < reach_)) return {};
+      rest = -sum(q, s) / sum(q1, s);
+      s += rest;
+    }
+    const Real time = swing_ + s, left_w = sum(q1, s);
+    const Real fourth = fourth_[0] * absolute(x) + fourth_[1] * absolute(v) + fourth_[2] * absolute(w);
+    if (!stays_open(Real(0), absolute(w), Real(0), Real(-least_growth_ * absolute(left_w)), time, fourth) ||
+        !(left_w * w < 0))
+      return {};
+    Terms x_terms;
+    for (std::size_t n = 0; n < terms; ++n) x_terms[n] = of(x_[n], start);
+    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
+  }
+  // Bounds on the second and third derivative of x in it.
+  Real second_of_x(const Real& x, const Real& v, const Real& w) const {
+    return of(second_of_x_, {absolute(x), absolute(v), absolute(w)});
+  }
+  Real third_of_x(const Real& x, const Real& v, const Real& w) const {
+    return of(third_of_x_, {absolute(x), absolute(v), absolute(w)});
+  }
+
+ private:
+  static constexpr std::size_t terms = 10;
+  using Start = std::array<Real, 3>;  // by x, v and w at the touch
+  using Terms = std::array<Real, terms>;
+  static Real of(const Start& row, const Start& start) {
+    return row[0] * start[0] + row[1] * start[1] + row[2] * start[2];
+  }
+  // Even and odd powers apart: half as long a chain of operations that wait for each other.
+  static Real sum(const Terms& c, const Real& s) {
+    const Real s_2 = s * s;
+    Real even = c[terms - 2], odd = c[terms - 1];
+    for (std::size_t n = terms - 2; n > 0; n -= 2) {
+      even = c[n - 2] + s_2 * even;
+      odd = c[n - 1] + s_2 * odd;
+    }
+    return even + s * odd;
+  }
+  static Terms slopes(const Terms& c) {
+    Terms d;
+    for (std::size_t n = 1; n < terms; ++n) d[n - 1] = Real(n) * c[n];
+    d[terms - 1] = 0;
+    return d;
+  }
+
+  Real swing_{0}, left_{0}, least_growth_{0};
+  Real reach_{0};     // the longest |s|
+  Real accurate_{0};  // a correction of s after which Newton's method has nothing left to correct
+  std::array<Start, terms> x_{}, q_{};
+  Start fourth_{}, second_of_x_{}, third_of_x_{};
+};
+
+}  // namespace impact_damper
