@@ -46,6 +46,28 @@ struct Series {
   Derivatives<Real, 6> x, y;
 };
 
+// c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
+// operations that wait for each other.
+template <class Real, std::size_t N>
+Real sum(const std::array<Real, N>& c, const Real& s) {
+  static_assert(N % 2 == 0);
+  const Real s_2 = s * s;
+  Real even = c[N - 2], odd = c[N - 1];
+  for (std::size_t n = N - 2; n > 0; n -= 2) {
+    even = c[n - 2] + s_2 * even;
+    odd = c[n - 1] + s_2 * odd;
+  }
+  return even + s * odd;
+}
+// The terms of its derivative.
+template <class Real, std::size_t N>
+std::array<Real, N> slopes(const std::array<Real, N>& c) {
+  std::array<Real, N> d;
+  for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
+  d[N - 1] = 0;
+  return d;
+}
+
 // When y meets a level nearby: its third-order series turned round. `close` tells whether that leaves no more
 // than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
 template <class Real>
@@ -89,18 +111,18 @@ Real guess(const Derivatives<Real, 8>& y, const Real& below, const Real& above, 
   Real t = arrives ? Real(2 * ahead / (speed + square_root(reach)))
                    : Real((speed + square_root(Real(reach - 2 * push * (above - below)))) / -push);
   if (!(t < most)) t = most;
+  Derivatives<Real, 8> c{gap, y[1]}, c1{y[1]};
+  Real factor = over[2];
+  for (std::size_t n = 2; n < 8; ++n) {
+    c[n] = factor * y[n];
+    factor = factor * over[n + 1];
+  }
+  c1 = slopes(c);
   for (int i = 0; i < 3; ++i) {
-    Real g = y[7] * over[7], g1 = y[7];
-    for (std::size_t n = 6; n > 1; --n) {
-      g = (y[n] + t * g) * over[n];
-      g1 = y[n] + t * over[n] * g1;
-    }
-    g1 = y[1] + t * g1;
-    g = gap + t * (y[1] + t * g);
-    const Real step = -g / g1;
+    const Real step = -sum(c, t) / sum(c1, t);
     if (!(absolute(step) < t / 2)) break;
     t += step;
-    if (absolute(step) < t / 65536) break;
+    if (absolute(step) < t / 1024) break;
   }
   return t < most ? t : most;
 }

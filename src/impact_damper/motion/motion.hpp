@@ -81,6 +81,12 @@ class Swing {
   Instant<Real, N> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t) const {
+    if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
+    return impact_damper::derivatives<N>(oscillator_, x, v, Real(1), Real(0),
+                                         forcing_.template derivatives<N + 1>(begin_ + t));
+  }
   using Beginning = Instant<Real, 6>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
 
@@ -203,7 +209,7 @@ class Flight {
     return {now.x, now.v, (start_.y - wall_) + (start_.w * t - now.dx), start_.w - now.dv};
   }
   template <std::size_t N>
-  static Derivatives<Real, N> derivatives_of_y(const State<Real>& s, const Instant<Real, N>& x) {
+  static Derivatives<Real, N> derivatives_of_y(const State<Real>& s, const Derivatives<Real, N>& x) {
     Derivatives<Real, N> y{s.y, s.w};
     for (std::size_t n = 2; n < N; ++n) y[n] = -x[n];
     return y;
@@ -217,12 +223,12 @@ class Flight {
     for (int piece = 0; piece < 3; ++piece) {
       const auto lead = swing_.template instant<8>(here.x, here.v, begin);
       const Real fourth = lead.bound(4, span);
-      Real h = guess(derivatives_of_y(here, lead), below, above, most);
+      Real h = guess(derivatives_of_y(here, lead.derivatives()), below, above, most);
       if (!(h > 0)) return {};
       State<Real> there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto x = swing_.template instant<6>(there.x, there.v, begin + h);
+        const auto x = swing_.template derivatives<6>(there.x, there.v, begin + h);
         const auto y = derivatives_of_y(there, x);
         const bool up = there.y > (below + above) / 2;
         const auto [shift, close] = nearby(up ? above : below, y, h, fourth);
@@ -231,7 +237,7 @@ class Flight {
           h += shift;
           continue;
         }
-        const auto [at_x, at_v] = moved(x.derivatives(), shift);
+        const auto [at_x, at_v] = moved(x, shift);
         const State<Real> met{at_x, at_v, up ? above : below, moved(y, shift).u1};
         h += shift;
         if (!stays_inside(here, met, h, fourth)) return {};

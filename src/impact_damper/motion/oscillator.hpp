@@ -64,13 +64,15 @@ class Oscillator {
     const Real discriminant = b - a * a;
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
-    rate_ = underdamped_ ? square_root(b) : Real(a + omega_);
+    root_b_ = square_root(b);
+    rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
   }
 
   const Real& a() const { return a_; }
   const Real& b() const { return b_; }
+  const Real& root_b() const { return root_b_; }
   const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
   // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
   const Real& half_period() const { return half_period_; }
@@ -83,7 +85,7 @@ class Oscillator {
 
   Propagator<Real> propagate(const Real& t) const {
     if (t == 0) return {};
-    if (t * rate_ < Real(0.5)) return propagate_shortly(t);
+    if (t * rate_ < Real(0.5)) return a_ == 0 ? propagate_shortly_undamped(t) : propagate_shortly(t);
     Propagator<Real> p;
     if (underdamped_) {
       const auto [sin, cos] = sin_cos(omega_ * t);
@@ -136,6 +138,29 @@ class Oscillator {
   struct ComplexResponse {
     Complex z, z1;
   };
+
+  // Where undamped, C - 1 = -x/2 (1 - x/(3 4) (1 - x/(5 6) ...)) and S - t = -t x/(2 3) (1 - x/(4 5) ...),
+  // x = b t^2 < 1/4.
+  Propagator<Real> propagate_shortly_undamped(const Real& t) const {
+    const auto& over = reciprocals<Real>;
+    const Real x = b_ * t * t;
+    Real c{1}, s{1};
+    for (int n = last_undamped_term; n > 2; n -= 2) {
+      c = 1 - x * (over[n] * over[n + 1]) * c;
+      s = 1 - x * (over[n + 1] * over[n + 2]) * s;
+    }
+    Propagator<Real> p;
+    p.c1 = -x / 2 * c;
+    p.s1 = -t * x * over[6] * s;
+    p.c = 1 + p.c1;
+    p.s = t + p.s1;
+    p.v = p.c;
+    return p;
+  }
+  // The first n with (1/2)^n/n! below a rounding error, made odd.
+  static constexpr int last_undamped_term = std::numeric_limits<Real>::digits10 < 17   ? 13
+                                            : std::numeric_limits<Real>::digits10 < 20 ? 15
+                                                                                       : 25;
 
   // Taylor series, term by term from the equation itself: S = sum s_n with s_n of order t^n, C - 1 = -b int
   // S.
@@ -220,8 +245,26 @@ class Oscillator {
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
-  Real half_period_{0};
+  Real root_b_{1}, half_period_{0};
 };
+
+// u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.
+template <std::size_t N, class Real>
+std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
+  std::array<Real, N> d{u, u1};
+  for (std::size_t n = 2; n < N; ++n) d[n] = -2 * oscillator.a() * d[n - 1] - oscillator.b() * d[n - 2];
+  return d;
+}
+// The same under on_f f + on_f1 f', the derivatives of f given.
+template <std::size_t N, class Real>
+std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1,
+                                const Real& on_f, const Real& on_f1, const std::array<Real, N + 1>& f) {
+  std::array<Real, N> d{u, u1};
+  for (std::size_t n = 2; n < N; ++n) {
+    d[n] = on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d[n - 1] - oscillator.b() * d[n - 2];
+  }
+  return d;
+}
 
 // An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
 // from there on.
@@ -230,19 +273,13 @@ class Instant {
  public:
   Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
           const Real& on_f1, const Forcing<Real>& forcing, const Real& time)
-      : root_b_(square_root(oscillator.b())), frequency_(forcing.frequency) {
-    d_[0] = u;
-    d_[1] = u1;
+      : root_b_(oscillator.root_b()), frequency_(forcing.frequency) {
     if (!forcing) {
-      for (std::size_t n = 2; n < N; ++n)
-        d_[n] = -2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
+      d_ = impact_damper::derivatives<N>(oscillator, u, u1);
       return;
     }
     const auto f = forcing.template derivatives<N + 1>(time);
-    for (std::size_t n = 2; n < N; ++n) {
-      d_[n] =
-          on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d_[n - 1] - oscillator.b() * d_[n - 2];
-    }
+    d_ = impact_damper::derivatives<N>(oscillator, u, u1, on_f, on_f1, f);
     // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
     // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the
     // other.
@@ -279,7 +316,7 @@ class Instant {
     return square_root(Real(u * u + scaled * scaled));
   }
 
-  std::array<Real, N> d_, steady_{};
+  std::array<Real, N> d_, steady_;  // steady_: only with forcing
   Real root_b_, frequency_, force_{0}, steady_size_{0};
 };
 

@@ -133,22 +133,6 @@ class Rebound {
   static Real of(const Start& row, const Start& start) {
     return row[0] * start[0] + row[1] * start[1] + row[2] * start[2];
   }
-  // Even and odd powers apart: half as long a chain of operations that wait for each other.
-  static Real sum(const Terms& c, const Real& s) {
-    const Real s_2 = s * s;
-    Real even = c[terms - 2], odd = c[terms - 1];
-    for (std::size_t n = terms - 2; n > 0; n -= 2) {
-      even = c[n - 2] + s_2 * even;
-      odd = c[n - 1] + s_2 * odd;
-    }
-    return even + s * odd;
-  }
-  static Terms slopes(const Terms& c) {
-    Terms d;
-    for (std::size_t n = 1; n < terms; ++n) d[n - 1] = Real(n) * c[n];
-    d[terms - 1] = 0;
-    return d;
-  }
 
   Real swing_{0}, left_{0}, least_growth_{0};
   Real reach_{0};     // the longest |s|
