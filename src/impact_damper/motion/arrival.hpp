@@ -137,4 +137,12 @@ bool stays_open(const Real& g0, const Real& slope0, const Real& g1, const Real& 
          (g0 + g1) / 2 + h * (slope0 - slope1) / 6 > off;
 }
 
+// The same of a gap that opens with its second and third derivative, 0 at the end that is meant by h = 0:
+// third t^3/6 outweighs |fourth| t^4/24.
+template <class Real>
+bool opens(const Real& g0, const Real& slope, const Real& second, const Real& third, const Real& h,
+           const Real& fourth) {
+  return g0 >= 0 && slope >= 0 && second >= 0 && 4 * third > fourth * h;
+}
+
 }  // namespace impact_damper

@@ -223,7 +223,8 @@ class Flight {
     for (int piece = 0; piece < 3; ++piece) {
       const auto lead = swing_.template instant<8>(here.x, here.v, begin);
       const Real fourth = lead.bound(4, span);
-      Real h = guess(derivatives_of_y(here, lead.derivatives()), below, above, most);
+      const auto y_lead = derivatives_of_y(here, lead.derivatives());
+      Real h = guess(y_lead, below, above, most);
       if (!(h > 0)) return {};
       State<Real> there;
       for (int correction = 0;; ++correction) {
@@ -240,19 +241,22 @@ class Flight {
         const auto [at_x, at_v] = moved(x, shift);
         const State<Real> met{at_x, at_v, up ? above : below, moved(y, shift).u1};
         h += shift;
-        if (!stays_inside(here, met, h, fourth)) return {};
+        if (!stays_inside(here, y_lead, met, h, fourth)) return {};
         return Arrival<Real>{begin + h, up ? Wall::right : Wall::left, {met.x, met.v, met.y + wall_, met.w}};
       }
-      if (!stays_inside(here, there, h, fourth)) return {};
+      if (!stays_inside(here, y_lead, there, h, fourth)) return {};
       begin += h;
       here = there;
     }
     return {};
   }
-  bool stays_inside(const State<Real>& from, const State<Real>& to, const Real& h, const Real& fourth) const {
+  bool stays_inside(const State<Real>& from, const Derivatives<Real, 8>& y, const State<Real>& to,
+                    const Real& h, const Real& fourth) const {
     const Real left = wall_, right = 1 - wall_;
-    return stays_open(Real(from.y + left), from.w, Real(to.y + left), to.w, h, fourth) &&
-           stays_open(Real(right - from.y), Real(-from.w), Real(right - to.y), Real(-to.w), h, fourth);
+    return (stays_open(Real(from.y + left), from.w, Real(to.y + left), to.w, h, fourth) ||
+            opens(Real(from.y + left), from.w, y[2], y[3], h, fourth)) &&
+           (stays_open(Real(right - from.y), Real(-from.w), Real(right - to.y), Real(-to.w), h, fourth) ||
+            opens(Real(right - from.y), Real(-from.w), Real(-y[2]), Real(-y[3]), h, fourth));
   }
 
   Swing<Real> swing_;

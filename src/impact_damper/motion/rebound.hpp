@@ -46,11 +46,11 @@ class Rebound {
     left_ = exponential(Real(-fast.a() * swing_));
     const Propagator<Real> p = slow.propagate(swing_);
     const Real omega = half_turn<Real>() / swing_;
-    // The term left out, (omega s)^9 / 9! in the velocity.
-    reach_ = exponential(Real(logarithm(Real(362880 * epsilon / 16)) / 9)) / fast.rate();
+    few_ = reach_of(few, fast);
+    many_ = reach_of(many, fast);
     accurate_ = square_root(Real(epsilon / 16)) / fast.rate();
-    least_growth_ = exponential(Real(fast.a() * (swing_ - reach_)));
-    const Real growth = exponential(Real(fast.a() * (swing_ + reach_)));
+    decay_ = fast.a();
+    growth_ = exponential(Real(fast.a() * swing_));
     // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
     const auto fastest = [](const Oscillator<Real>& o) {
       const Real root_b = square_root(o.b()), z = o.a() / root_b;
@@ -70,11 +70,11 @@ class Rebound {
                                     i == 2 ? Real(moved.w + left_ * s.w) : Real(moved.w - left_ * f.w)};
       const ContactState<Real> at_T{by_T.x + (i == 0 ? 1 : 0), by_T.v + (i == 1 ? 1 : 0), by_T.q,
                                     by_T.w - (i == 2 ? left_ : Real(0))};
-      Terms x, q;
+      std::array<Real, many> x, q;
       derive(at_T, x, q);
       Real factorial{1};
-      for (std::size_t n = 0; n < terms; ++n) {
-        if (n > 1) factorial *= Real(n);
+      for (std::size_t n = 0; n < many; ++n) {
+        if (n > 1) factorial *= Real(double(n));
         x_[n][i] = x[n] / factorial;
         q_[n][i] = q[n] / factorial;
       }
@@ -82,8 +82,8 @@ class Rebound {
       x_[1][i] = by_T.v;
       q_[1][i] = by_T.w;
       const Real along = (f.w + fast.a() * f.q) / omega;
-      fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along)) +
-                   growth * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
+      fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
+      slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
       const Real slow_x = slow_rate * slow_rate * size(slow, s.x, s.v);
       const Real fast_x = fast_rate * fast_rate * size(fast, f.x, f.v);
       second_of_x_[i] = slow_x + fast_x;
@@ -96,49 +96,75 @@ class Rebound {
     Real time, x, v, w;
   };
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
-    if (!(reach_ > 0)) return {};
-    const Start start{x, v, w};
-    Terms q;
-    for (std::size_t n = 0; n < terms; ++n) q[n] = of(q_[n], start);
-    q[1] -= left_ * w;
-    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
-    Real s = t * (1 - a + (2 * a * a - b)), rest = s;
-    const Terms q1 = slopes(q);
-    for (int i = 0; i < 4 && !(absolute(rest) < accurate_); ++i) {
-      if (!(absolute(s) < reach_)) return {};
-      rest = -sum(q, s) / sum(q1, s);
-      s += rest;
-    }
-    const Real time = swing_ + s, left_w = sum(q1, s);
-    const Real fourth = fourth_[0] * absolute(x) + fourth_[1] * absolute(v) + fourth_[2] * absolute(w);
-    if (!stays_open(Real(0), absolute(w), Real(0), Real(-least_growth_ * absolute(left_w)), time, fourth) ||
-        !(left_w * w < 0))
-      return {};
-    Terms x_terms;
-    for (std::size_t n = 0; n < terms; ++n) x_terms[n] = of(x_[n], start);
-    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
+    if (const auto end = end_within<few>(x, v, w, few_)) return end;
+    return end_within<many>(x, v, w, many_);
   }
   // Bounds on the second and third derivative of x in it.
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {
-    return of(second_of_x_, {absolute(x), absolute(v), absolute(w)});
+    return bound(second_of_x_, {x, v, w});
   }
   Real third_of_x(const Real& x, const Real& v, const Real& w) const {
-    return of(third_of_x_, {absolute(x), absolute(v), absolute(w)});
+    return bound(third_of_x_, {x, v, w});
   }
 
  private:
-  static constexpr std::size_t terms = 10;
+  static constexpr std::size_t few = 10, many = 24;
   using Start = std::array<Real, 3>;  // by x, v and w at the touch
-  using Terms = std::array<Real, terms>;
   static Real of(const Start& row, const Start& start) {
     return row[0] * start[0] + row[1] * start[1] + row[2] * start[2];
   }
 
-  Real swing_{0}, left_{0}, least_growth_{0};
-  Real reach_{0};     // the longest |s|
-  Real accurate_{0};  // a correction of s after which Newton's method has nothing left to correct
-  std::array<Start, terms> x_{}, q_{};
-  Start fourth_{}, second_of_x_{}, third_of_x_{};
+  // What a number of terms is good for.
+  struct Reach {
+    Real s{0};       // the longest |s|
+    Real growth{0};  // of exp(a t) in it, from T on
+  };
+  static Reach reach_of(std::size_t terms, const Oscillator<Real>& fast) {
+    Real factorial{1};
+    for (std::size_t n = 2; n < terms; ++n) factorial *= Real(double(n));
+    // The term left out, (omega s)^(terms - 1) / (terms - 1)! in the velocity.
+    const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
+    const Real s = exponential(Real(logarithm(enough) / Real(double(terms - 1)))) / fast.rate();
+    return {s, exponential(Real(fast.a() * s))};
+  }
+
+  template <std::size_t terms>
+  std::optional<End> end_within(const Real& x, const Real& v, const Real& w, const Reach& reach) const {
+    const Start start{x, v, w};
+    std::array<Real, terms> q;
+    for (std::size_t n = 0; n < terms; ++n) q[n] = of(q_[n], start);
+    q[1] -= left_ * w;
+    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
+    Real s = t * (1 - a + (2 * a * a - b)), rest = s;
+    if (!(absolute(s) < reach.s)) return {};
+    const auto q1 = slopes(q);
+    for (int i = 0; !(absolute(rest) < accurate_); ++i) {
+      if (i == 8) return {};
+      rest = -sum(q, s) / sum(q1, s);
+      s += rest;
+      if (!(absolute(s) < reach.s)) return {};
+    }
+    const Real time = swing_ + s, left_w = sum(q1, s);
+    const Real fourth = bound(fast_fourth_, start) + reach.growth * bound(slow_fourth_, start);
+    // exp(a s) >= 1 + a s.
+    const Real growth = growth_ * (1 + decay_ * s);
+    if (!(left_w * w < 0) ||
+        !stays_open(Real(0), absolute(w), Real(0), Real(-growth * absolute(left_w)), time, fourth))
+      return {};
+    std::array<Real, terms> x_terms;
+    for (std::size_t n = 0; n < terms; ++n) x_terms[n] = of(x_[n], start);
+    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
+  }
+  static Real bound(const Start& row, const Start& start) {
+    return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
+  }
+
+  Real swing_{0}, left_{0};         // T and E = exp(-a T)
+  Real decay_{0}, growth_{0};       // a and exp(a T)
+  Real accurate_{0};                // a correction of s after which Newton's method has nothing left to correct
+  Reach few_, many_;
+  std::array<Start, many> x_{}, q_{};
+  Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
 };
 
 }  // namespace impact_damper
