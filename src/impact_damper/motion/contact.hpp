@@ -50,6 +50,8 @@ class ContactSystem {
     shape_1_ = (o - a * p2_) / free_resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
     split({0, 1, 0, -1}, drive_slow, drive_fast);
+    if (fast.half_period() < std::numeric_limits<Real>::infinity())
+      left_by_quarter = exponential(Real(-fast.a() * fast.half_period() / 2));
     std::array<ContactParts<Real>, 3> touch;
     split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
     split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
@@ -110,12 +112,19 @@ class ContactSystem {
     }
   }
 
+  // The amplitude N of a fast motion that rings: q is the real part of N exp(lambda t + i phase).
+  Real ringing(const ContactState<Real>& fast_part) const {
+    const Real along = (fast_part.w + fast.a() * fast_part.q) * fast.half_period() / half_turn<Real>();
+    return square_root(Real(fast_part.q * fast_part.q + along * along));
+  }
+
   Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
   Forcing<Real> forcing;
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;
 
   Rebound<Real> rebound;
+  Real left_by_quarter{0};  // of the fast motion's ringing, by a quarter of its swing
 
  private:
   Real p_, b_, p2_, b2_, gamma_, delta_, shape_s_, shape_1_;
@@ -142,10 +151,15 @@ class Contact {
   std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
     const Wall wall = wall_ == 0 ? Wall::left : Wall::right;
     if (start_.y == wall_) {
-      if (const auto end = system_.rebound(start_.x, start_.v, start_.w)) {
+      const auto end = system_.rebound(start_.x, start_.v, start_.w);
+      if (end && (end->proved || stays_in_until(*end))) {
         if (!(end->time < horizon)) return {};
         return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
       }
+    }
+    if (const auto end = settle()) {
+      if (!(end->time < horizon)) return {};
+      return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
     }
     const auto left = search_fall<Real>([&](const Real& t) { return depth(t, span); }, Real(0), horizon, span,
                                         resolution());
@@ -216,6 +230,85 @@ class Contact {
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:
+  // A rebound's proof in four pieces, where one was not enough.
+  bool stays_in_until(const typename Rebound<Real>::End& end) const {
+    const auto& [slow, fast] = parts();
+    const Real b = system_.slow.b(), b2 = system_.fast.b(), piece = end.time / 4;
+    const Real fourth = square_root(Real(slow.q * slow.q + slow.w * slow.w / b)) * b * b;
+    ContactState<Real> before = fast, depth{0, 0, 0, inward_ * start_.w};
+    for (int n = 1; n <= 4; ++n) {
+      ContactState<Real> now{0, 0, 0, inward_ * end.w}, fast_now{};
+      if (n < 4) {
+        const ContactState<Real> slow_now = slow_at(Real(n) * piece);
+        fast_now = fast_at(Real(n) * piece);
+        now.q = inward_ * (slow_now.q + fast_now.q);
+        now.w = inward_ * (slow_now.w + fast_now.w);
+      }
+      const Real ringing = system_.ringing(before);
+      if (!stays_open(depth.q, depth.w, now.q, now.w, piece, Real(ringing * b2 * b2 + fourth))) return false;
+      before = fast_now;
+      depth = now;
+    }
+    return true;
+  }
+  // The end of a contact that lasts: the ringing dies away, and the mass leaves when the slow motion lets go.
+  //
+  // The proof. The ringing is the real part of N exp(lambda t + i phase), so that its fourth derivative is at
+  // most N b^2 exp(-a t). (1) For a full swing of it, quarter by quarter, by that bound (arrival.hpp). (2) From
+  // there on the ringing stays below the slow motion's depth, which is nowhere lower than at the ends: where
+  // it has a minimum it is outside the wall. (3) At last, where both go to zero, by the bound again.
+  std::optional<typename Rebound<Real>::End> settle() const {
+    const ContactSystem<Real>& c = system_;
+    const Real infinite = std::numeric_limits<Real>::infinity(), quarter = c.fast.half_period() / 2;
+    if (c.forcing || start_.y != wall_ || !(quarter < infinite) || !(c.slow.half_period() < infinite)) return {};
+    const auto& [slow, fast] = parts();
+    const Real depth = inward_ * slow.q;
+    if (!(depth > 0)) return {};
+    Real h = c.slow.fall(depth, Real(inward_ * slow.w));
+    const Real late = h * Real(0.75);
+    if (!(late > 4 * quarter)) return {};
+
+    const Real b = c.fast.b(), a = c.fast.a();
+    Real ringing = c.ringing(fast);
+    const Real slow_fourth =
+        square_root(Real(slow.q * slow.q + slow.w * slow.w / c.slow.b())) * c.slow.b() * c.slow.b();
+    ContactState<Real> before{0, 0, 0, inward_ * start_.w}, slow_now;
+    for (int n = 1; n <= 4; ++n) {
+      slow_now = slow_at(Real(n) * quarter);
+      const ContactState<Real> fast_now = fast_at(Real(n) * quarter);
+      const ContactState<Real> now{0, 0, inward_ * (slow_now.q + fast_now.q), inward_ * (slow_now.w + fast_now.w)};
+      if (!stays_open(before.q, before.w, now.q, now.w, quarter, Real(ringing * b * b + slow_fourth))) return {};
+      ringing *= c.left_by_quarter;
+      before = now;
+    }
+    const Real early = h / 4;
+    const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
+    const Real early_depth = inward_ * slow_at(early).q, late_depth = inward_ * slow_late.q;
+    const auto ringing_at = [&](const Real& t) {
+      return t < 4 * quarter ? ringing : Real(ringing * exponential(Real(a * (4 * quarter - t))));
+    };
+    if (!(ringing < inward_ * slow_now.q && ringing < early_depth && ringing_at(early) < early_depth &&
+          ringing_at(early) < late_depth))
+      return {};
+    const Real faint = ringing_at(late) * b * b + slow_fourth;
+    for (int correction = 0; correction < 4; ++correction) {
+      Derivatives<Real, 6> x, q;
+      const State<Real> there = at(h);
+      c.derive({there.x, there.v, there.y - wall_, there.w}, x, q);
+      const auto [shift, close] = nearby(Real(0), q, h, faint);
+      h += shift;
+      if (!(absolute(h - late * 4 / 3) < late / 4)) return {};
+      if (!close) continue;
+      const auto [end_x, end_v] = moved(x, shift);
+      const Real end_w = moved(q, shift).u1;
+      if (!stays_open(Real(late_depth + inward_ * fast_late.q), Real(inward_ * (slow_late.w + fast_late.w)),
+                      Real(0), Real(inward_ * end_w), Real(h - late), faint))
+        return {};
+      return typename Rebound<Real>::End{h, end_x, end_v, end_w, true};
+    }
+    return {};
+  }
+
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
                           const ContactState<Real>& drive, const Real& t) const {
     // Under forcing x' and q' of a part differ from its v and w by drive.x f and drive.q f, from the start

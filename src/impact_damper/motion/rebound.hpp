@@ -94,6 +94,7 @@ class Rebound {
   // The end of a contact that begins with x, v and w, inwards; nothing if it is not that brisk.
   struct End {
     Real time, x, v, w;
+    bool proved;  // to be the first return to the wall
   };
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
     if (const auto end = end_within<few>(x, v, w, few_)) return end;
@@ -148,12 +149,12 @@ class Rebound {
     const Real fourth = bound(fast_fourth_, start) + reach.growth * bound(slow_fourth_, start);
     // exp(a s) >= 1 + a s.
     const Real growth = growth_ * (1 + decay_ * s);
-    if (!(left_w * w < 0) ||
-        !stays_open(Real(0), absolute(w), Real(0), Real(-growth * absolute(left_w)), time, fourth))
-      return {};
+    if (!(left_w * w < 0)) return {};
+    const bool proved =
+        stays_open(Real(0), absolute(w), Real(0), Real(-growth * absolute(left_w)), time, fourth);
     std::array<Real, terms> x_terms;
     for (std::size_t n = 0; n < terms; ++n) x_terms[n] = of(x_[n], start);
-    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
+    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w, proved};
   }
   static Real bound(const Start& row, const Start& start) {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
