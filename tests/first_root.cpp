@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "impact_damper/motion/motion.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

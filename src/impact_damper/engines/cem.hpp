@@ -26,7 +26,7 @@
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/energy.hpp"
-#include "impact_damper/motion/motion.hpp"
+#include "impact_damper/motion/swing.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {

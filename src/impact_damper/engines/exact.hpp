@@ -8,6 +8,7 @@
 
 #include "impact_damper/engines/timeline.hpp"
 #include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
@@ -31,9 +32,8 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   // zero. (With a velocity towards the wall it is an impact, which the flight meets at once.)
   const auto pressed = [&](Real towards_cavity) {
     if (state.w != 0) return false;
-    const auto departure = Flight<Real>(system, timeline.now(), state).departure(timeline.span());
-    const Real lead = departure.acceleration != 0 ? departure.acceleration : departure.jerk;
-    return towards_cavity * lead < 0;
+    const auto lead = Flight<Real>(system, timeline.now(), state).lead_of_y();
+    return towards_cavity * (lead[2] != 0 ? lead[2] : lead[3]) < 0;
   };
   bool in_contact =
       state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));

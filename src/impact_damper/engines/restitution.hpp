@@ -18,6 +18,8 @@
 #pragma once
 
 #include "impact_damper/engines/timeline.hpp"
+#include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/stuck.hpp"
 
 namespace impact_damper {
 
@@ -40,14 +42,16 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
     const Real away = wall == Wall::left ? 1 : -1;
     const Real speed = away * state.w;
     if (speed < 0) return false;
-    const auto departure = Flight<Real>(system, timeline.now(), state).departure(timeline.span());
-    const Real push = -away * departure.acceleration;
+    const Flight<Real> flight(system, timeline.now(), state);
+    const auto lead = flight.lead_of_y();
+    const Real push = -away * lead[2];
     accumulation = 0;
-    if (speed == 0) return push > 0 || (push == 0 && away * departure.jerk < 0);
+    if (speed == 0) return push > 0 || (push == 0 && away * lead[3] < 0);
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
-    const Real change = (absolute(departure.jerk) + departure.fourth * accumulation) * accumulation;
-    return accumulation < timeline.span() && change <= tolerance * push;
+    const auto steady_for = [&](const Real& rate) { return rate * accumulation <= tolerance * push; };
+    return steady_for(absolute(lead[3])) && accumulation < timeline.span() &&
+           steady_for(absolute(lead[3]) + flight.fourth_of_y(timeline.span()) * accumulation);
   };
 
   bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0;
@@ -78,11 +82,11 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
     // the travel.
     Real from{0};
     if (on_wall && state.w == 0) {
-      const auto departure = flight.departure(timeline.span());
-      const Real jerk = (wall == Wall::left ? 1 : -1) * departure.jerk;
-      const Real acceleration = (wall == Wall::left ? 1 : -1) * departure.acceleration;
+      const auto lead = flight.lead_of_y();
+      const Real acceleration = (wall == Wall::left ? 1 : -1) * lead[2];
+      const Real jerk = (wall == Wall::left ? 1 : -1) * lead[3];
       if (jerk > 0 && acceleration < jerk * Real(1e-6)) {
-        from = 2 * jerk / departure.fourth;
+        from = 2 * jerk / flight.fourth_of_y(timeline.span());
         const Real near = 1 / square_root(Real(1 + jerk));
         if (near < from) from = near;
       }

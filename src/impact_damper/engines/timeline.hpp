@@ -154,8 +154,8 @@ class Timeline {
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
   template <class Motion>
   void find_peaks(const Motion& motion, Real from, const Real& until) {
-    const Jet<Real> v = motion.derivative_of_x(1, side_, from, span_).whole;
-    bool rising = v.g > 0 || (v.g == 0 && v.g1 > 0);  // away from zero
+    const Real v = side_ * motion.at(from).v;
+    bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
     for (;;) {
       const Real sign = rising ? side_ : -side_;
       const auto turn = motion.falls(1, sign, from, until, span_);

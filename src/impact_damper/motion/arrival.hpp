@@ -97,52 +97,84 @@ Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
           d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
 }
 
-// When a motion between walls at `below` and `above` meets one of them, roughly, and after `most` at the
-// latest: by the parabola through its beginning, then by Newton's method on the series.
+// When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the parabola
+// through its beginning, then by Halley's method on the series: roughly, but accurately within a `short_time`.
+// u is the distance from the wall it left.
 template <class Real>
-Real guess(const Derivatives<Real, 8>& y, const Real& below, const Real& above, const Real& most) {
+struct Guess {
+  Real time;
+  bool across;     // at the other wall
+  Real u, u1, u2;  // of the series then: u from the wall it meets, and its first derivatives
+};
+template <class Real>
+Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
   const auto& over = reciprocals<Real>;
-  const bool up = y[1] > 0 || (y[1] == 0 && y[2] > 0);
-  const Real ahead = up ? Real(above - y[0]) : Real(y[0] - below);
-  const Real speed = absolute(y[1]), push = up ? y[2] : Real(-y[2]);
+  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
+  const Real ahead = rising ? Real(1 - u[0]) : u[0];
+  const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
-  const bool arrives = reach >= 0;
-  const Real gap = y[0] - (arrives == up ? above : below);
+  const bool arrives = reach >= 0, across = arrives == rising;
   Real t = arrives ? Real(2 * ahead / (speed + square_root(reach)))
-                   : Real((speed + square_root(Real(reach - 2 * push * (above - below)))) / -push);
+                   : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = most;
-  Derivatives<Real, 8> c{gap, y[1]}, c1{y[1]};
+  Derivatives<Real, 8> c{across ? Real(u[0] - 1) : u[0], u[1]};
   Real factor = over[2];
-  for (std::size_t n = 2; n < 8; ++n) {
-    c[n] = factor * y[n];
-    factor = factor * over[n + 1];
+  for (std::size_t n = 2; n < c.size(); ++n) {
+    c[n] = factor * u[n];
+    factor *= over[n + 1];
   }
-  c1 = slopes(c);
-  for (int i = 0; i < 3; ++i) {
-    const Real step = -sum(c, t) / sum(c1, t);
-    if (!(absolute(step) < t / 2)) break;
+  const auto c1 = slopes(c), c2 = slopes(c1);
+  Real g, g1, g2;
+  for (int i = 0;; ++i) {
+    g = sum(c, t);
+    g1 = sum(c1, t);
+    g2 = sum(c2, t);
+    const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
+    if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
     t += step;
-    if (absolute(step) < t / 1024) break;
+    if (t > short_time && size * 4096 < t) break;
   }
-  return t < most ? t : most;
+  return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
 }
 
-// Whether a gap that is g0 at one end and g1 at the other, a time h apart, is proved to be open in between.
-// slope0, slope1: its derivatives there; |its fourth| <= fourth.
+// Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
+// between 0 and 1. slope0, slope1: its derivatives there; |its fourth| <= fourth.
 template <class Real>
-bool stays_open(const Real& g0, const Real& slope0, const Real& g1, const Real& slope1, const Real& h,
+bool stays_between(const Derivatives<Real, 8>& from, const Real& u1, const Real& slope1, const Real& h,
+                   const Real& fourth) {
+  const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
+  const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
+  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) / 6;
+  if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off)) return false;
+  if (after >= 0 && before >= 0 && middle > off) return true;
+  // It leaves by its second and third derivative: third t^3/6 outweighs |fourth| t^4/24.
+  return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;
+}
+
+// The same of one that may be of any size, towards 0.
+template <class Real>
+bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& slope1, const Real& h,
                 const Real& fourth) {
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
-  return g0 >= 0 && g1 >= 0 && g0 + quarter * slope0 >= 0 && g1 - quarter * slope1 >= 0 &&
-         (g0 + g1) / 2 + h * (slope0 - slope1) / 6 > off;
+  return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
+         (u0 + u1) / 2 + h * (slope0 - slope1) / 6 > off;
 }
 
-// The same of a gap that opens with its second and third derivative, 0 at the end that is meant by h = 0:
-// third t^3/6 outweighs |fourth| t^4/24.
+// A guess made good, where the series is so short a time the motion itself: u' at the wall.
 template <class Real>
-bool opens(const Real& g0, const Real& slope, const Real& second, const Real& third, const Real& h,
-           const Real& fourth) {
-  return g0 >= 0 && slope >= 0 && second >= 0 && 4 * third > fourth * h;
+struct SeriesLanding {
+  Real shift, u1;
+  bool close;
+};
+template <class Real>
+SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
+  const auto& [h, across, g, g1, g2] = guess;
+  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
+  const Real hr = h * rate, hr_2 = hr * hr, tiny = std::numeric_limits<Real>::epsilon() / 16;
+  // What is left out: of u' |u^(8)| h^7/7!, of the shift its third power.
+  return {shift, g1 + shift * g2,
+          fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate) &&
+              absolute(shift) * 33554432 < h};
 }
 
 }  // namespace impact_damper

@@ -16,8 +16,8 @@
 #pragma once
 
 #include "impact_damper/motion/contact_factors.hpp"
-#include "impact_damper/motion/motion.hpp"
 #include "impact_damper/motion/rebound.hpp"
+#include "impact_damper/motion/swing.hpp"
 
 namespace impact_damper {
 

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "impact_damper/motion/motion.hpp"
+#include "impact_damper/motion/swing.hpp"
 
 namespace impact_damper {
 

@@ -75,12 +75,12 @@ class Rebound {
       Real factorial{1};
       for (std::size_t n = 0; n < many; ++n) {
         if (n > 1) factorial *= Real(double(n));
-        x_[n][i] = x[n] / factorial;
-        q_[n][i] = q[n] / factorial;
+        x_[i][n] = x[n] / factorial;
+        q_[i][n] = q[n] / factorial;
       }
-      x_[0][i] = by_T.x;
-      x_[1][i] = by_T.v;
-      q_[1][i] = by_T.w;
+      x_[i][0] = by_T.x;
+      x_[i][1] = by_T.v;
+      q_[i][1] = by_T.w;
       const Real along = (f.w + fast.a() * f.q) / omega;
       fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
       slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
@@ -111,8 +111,13 @@ class Rebound {
  private:
   static constexpr std::size_t few = 10, many = 24;
   using Start = std::array<Real, 3>;  // by x, v and w at the touch
-  static Real of(const Start& row, const Start& start) {
-    return row[0] * start[0] + row[1] * start[1] + row[2] * start[2];
+  using Table = std::array<std::array<Real, many>, 3>;
+  template <std::size_t terms>
+  static std::array<Real, terms> combine(const Table& by, const Start& start) {
+    std::array<Real, terms> all;
+    for (std::size_t n = 0; n < terms; ++n)
+      all[n] = by[0][n] * start[0] + by[1][n] * start[1] + by[2][n] * start[2];
+    return all;
   }
 
   // What a number of terms is good for.
@@ -132,8 +137,7 @@ class Rebound {
   template <std::size_t terms>
   std::optional<End> end_within(const Real& x, const Real& v, const Real& w, const Reach& reach) const {
     const Start start{x, v, w};
-    std::array<Real, terms> q;
-    for (std::size_t n = 0; n < terms; ++n) q[n] = of(q_[n], start);
+    std::array<Real, terms> q = combine<terms>(q_, start);
     q[1] -= left_ * w;
     const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
     Real s = t * (1 - a + (2 * a * a - b)), rest = s;
@@ -152,8 +156,7 @@ class Rebound {
     if (!(left_w * w < 0)) return {};
     const bool proved =
         stays_open(Real(0), absolute(w), Real(0), Real(-growth * absolute(left_w)), time, fourth);
-    std::array<Real, terms> x_terms;
-    for (std::size_t n = 0; n < terms; ++n) x_terms[n] = of(x_[n], start);
+    const std::array<Real, terms> x_terms = combine<terms>(x_, start);
     return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w, proved};
   }
   static Real bound(const Start& row, const Start& start) {
@@ -164,7 +167,7 @@ class Rebound {
   Real decay_{0}, growth_{0};       // a and exp(a T)
   Real accurate_{0};                // a correction of s after which Newton's method has nothing left to correct
   Reach few_, many_;
-  std::array<Start, many> x_{}, q_{};
+  Table x_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
 };
 

@@ -1,0 +1,137 @@
+// 0 < y < 1: equations (3) and (4). The secondary mass flies straight, z = x + y = z0 + z'0 t.
+#pragma once
+
+#include "impact_damper/motion/arrival.hpp"
+#include "impact_damper/motion/swing.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+class Flight {
+ public:
+  Flight(const System<Real>& system, const Real& begin, const State<Real>& start)
+      : swing_(system.free, system.forcing, begin, start.x, start.v),
+        start_(start),
+        wall_(start.y > Real(0.5) ? 1 : 0),
+        away_(start.y > Real(0.5) ? -1 : 1) {}
+
+  State<Real> at(const Real& t) const {
+    if (t == 0) return start_;
+    return state_of(from_wall(t));
+  }
+
+  // Where and when a wall is met, if in [from, horizon).
+  std::optional<Arrival<Real>> next_wall(const Real& from, const Real& horizon, const Real& span) const {
+    if (const auto met = arrive(from, span)) return met->time < horizon ? met : std::nullopt;
+    return search_wall(from, horizon, span);
+  }
+  // The same, certified step by step.
+  std::optional<Arrival<Real>> search_wall(const Real& from, const Real& horizon, const Real& span) const {
+    const auto met =
+        first_root<Real>([&](const Real& t) { return gaps(t, span); }, from, horizon, span, resolution());
+    if (!met) return {};
+    const Wall wall = met->which == 0 ? Wall::left : Wall::right;
+    State<Real> state = at(met->time);
+    state.y = wall == Wall::left ? 0 : 1;
+    return Arrival<Real>{met->time, wall, state};
+  }
+  // Towards zero: the gap to the left wall, y, and the gap to the right one, 1 - y.
+  std::array<Outlook<Real>, 2> gaps(const Real& t, const Real& span) const {
+    const Place now = from_wall(t);
+    const Real near = now.u, far = 1 - now.u, y1 = away_ * now.u1;
+    const Real left = wall_ == 0 ? near : far, right = wall_ == 0 ? far : near;
+    const auto x = swing_.template instant<5>(now.x, now.v, t);
+    const Real third = x.bound(3, span), swing = x.bound(0, span), z1 = y1 + now.v;
+    return {Outlook<Real>{{left, y1, -x[2], third}, {left + now.x, z1, Real(0), Real(0)}, swing},
+            Outlook<Real>{{right, -y1, x[2], third}, {right - now.x, -z1, Real(0), Real(0)}, swing}};
+  }
+
+  // y and its first three derivatives at the beginning, and a bound on the fourth from there on.
+  Derivatives<Real, 4> lead_of_y() const {
+    const auto x = swing_.template derivatives<4>(start_.x, start_.v, Real(0));
+    return {start_.y, start_.w, -x[2], -x[3]};
+  }
+  Real fourth_of_y(const Real& span) const { return swing_.beginning().bound(4, span); }
+
+  bool runs_on(const Real& side, const State<Real>& end, const Real& t) const {
+    return swing_.runs_on(side, end.x, end.v, t);
+  }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            const Real& span) const {
+    return swing_.falls(order, sign, from, until, span);
+  }
+  Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
+    return swing_.outlook_at(order, sign, t, span);
+  }
+  typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
+  Real panel(const Real&) const { return swing_.panel(); }
+  Real resolution() const { return 1; }
+
+ private:
+  // y as the distance u from the wall nearest to the start: what a small bounce is measured by.
+  struct Place {
+    Real x, v, u, u1;
+  };
+  Place from_wall(const Real& t) const {
+    const Real u = away_ * (start_.y - wall_), u1 = away_ * start_.w;
+    if (t == 0) return {start_.x, start_.v, u, u1};
+    const auto now = swing_.at(t);
+    return {now.x, now.v, u + (u1 * t - away_ * now.dx), u1 - away_ * now.dv};
+  }
+  State<Real> state_of(const Place& place) const {
+    return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
+  }
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives_of_u(const Place& place, const Derivatives<Real, N>& x) const {
+    Derivatives<Real, N> u{place.u, place.u1};
+    for (std::size_t n = 2; n < N; ++n) u[n] = -away_ * x[n];
+    return u;
+  }
+  // By guess and proof (arrival.hpp), in a few pieces; nothing where that does not come to an end.
+  [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
+    const Real rate = swing_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
+    Real begin = from;
+    Place here = from_wall(from);
+    for (int piece = 0; piece < 3; ++piece) {
+      const auto x = swing_.template instant<8>(here.x, here.v, begin);
+      const auto u = derivatives_of_u(here, x.derivatives());
+      const Real fourth = x.bound(4, span);
+      const auto reached = [&](bool across, const Real& u1, const Real& h) -> std::optional<Arrival<Real>> {
+        const Real level = across ? 1 : 0;
+        if (!stays_between(u, level, u1, h, fourth)) return {};
+        // z has gone straight there.
+        const Real x_there = here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level));
+        const bool left = across == (wall_ == 1);
+        return Arrival<Real>{begin + h,
+                             left ? Wall::left : Wall::right,
+                             {x_there, here.v + away_ * (here.u1 - u1), left ? Real(0) : Real(1), away_ * u1}};
+      };
+
+      const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
+      Real h = guessed.time;
+      if (!(h > 0)) return {};
+      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close)
+        return reached(guessed.across, u1, h + shift);
+      Place there;
+      for (int correction = 0;; ++correction) {
+        there = from_wall(begin + h);
+        const auto u_there = derivatives_of_u(there, swing_.template derivatives<6>(there.x, there.v, begin + h));
+        const bool across = there.u > Real(0.5);
+        const auto [shift, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
+        if (!(absolute(shift) < h / 4) || correction == 3) break;
+        if (close) return reached(across, moved(u_there, shift).u1, h + shift);
+        h += shift;
+      }
+      if (!stays_between(u, there.u, there.u1, h, fourth)) return {};
+      begin += h;
+      here = there;
+    }
+    return {};
+  }
+
+  Swing<Real> swing_;
+  State<Real> start_;
+  Real wall_, away_;
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,46 @@
+// Both masses as one, the secondary at rest on a wall: equation (9), and y'' = 0 for equation (10).
+#pragma once
+
+#include "impact_damper/motion/swing.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+class Stuck {
+ public:
+  Stuck(const System<Real>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
+      : swing_(system.stuck, {system.forcing.amplitude / (1 + system.nu), system.forcing.frequency}, begin, x,
+               v),
+        start_{x, v, wall == Wall::left ? Real(0) : Real(1), Real(0)},
+        push_(wall == Wall::left ? 1 : -1) {}
+
+  State<Real> at(const Real& t) const {
+    if (t == 0) return start_;
+    const auto now = swing_.at(t);
+    return {now.x, now.v, start_.y, Real(0)};
+  }
+  // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
+  std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) const {
+    return swing_.falls(2, push_, from, horizon, span);
+  }
+  bool runs_on(const Real& side, const State<Real>& end, const Real& t) const {
+    return swing_.runs_on(side, end.x, end.v, t);
+  }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            const Real& span) const {
+    return swing_.falls(order, sign, from, until, span);
+  }
+  Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
+    return swing_.outlook_at(order, sign, t, span);
+  }
+  typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
+  Real panel(const Real&) const { return swing_.panel(); }
+  Real resolution() const { return 1; }
+
+ private:
+  Swing<Real> swing_;
+  State<Real> start_;
+  Real push_;
+};
+
+}  // namespace impact_damper

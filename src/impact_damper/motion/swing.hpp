@@ -1,0 +1,145 @@
+// x of a single oscillator under the forcing, a closed form from its beginning: what moves in free flight
+// (flight.hpp) and where both masses move as one (stuck.hpp).
+//
+// Every motion answers, for a time t since its beginning: the state, what it meets, and where a derivative of x
+// falls through zero.
+#pragma once
+
+#include "impact_damper/motion/arrival.hpp"
+#include "impact_damper/motion/first_root.hpp"
+#include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/run.hpp"
+
+#include <cmath>
+namespace impact_damper {
+
+// The scene's numbers in the engine's scalar type.
+template <class Real>
+struct System {
+  explicit System(const Scene& scene)
+      : nu(scene.mass_ratio),
+        e(scene.restitution),
+        zeta(scene.damping_ratio),
+        k(scene.wall_stiffness),
+        forcing{Real(scene.force_amplitude), Real(scene.force_frequency)},
+        free(zeta, Real(1)),
+        stuck(zeta / (1 + nu), 1 / (1 + nu)) {}
+
+  Real nu, e, zeta, k;
+  Forcing<Real> forcing;
+  Oscillator<Real> free;   // equation (3)
+  Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
+};
+
+// The first time in [from, until) at which a function falls through zero, by its outlooks.
+template <class Real, class OutlookAt>
+std::optional<Real> search_fall(OutlookAt&& outlook_at, const Real& from, const Real& until, const Real& span,
+                                const Real& resolution) {
+  const auto root = first_root<Real>([&](const Real& t) { return std::array{outlook_at(t)}; }, from, until,
+                                     span, resolution);
+  return root ? std::optional(root->time) : std::nullopt;
+}
+
+// Whether a function with the ends u0, u1 of one sign has no zero between them: |its second derivative| is at
+// most `second`, so it keeps within second t^2/8 of its chord.
+template <class Real>
+bool keeps_sign(const Real& u0, const Real& u1, const Real& second, const Real& t) {
+  const Real off = second * t * t / 8;
+  return absolute(u0) > off && absolute(u1) > off;
+}
+
+// x of a single oscillator under the forcing, with what bounds it.
+template <class Real>
+class Swing {
+ public:
+  Swing(const Oscillator<Real>& oscillator, const Forcing<Real>& forcing, const Real& begin, const Real& x0,
+        const Real& v0)
+      : oscillator_(oscillator), forcing_(forcing), begin_(begin), x0_(x0), v0_(v0) {}
+
+  struct Change {
+    Real x, v;    // displacement and velocity at t
+    Real dx, dv;  // x - x0 - v0 t and v - v0, without cancellation
+  };
+  Change at(const Real& t) const {
+    const Propagator<Real> p = oscillator_.propagate(t);
+    Change now;
+    now.x = x0_ * p.c + v0_ * p.s;
+    now.dx = x0_ * p.c1 + v0_ * p.s1;
+    const Real from_x = -x0_ * oscillator_.b() * p.s;
+    now.dv = v0_ * (p.c1 - 2 * oscillator_.a() * p.s) + from_x;
+    now.v = v0_ * p.v + from_x;
+    if (forcing_) {
+      const DrivenResponse<Real> driven = oscillator_.respond(forcing_, begin_, t, p);
+      now.x += driven.d;
+      now.dx += driven.d;
+      now.dv += driven.d1;
+      now.v += driven.d1;
+    }
+    return now;
+  }
+
+  template <std::size_t N>
+  Instant<Real, N> instant(const Real& x, const Real& v, const Real& t) const {
+    return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
+  }
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t) const {
+    if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
+    return impact_damper::derivatives<N>(oscillator_, x, v, Real(1), Real(0),
+                                         forcing_.template derivatives<N + 1>(begin_ + t));
+  }
+  using Beginning = Instant<Real, 6>;
+  Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
+
+  // Whether x, at both ends of [0, t] on the same `side` of zero, is proved not to change sign in between, nor
+  // to turn. Without forcing neither x nor x' has two zeros within half a period.
+  bool runs_on(const Real& side, const Real& x, const Real& v, const Real& t) const {
+    if (!(side * x0_ > 0 && side * x > 0 && v0_ * v > 0)) return false;
+    if (!forcing_) return t < oscillator_.half_period();
+    const auto x_ = beginning();
+    return keeps_sign(x0_, x, x_.bound(2, t), t) && keeps_sign(v0_, v, x_.bound(3, t), t);
+  }
+  // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            const Real& span) const {
+    if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
+      return search_fall<Real>([&](const Real& t) { return outlook_at(order, sign, t, span); }, from, until,
+                               span, Real(1));
+    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    const Real u = sign * x[order], u1 = sign * x[order + 1];
+    if (u == 0 && u1 == 0) return {};
+    if (!(from > 0) && u <= 0 && u1 < 0) return from < until ? std::optional(from) : std::nullopt;
+    Real time = oscillator_.fall(u > 0 ? u : Real(0), u1);
+    const Real period = 2 * oscillator_.half_period();
+    if (time < from) time += Real(std::ceil(double((from - time) / period))) * period;
+    return time < until ? std::optional(time) : std::nullopt;
+  }
+  // The `order`-th derivative of x, looked ahead from t.
+  Outlook<Real> outlook_at(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
+    const Change now = at(t);
+    const auto x = instant<7>(now.x, now.v, t);
+    return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)},
+            {},
+            std::numeric_limits<Real>::infinity()};
+  }
+
+  // The fastest that anything happens in it.
+  Real rate() const {
+    return forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
+  }
+  // How far a smooth quadrature panel may reach.
+  Real panel() const { return Real(6) / rate(); }
+
+ private:
+  const Oscillator<Real>& oscillator_;
+  Forcing<Real> forcing_;
+  Real begin_, x0_, v0_;
+};
+
+// How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
+template <class Real>
+Real bounded_span(const Forcing<Real>& forcing) {
+  return forcing ? Real(1) : std::numeric_limits<Real>::infinity();
+}
+
+}  // namespace impact_damper
