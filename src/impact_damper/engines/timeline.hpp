@@ -130,11 +130,15 @@ class Timeline {
       }
     }
     notice_peak(motion, from);
-    if (motion.runs_on(side_, end, duration)) return duration;
+    // What the ends already exclude is not searched for.
+    const bool may_turn = !motion.keeps_course(row_best_, end, duration);
+    bool may_cross = !motion.keeps_side(side_, end, duration);
+    if (!may_turn && !may_cross) return duration;
     for (;;) {
-      const auto crossing = motion.falls(0, side_, from, duration, span_);
+      std::optional<Real> crossing;
+      if (may_cross) crossing = motion.falls(0, side_, from, duration, span_);
       const Real until = crossing ? *crossing : duration;
-      find_peaks(motion, from, until);
+      if (may_turn) find_peaks(motion, from, until);
       if (!crossing) return duration;
       const Real zero = now() + *crossing;
       observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
@@ -149,6 +153,7 @@ class Timeline {
       row_best_ = 0;
       row_peak_time_ = zero;
       from = *crossing;
+      may_cross = !(duration - from < motion.one_zero_within());
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
@@ -161,6 +166,7 @@ class Timeline {
       const auto turn = motion.falls(1, sign, from, until, span_);
       if (!turn) return;
       if (rising) notice_peak(motion, *turn);
+      if (until - *turn < motion.one_zero_within()) return;
       rising = !rising;
       from = *turn;
     }

@@ -132,7 +132,7 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
     const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
     if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
     t += step;
-    if (t > short_time && size * 4096 < t) break;
+    if (t > short_time && size * 64 < t) break;
   }
   return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
 }

@@ -173,18 +173,16 @@ class Contact {
     return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
   }
-  bool runs_on(const Real& side, const State<Real>& end, const Real& t) const {
-    if (!(side * start_.x > 0 && side * end.x > 0 && start_.v * end.v > 0)) return false;
-    const auto& [x, v, y, w] = start_;
-    const Rebound<Real>& rebound = system_.rebound;
-    if (y == wall_ && !system_.forcing)
-      return keeps_sign(x, end.x, rebound.second_of_x(x, v, w), t) &&
-             keeps_sign(v, end.v, rebound.third_of_x(x, v, w), t);
-    const auto slow = instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0));
-    const auto fast = instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0));
-    return keeps_sign(x, end.x, Real(slow.bound(2, t) + fast.bound(2, t)), t) &&
-           keeps_sign(v, end.v, Real(slow.bound(3, t) + fast.bound(3, t)), t);
+  // Whether x is proved to keep its sign in [0, t], or never to exceed `best` or the ends, by its ends.
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    return side * start_.x > 0 && side * end.x > 0 && keeps_sign(start_.x, end.x, second_of_x(t), t);
   }
+  bool keeps_course(const Real& best, const State<Real>& end, const Real& t) const {
+    if (start_.v * end.v > 0 && keeps_sign(start_.v, end.v, third_of_x(t), t)) return true;
+    const Real off = second_of_x(t) * t * t / 8;
+    return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
+  }
+  Real one_zero_within() const { return 0; }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
@@ -230,6 +228,17 @@ class Contact {
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:
+  // Bounds for a time t.
+  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Rebound<Real>::second_of_x); }
+  Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Rebound<Real>::third_of_x); }
+  template <class OfRebound>
+  Real bound_of_x(std::size_t order, const Real& t, OfRebound of_rebound) const {
+    if (system_.rebound && start_.y == wall_)
+      return (system_.rebound.*of_rebound)(start_.x, start_.v, start_.w);
+    return instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(order, t) +
+           instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
+  }
+
   // A rebound's proof in four pieces, where one was not enough.
   bool stays_in_until(const typename Rebound<Real>::End& end) const {
     const auto& [slow, fast] = parts();

@@ -53,9 +53,13 @@ class Flight {
   }
   Real fourth_of_y(const Real& span) const { return swing_.beginning().bound(4, span); }
 
-  bool runs_on(const Real& side, const State<Real>& end, const Real& t) const {
-    return swing_.runs_on(side, end.x, end.v, t);
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    return swing_.keeps_side(side, end.x, t);
   }
+  bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
+    return swing_.keeps_course(end.v, t);
+  }
+  Real one_zero_within() const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     return swing_.falls(order, sign, from, until, span);

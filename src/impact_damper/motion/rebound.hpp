@@ -48,7 +48,7 @@ class Rebound {
     const Real omega = half_turn<Real>() / swing_;
     few_ = reach_of(few, fast);
     many_ = reach_of(many, fast);
-    accurate_ = square_root(Real(epsilon / 16)) / fast.rate();
+    accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * swing_));
     // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
@@ -90,6 +90,8 @@ class Rebound {
       third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
     }
   }
+
+  explicit operator bool() const { return accurate_ > 0; }
 
   // The end of a contact that begins with x, v and w, inwards; nothing if it is not that brisk.
   struct End {
@@ -140,16 +142,17 @@ class Rebound {
     std::array<Real, terms> q = combine<terms>(q_, start);
     q[1] -= left_ * w;
     const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
-    Real s = t * (1 - a + (2 * a * a - b)), rest = s;
-    if (!(absolute(s) < reach.s)) return {};
-    const auto q1 = slopes(q);
-    for (int i = 0; !(absolute(rest) < accurate_); ++i) {
-      if (i == 8) return {};
-      rest = -sum(q, s) / sum(q1, s);
+    Real s = t * (1 - a + (2 * a * a - b)), left_w;
+    const auto q1 = slopes(q), q2 = slopes(q1);
+    for (int i = 0;; ++i) {
+      if (i == 8 || !(absolute(s) < reach.s)) return {};
+      const Real g = sum(q, s), g1 = sum(q1, s), g2 = sum(q2, s), newton = -g / g1;
+      const Real rest = newton * (1 - newton * g2 / (2 * g1));
       s += rest;
-      if (!(absolute(s) < reach.s)) return {};
+      left_w = g1 + rest * (g2 + rest * (3 * q[3] + 12 * s * q[4]));
+      if (absolute(rest) < accurate_) break;
     }
-    const Real time = swing_ + s, left_w = sum(q1, s);
+    const Real time = swing_ + s;
     const Real fourth = bound(fast_fourth_, start) + reach.growth * bound(slow_fourth_, start);
     // exp(a s) >= 1 + a s.
     const Real growth = growth_ * (1 + decay_ * s);
@@ -165,7 +168,7 @@ class Rebound {
 
   Real swing_{0}, left_{0};         // T and E = exp(-a T)
   Real decay_{0}, growth_{0};       // a and exp(a T)
-  Real accurate_{0};                // a correction of s after which Newton's method has nothing left to correct
+  Real accurate_{0};                // a correction of s whose third power is nothing
   Reach few_, many_;
   Table x_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};

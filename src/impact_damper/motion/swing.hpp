@@ -91,14 +91,17 @@ class Swing {
   using Beginning = Instant<Real, 6>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
 
-  // Whether x, at both ends of [0, t] on the same `side` of zero, is proved not to change sign in between, nor
-  // to turn. Without forcing neither x nor x' has two zeros within half a period.
-  bool runs_on(const Real& side, const Real& x, const Real& v, const Real& t) const {
-    if (!(side * x0_ > 0 && side * x > 0 && v0_ * v > 0)) return false;
-    if (!forcing_) return t < oscillator_.half_period();
-    const auto x_ = beginning();
-    return keeps_sign(x0_, x, x_.bound(2, t), t) && keeps_sign(v0_, v, x_.bound(3, t), t);
+  // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
+  bool keeps_side(const Real& side, const Real& x, const Real& t) const {
+    if (!(side * x0_ > 0 && side * x > 0)) return false;
+    return forcing_ ? keeps_sign(x0_, x, beginning().bound(2, t), t) : t < one_zero_within();
   }
+  bool keeps_course(const Real& v, const Real& t) const {
+    if (!(v0_ * v > 0)) return false;
+    return forcing_ ? keeps_sign(v0_, v, beginning().bound(3, t), t) : t < one_zero_within();
+  }
+  // A time in which x has one zero at most, and so has each of its derivatives.
+  Real one_zero_within() const { return forcing_ ? Real(0) : oscillator_.half_period(); }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
