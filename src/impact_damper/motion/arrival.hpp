@@ -114,8 +114,9 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
   const bool arrives = reach >= 0, across = arrives == rising;
-  Real t = arrives ? Real(2 * ahead / (speed + square_root(reach)))
-                   : Real((speed + square_root(Real(reach - 2 * push))) / -push);
+  Real t = arrives      ? Real(2 * ahead / (speed + square_root(reach)))
+           : u[0] == 0 ? Real(2 * speed / -push)
+                       : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = most;
   Derivatives<Real, 8> c{across ? Real(u[0] - 1) : u[0], u[1]};
   Real factor = over[2];

@@ -152,7 +152,7 @@ class Contact {
     const Wall wall = wall_ == 0 ? Wall::left : Wall::right;
     if (start_.y == wall_) {
       const auto end = system_.rebound(start_.x, start_.v, start_.w);
-      if (end && (end->proved || stays_in_until(*end))) {
+      if (end) {
         if (!(end->time < horizon)) return {};
         return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
       }
@@ -185,6 +185,10 @@ class Contact {
   Real one_zero_within() const { return 0; }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
+    if (order == 0) {
+      if (const auto fall = fall_of_slow_x(sign); fall && *fall > from)
+        return *fall < until ? fall : std::nullopt;
+    }
     return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
                              until, span, resolution());
   }
@@ -239,27 +243,23 @@ class Contact {
            instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
   }
 
-  // A rebound's proof in four pieces, where one was not enough.
-  bool stays_in_until(const typename Rebound<Real>::End& end) const {
+  // When x, on one side of zero, falls to it in a contact that lasts: when the slow part of x does, if by half
+  // that time the ringing is below its rounding error, and was below the slow part all along.
+  std::optional<Real> fall_of_slow_x(const Real& side) const {
+    const ContactSystem<Real>& c = system_;
+    const Real infinite = std::numeric_limits<Real>::infinity();
+    if (c.forcing || !(c.fast.half_period() < infinite) || !(c.slow.half_period() < infinite)) return {};
     const auto& [slow, fast] = parts();
-    const Real b = system_.slow.b(), b2 = system_.fast.b(), piece = end.time / 4;
-    const Real fourth = square_root(Real(slow.q * slow.q + slow.w * slow.w / b)) * b * b;
-    ContactState<Real> before = fast, depth{0, 0, 0, inward_ * start_.w};
-    for (int n = 1; n <= 4; ++n) {
-      ContactState<Real> now{0, 0, 0, inward_ * end.w}, fast_now{};
-      if (n < 4) {
-        const ContactState<Real> slow_now = slow_at(Real(n) * piece);
-        fast_now = fast_at(Real(n) * piece);
-        now.q = inward_ * (slow_now.q + fast_now.q);
-        now.w = inward_ * (slow_now.w + fast_now.w);
-      }
-      const Real ringing = system_.ringing(before);
-      if (!stays_open(depth.q, depth.w, now.q, now.w, piece, Real(ringing * b2 * b2 + fourth))) return false;
-      before = fast_now;
-      depth = now;
-    }
-    return true;
+    const Real x = side * slow.x;
+    if (!(x > 0)) return {};
+    const Real fall = c.slow.fall(x, Real(side * slow.v)), half = fall / 2;
+    const Real along = (fast.v + c.fast.a() * fast.x) * c.fast.half_period() / half_turn<Real>();
+    const Real ringing = square_root(Real(fast.x * fast.x + along * along)), late_x = side * slow_at(half).x;
+    const Real left = ringing * exponential(Real(-c.fast.a() * half));
+    if (!(ringing < x && ringing < late_x && left < std::numeric_limits<Real>::epsilon() / 4 * late_x)) return {};
+    return fall;
   }
+
   // The end of a contact that lasts: the ringing dies away, and the mass leaves when the slow motion lets go.
   //
   // The proof. The ringing is the real part of N exp(lambda t + i phase), so that its fourth derivative is at
@@ -313,7 +313,7 @@ class Contact {
       if (!stays_open(Real(late_depth + inward_ * fast_late.q), Real(inward_ * (slow_late.w + fast_late.w)),
                       Real(0), Real(inward_ * end_w), Real(h - late), faint))
         return {};
-      return typename Rebound<Real>::End{h, end_x, end_v, end_w, true};
+      return typename Rebound<Real>::End{h, end_x, end_v, end_w};
     }
     return {};
   }

@@ -50,6 +50,7 @@ class Rebound {
     many_ = reach_of(many, fast);
     accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
+    unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
     growth_ = exponential(Real(fast.a() * swing_));
     // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
     const auto fastest = [](const Oscillator<Real>& o) {
@@ -96,7 +97,6 @@ class Rebound {
   // The end of a contact that begins with x, v and w, inwards; nothing if it is not that brisk.
   struct End {
     Real time, x, v, w;
-    bool proved;  // to be the first return to the wall
   };
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
     if (const auto end = end_within<few>(x, v, w, few_)) return end;
@@ -153,14 +153,22 @@ class Rebound {
       if (absolute(rest) < accurate_) break;
     }
     const Real time = swing_ + s;
-    const Real fourth = bound(fast_fourth_, start) + reach.growth * bound(slow_fourth_, start);
-    // exp(a s) >= 1 + a s.
-    const Real growth = growth_ * (1 + decay_ * s);
     if (!(left_w * w < 0)) return {};
-    const bool proved =
-        stays_open(Real(0), absolute(w), Real(0), Real(-growth * absolute(left_w)), time, fourth);
+    const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(left_w);
+    const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
+    // exp(a s) >= 1 + a s.
+    bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * s) * out), time,
+                             Real(fast_fourth + reach.growth * slow_fourth));
+    if (!proved && s > 0) {
+      // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
+      const Real depth = inward * q[0], slope = inward * q[1];
+      proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)), swing_,
+                          Real(fast_fourth + slow_fourth)) &&
+               stays_open(depth, slope, Real(0), Real(-out), s, Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
+    }
+    if (!proved) return {};
     const std::array<Real, terms> x_terms = combine<terms>(x_, start);
-    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w, proved};
+    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
   }
   static Real bound(const Start& row, const Start& start) {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
@@ -168,6 +176,7 @@ class Rebound {
 
   Real swing_{0}, left_{0};         // T and E = exp(-a T)
   Real decay_{0}, growth_{0};       // a and exp(a T)
+  Real unweighted_{0};              // (b / omega^2)^2
   Real accurate_{0};                // a correction of s whose third power is nothing
   Reach few_, many_;
   Table x_{}, q_{};
