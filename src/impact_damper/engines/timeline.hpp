@@ -57,7 +57,7 @@ class Timeline {
   // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to. Returns
   // the works in it.
   template <class Motion>
-  Works<Real> pass(const Motion& motion, Real duration, State<Real>& end, const Real& wall_damping) {
+  [[gnu::flatten]] Works<Real> pass(const Motion& motion, Real duration, State<Real>& end, const Real& wall_damping) {
     if (!(duration < remaining())) {
       duration = remaining();
       stopped_ = scene_.until_time ? StopReason::time : StopReason::time_budget;
