@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 namespace impact_damper {
 
@@ -57,7 +58,11 @@ Real square_root(const Real& x) {
 
 template <class Real>
 Real absolute(const Real& x) {
-  return x < 0 ? -x : x;
+  if constexpr (std::is_floating_point_v<Real>) {
+    return std::fabs(x);  // one instruction, where the other is a branch that no processor foresees
+  } else {
+    return x < 0 ? -x : x;
+  }
 }
 
 }  // namespace impact_damper

@@ -252,7 +252,11 @@ class Oscillator {
 template <std::size_t N, class Real>
 std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
   std::array<Real, N> d{u, u1};
-  for (std::size_t n = 2; n < N; ++n) d[n] = -2 * oscillator.a() * d[n - 1] - oscillator.b() * d[n - 2];
+  if (oscillator.a() == 0) {
+    for (std::size_t n = 2; n < N; ++n) d[n] = -oscillator.b() * d[n - 2];
+  } else {
+    for (std::size_t n = 2; n < N; ++n) d[n] = -2 * oscillator.a() * d[n - 1] - oscillator.b() * d[n - 2];
+  }
   return d;
 }
 // The same under on_f f + on_f1 f', the derivatives of f given.
