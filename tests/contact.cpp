@@ -145,10 +145,9 @@ Impact impact_of(const Scene& scene, Calibration calibration) {
   const ContactSystem<double> walls(system, zeta_m<double>(scene, calibration));
   const Contact<double> contact(walls, 0.0, {0, 0, 0, -1}, Wall::left);
   const double infinite = std::numeric_limits<double>::infinity();
-  const auto left = first_root<double>([&](double t) { return contact.depth(t, infinite); }, 0.0, 100.0,
-                                       infinite, contact.resolution());
+  const auto left = contact.leave(100.0, infinite);
   REQUIRE(left.has_value());
-  const State<double> after = contact.at(left->time);
+  const State<double> after = left->state;
   const double nu = scene.mass_ratio;
   return {after.w, (1 + nu) * after.v + nu * after.w + nu};
 }
@@ -192,8 +191,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
     const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
     const double infinite = std::numeric_limits<double>::infinity();
-    const auto left = first_root<double>([&](double t) { return contact.depth(t, infinite); }, 0.0, 100.0,
-                                         infinite, contact.resolution());
+    const auto left = contact.leave(100.0, infinite);
     REQUIRE(left.has_value());
     CAPTURE(nu);
     // Joined, the masses pass x = 0 a quarter period of sqrt(1 + nu) after x = -1, a little less for the

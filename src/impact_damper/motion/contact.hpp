@@ -149,22 +149,20 @@ class Contact {
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
   std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
-    const Wall wall = wall_ == 0 ? Wall::left : Wall::right;
     if (start_.y == wall_) {
-      const auto end = system_.rebound(start_.x, start_.v, start_.w);
-      if (end) {
-        if (!(end->time < horizon)) return {};
-        return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
-      }
+      auto end = system_.rebound(start_.x, start_.v, start_.w);
+      if (!end) end = settle();
+      if (end && !(end->time < horizon)) return {};
+      if (end) return Arrival<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
     }
-    if (const auto end = settle()) {
-      if (!(end->time < horizon)) return {};
-      return Arrival<Real>{end->time, wall, {end->x, end->v, wall_, end->w}};
-    }
+    return search_leave(horizon, span);
+  }
+  // The same, certified step by step.
+  std::optional<Arrival<Real>> search_leave(const Real& horizon, const Real& span) const {
     const auto left = search_fall<Real>([&](const Real& t) { return depth(t, span); }, Real(0), horizon, span,
                                         resolution());
     if (!left) return {};
-    Arrival<Real> end{*left, wall, at(*left)};
+    Arrival<Real> end{*left, wall(), at(*left)};
     end.state.y = wall_;
     return end;
   }
@@ -232,6 +230,8 @@ class Contact {
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:
+  Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
+
   // Bounds for a time t.
   Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Rebound<Real>::second_of_x); }
   Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Rebound<Real>::third_of_x); }
@@ -269,7 +269,7 @@ class Contact {
   std::optional<typename Rebound<Real>::End> settle() const {
     const ContactSystem<Real>& c = system_;
     const Real infinite = std::numeric_limits<Real>::infinity(), quarter = c.fast.half_period() / 2;
-    if (c.forcing || start_.y != wall_ || !(quarter < infinite) || !(c.slow.half_period() < infinite)) return {};
+    if (c.forcing || !(quarter < infinite) || !(c.slow.half_period() < infinite)) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
