@@ -3,16 +3,22 @@
 // With q the overlap coordinate (y at the left wall, y - 1 at the right; q < 0 and q > 0 in contact),
 // K = omega_m^2 = k/nu and c = 2 omega_m zeta_m, equations (5)-(8) read
 //     x'' + 2 zeta x' + x = nu (c q' + K q) + f,      x'' + q'' + c q' + K q = 0.
-// Their characteristic polynomial
-//     P(s) = s^4 + [2 zeta + c(1+nu)] s^3 + [1 + 2 zeta c + K(1+nu)] s^2 + [c + 2 zeta K] s + K
-// is factored once per scene into two real quadratics: one oscillator that is slow (both masses moving
-// together) and one that is fast (the wall ringing). A state is split into the part that lives in either,
-// and each part moves by its own oscillator's C and S (oscillator.hpp), critically damped or not.
+// Their characteristic polynomial P(s), of fourth degree, is factored once per scene into two real quadratics
+// (contact_factors.hpp): Q1 = s^2 + p s + b, slow (both masses moving together), and Q2 = s^2 + p2 s + b2,
+// fast (the wall giving way). A state is split into the part that lives in either, and each part moves by its
+// own oscillator's C and S (oscillator.hpp), critically damped or not.
 //
-// The split. Q1 = s^2 + p s + b slow, Q2 = s^2 + p2 s + b2 fast. Q2(d/dt) removes the fast part of a motion
-// u and leaves r = (alpha d/dt + beta) u1 of the slow one, alpha = p2 - p, beta = b2 - b, and on slow motions
-// (alpha s + beta)(gamma s + delta) = 1 with gamma = -alpha/R, delta = (beta - alpha p)/R,
-// R = beta^2 - alpha beta p + alpha^2 b, so u1 = gamma r' + delta r.
+// The split. Q2(d/dt) removes the fast part of a motion u and leaves (alpha d/dt + beta) u of the slow one,
+// alpha = p2 - p, beta = b2 - b; Q1(d/dt) the other way round, with the sign changed. With the resultant
+// R = beta^2 - alpha beta p + alpha^2 b, the inverse of alpha s + beta is
+//     (beta - alpha p - alpha s)/R modulo Q1,    (beta - alpha p2 - alpha s)/R modulo Q2.
+// Where digits could go: u'' is as large as the fast motion makes it, and what Q2 leaves of it would be its
+// rounding errors. So two coordinates are taken that the equations couple weakly: q, which the joined masses
+// hardly move, and the masses' centre X = x + nu/(1+nu) q, which the wall does not move. With J, H and D of
+// contact_factors.hpp they are J X = nu/(1+nu)^2 D q and H q = D X, and
+//     Q2 q = D X + (Q2 - H) q,    Q1 X = nu/(1+nu)^2 D q + (Q1 - J) X,
+// whose coefficients are all small and known to their own last digit. What remains of q and of X is fast
+// and slow, by subtraction, and x = X - nu/(1+nu) q.
 #pragma once
 
 #include "impact_damper/motion/contact_factors.hpp"
@@ -33,25 +39,17 @@ class ContactSystem {
         zeta(system.zeta),
         stiffness(system.k / system.nu),
         damping(2 * zeta_m * square_root(stiffness)),
-        forcing(system.forcing) {
-    const ContactFactors<Real> factors = factor_contact(nu, zeta, stiffness, damping);
-    p_ = factors.p;
-    b_ = factors.b;
-    p2_ = factors.p2;
-    b2_ = factors.b2;
-    slow = Oscillator<Real>(p_ / 2, b_);
-    fast = Oscillator<Real>(p2_ / 2, b2_);
-    const Real alpha = p2_ - p_, beta = b2_ - b_;
-    const Real resultant = beta * beta - alpha * beta * p_ + alpha * alpha * b_;
-    gamma_ = -alpha / resultant;
-    delta_ = (beta - alpha * p_) / resultant;
-    // On fast motions x = nu (c s + K) / (s^2 + 2 zeta s + 1) q: its inverse denominator, reduced by Q2.
-    const Real free = 1 + 2 * zeta;
-    stiff_ = b2_ > 16 * free * free;
-    const Real a = 2 * zeta - p2_, o = 1 - b2_;
-    const Real free_resultant = o * o + a * (2 * zeta * b2_ - p2_);  // a b2 - o p2, its large terms cancelled
-    shape_s_ = -a / free_resultant;
-    shape_1_ = (o - a * p2_) / free_resultant;
+        forcing(system.forcing),
+        joined_(1 / (1 + nu)),
+        share_(nu / (1 + nu)) {
+    const auto& [p, b, p2, b2, dp, db, db2] = factors_ = factor_contact(nu, zeta, stiffness, damping);
+    slow = Oscillator<Real>(p / 2, b);
+    fast = Oscillator<Real>(p2 / 2, b2);
+    const Real alpha = p2 - p, beta = b2 - b, resultant = beta * (beta - alpha * p) + alpha * alpha * b;
+    alpha_ = alpha / resultant;
+    beta_ = beta / resultant;
+    slow_ = (beta - alpha * p) / resultant;
+    fast_ = (beta - alpha * p2) / resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
     split({0, 1, 0, -1}, drive_slow, drive_fast);
   }
@@ -59,37 +57,26 @@ class ContactSystem {
   // u = slow + fast.
   void split(const ContactState<Real>& u, ContactState<Real>& slow_part,
              ContactState<Real>& fast_part) const {
-    const Real force = damping * u.w + stiffness * u.q;
-    const Real x2 = nu * force - 2 * zeta * u.v - u.x, q2 = -force - x2;
-    // r = Q2(d/dt) applied to q and x, and its derivative. For q the large terms cancel exactly:
-    // p2 - c(1+nu) = 2 zeta - p and b2 - K(1+nu) = 1 + 2 zeta c - b - p p2, by the coefficients of P.
-    const Real on_w = 2 * zeta - p_, on_q = 1 + 2 * zeta * damping - b_ - p_ * p2_;
-    const Real r_q = on_w * u.w + on_q * u.q + 2 * zeta * u.v + u.x;
-    const Real r_w = on_w * q2 + on_q * u.w + 2 * zeta * x2 + u.v;
-    slow_part.q = gamma_ * r_w + delta_ * r_q;
-    slow_part.w = gamma_ * (-p_ * r_w - b_ * r_q) + delta_ * r_w;
+    const auto& [p, b, p2, b2, dp, db, db2] = factors_;
+    const Real dx = 2 * zeta * u.v + u.x;  // D x
+    const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
+    // So that rounding does not show where the secondary mass stands still, however heavy it is.
+    const Real X = joined_ * (u.x + nu * (u.x + u.q)), X1 = joined_ * (u.v + nu * (u.v + u.w));
+    const Real X2 = -joined_ * dx;
+
+    const Real r = 2 * zeta * X1 + X - dp * u.w + db2 * u.q;  // Q2 q and its derivative
+    const Real r1 = 2 * zeta * X2 + X1 - dp * q2 + db2 * u.w;
+    slow_part.q = slow_ * r - alpha_ * r1;
+    slow_part.w = beta_ * r1 + alpha_ * b * r;
     fast_part.q = u.q - slow_part.q;
     fast_part.w = u.w - slow_part.w;
-    if (stiff_) {
-      // From the shape of the fast motion: a rounding error of x must not ring with the wall's frequency.
-      const auto shape = [&](const Real& now, const Real& rate) {
-        // (c s + K)(shape_s s + shape_1) q, with s^2 = -p2 s - b2
-        const Real square = damping * shape_s_;
-        return nu * ((stiffness * shape_1_ - square * b2_) * now +
-                     (damping * shape_1_ + stiffness * shape_s_ - square * p2_) * rate);
-      };
-      fast_part.x = shape(fast_part.q, fast_part.w);
-      fast_part.v = shape(fast_part.w, -p2_ * fast_part.w - b2_ * fast_part.q);
-      slow_part.x = u.x - fast_part.x;
-      slow_part.v = u.v - fast_part.v;
-    } else {
-      const Real x3 = nu * (damping * q2 + stiffness * u.w) - 2 * zeta * x2 - u.v;
-      const Real r_x = x2 + p2_ * u.v + b2_ * u.x, r_v = x3 + p2_ * x2 + b2_ * u.v;
-      slow_part.x = gamma_ * r_v + delta_ * r_x;
-      slow_part.v = gamma_ * (-p_ * r_v - b_ * r_x) + delta_ * r_v;
-      fast_part.x = u.x - slow_part.x;
-      fast_part.v = u.v - slow_part.v;
-    }
+
+    const Real f = share_ * joined_ * (2 * zeta * u.w + u.q) + dp * X1 + db * X;  // Q1 X and its derivative
+    const Real f1 = share_ * joined_ * (2 * zeta * q2 + u.w) + dp * X2 + db * X1;
+    fast_part.x = (alpha_ * f1 - fast_ * f) - share_ * fast_part.q;
+    fast_part.v = -(beta_ * f1 + alpha_ * b2 * f) - share_ * fast_part.w;
+    slow_part.x = u.x - fast_part.x;
+    slow_part.v = u.v - fast_part.v;
   }
 
   Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
@@ -98,8 +85,9 @@ class ContactSystem {
   ContactState<Real> drive_slow, drive_fast;
 
  private:
-  Real p_, b_, p2_, b2_, gamma_, delta_, shape_s_, shape_1_;
-  bool stiff_;
+  Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
+  ContactFactors<Real> factors_;
+  Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2, by the resultant
 };
 
 template <class Real>
