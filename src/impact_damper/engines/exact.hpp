@@ -7,7 +7,7 @@
 #pragma once
 
 #include "impact_damper/engines/timeline.hpp"
-#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/contact_works.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {

@@ -108,6 +108,11 @@ class Contact {
     return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
   }
 
+  // The two parts of x, x', q and q'.
+  ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
+  ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
+  const ContactSystem<Real>& system() const { return system_; }
+
   // Towards zero: how deep the secondary mass is in the wall.
   std::array<Outlook<Real>, 1> depth(const Real& t, const Real& span) const {
     return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
@@ -130,25 +135,9 @@ class Contact {
     return {start_.x, start_.v, x2, x3};
   }
 
-  // Panels as long as the fast motion allows while its ringing can still be felt in the energy, then as the
-  // slow one and the forcing allow.
   Real panel(const Real& t) const {
-    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-    Real rate = system_.slow.rate();
-    if (system_.forcing && system_.forcing.frequency > rate) rate = system_.forcing.frequency;
-    const Real ringing_w = instant_of_q(fast, system_.fast, system_.drive_fast, t).transient(1);
-    const Real ringing_v = instant_of_x(fast, system_.fast, system_.drive_fast, t).transient(1);
-    const Real power = system_.nu * system_.damping * ringing_w * (ringing_w + 2 * absolute(slow.w)) +
-                       2 * system_.zeta * ringing_v * (ringing_v + 2 * absolute(slow.v)) +
-                       absolute(system_.forcing.amplitude) * ringing_v;
-    const Real noise = 64 * std::numeric_limits<Real>::epsilon() * system_.fast.rate() *
-                       (absolute(slow.q) + absolute(fast.q) + absolute(fast.x));
-    const Real forced =
-        system_.forcing.amplitude / (1 + system_.forcing.frequency * system_.forcing.frequency);
-    const Real energy = slow.x * slow.x + slow.v * slow.v + forced * forced;
-    const bool quiet = (ringing_w <= noise && ringing_v <= noise) || power <= Real(1e-18) * rate * energy;
-    if (!quiet && system_.fast.rate() > rate) rate = system_.fast.rate();
-    return Real(6) / rate;
+    const Real slow = system_.slow.panel(t), fast = system_.fast.panel(t);
+    return panel_under(system_.forcing, fast < slow ? fast : slow);
   }
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
@@ -174,9 +163,6 @@ class Contact {
     }
     return to;
   }
-
-  ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
-  ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
 
   // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation
   // under (drive1 + 2 a drive) f + drive f'.

@@ -33,6 +33,12 @@ struct System {
   Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
 };
 
+// A quadrature panel (Oscillator::panel), no longer than the forcing allows.
+template <class Real>
+Real panel_under(const Forcing<Real>& forcing, const Real& panel) {
+  return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
+}
+
 // x of a single oscillator under the forcing, with what bounds it.
 template <class Real>
 class Swing {
@@ -66,12 +72,7 @@ class Swing {
   Instant<Real, 7> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
-  // How far a smooth quadrature panel may reach.
-  Real panel() const {
-    const Real rate =
-        forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
-    return Real(6) / rate;
-  }
+  Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
  private:
   const Oscillator<Real>& oscillator_;
@@ -131,7 +132,7 @@ class Flight {
     const auto x = swing_.instant(start_.x, start_.v, Real(0));
     return {x[0], x[1], x[2], x[3]};
   }
-  Real panel(const Real&) const { return swing_.panel(); }
+  Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
  private:
@@ -167,7 +168,7 @@ class Stuck {
     const auto x = swing_.instant(start_.x, start_.v, Real(0));
     return {x[0], x[1], x[2], x[3]};
   }
-  Real panel(const Real&) const { return swing_.panel(); }
+  Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
  private:
