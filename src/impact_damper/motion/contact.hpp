@@ -185,8 +185,9 @@ class Contact {
     const Real slow_third = slow.bound(n + 3, span), fast_third = fast.bound(n + 3, span);
     return {{sign * (slow[n] + fast[n]), sign * (slow[n + 1] + fast[n + 1]),
              sign * (slow[n + 2] + fast[n + 2]), slow_third + fast_third},
-            {sign * slow[n], sign * slow[n + 1], sign * slow[n + 2], slow_third},
-            fast.bound(n, span)};
+            {sign * (slow[n] + fast.steady(n)), sign * (slow[n + 1] + fast.steady(n + 1)),
+             sign * (slow[n + 2] + fast.steady(n + 2)), slow_third + fast.steady_bound(n + 3)},
+            fast.transient(n)};
   }
 
   const ContactSystem<Real>& system_;

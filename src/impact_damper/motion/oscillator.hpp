@@ -258,6 +258,13 @@ class Instant {
     const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
     return steady < growing ? steady : growing;  // growing where steady is NaN
   }
+  // The steady state that the forcing keeps up, and a bound on it.
+  const Real& steady(std::size_t n) const { return steady_[n]; }
+  Real steady_bound(std::size_t n) const {
+    Real size = steady_size_;
+    for (std::size_t i = 0; i < n; ++i) size *= frequency_;
+    return size;
+  }
   // What of u^(n) is not the steady state, at most, from here on.
   Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
 
