@@ -108,6 +108,10 @@ class Contact {
     return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
   }
 
+  // |q|, with the digits that y - 1 does not have at the right wall.
+  Real overlap(const Real& t) const {
+    return absolute(t == 0 ? Real(start_.y - wall_) : Real(slow_at(t).q + fast_at(t).q));
+  }
   // The two parts of x, x', q and q'.
   ContactState<Real> slow_at(const Real& t) const { return move(system_.slow, slow_, system_.drive_slow, t); }
   ContactState<Real> fast_at(const Real& t) const { return move(system_.fast, fast_, system_.drive_fast, t); }
