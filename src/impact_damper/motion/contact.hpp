@@ -18,7 +18,9 @@
 // contact_factors.hpp they are J X = nu/(1+nu)^2 D q and H q = D X, and
 //     Q2 q = D X + (Q2 - H) q,    Q1 X = nu/(1+nu)^2 D q + (Q1 - J) X,
 // whose coefficients are all small and known to their own last digit. What remains of q and of X is fast
-// and slow, by subtraction, and x = X - nu/(1+nu) q.
+// and slow, by subtraction, and x = X - nu/(1+nu) q. (The coupling is not weak where the primary mass's own
+// damper holds it faster than the wall does, zeta above some hundreds, or the wall is far softer than the
+// spring, k below 1: there up to nine digits of the smaller of the two motions may go.)
 #pragma once
 
 #include "impact_damper/motion/contact_factors.hpp"
