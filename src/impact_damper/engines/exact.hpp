@@ -7,7 +7,7 @@
 #pragma once
 
 #include "impact_damper/engines/timeline.hpp"
-#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/contact_works.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 
@@ -38,6 +38,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   bool in_contact =
       state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));
   bool by_impact = false;
+  Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
 
   while (!timeline.stopped()) {
@@ -66,11 +67,14 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
           observer.ledger().contact_loss += double(works.wall);
         }
       }
-      if (timeline.stopped()) break;
+      if (timeline.stopped()) {
+        depth = contact.overlap(timeline.passed());
+        break;
+      }
       in_contact = by_impact = false;
     }
   }
-  timeline.finish(state, in_contact ? depth_of(state) : Real(0), losses);
+  timeline.finish(state, depth, losses);
   return {*timeline.stopped(), timeline.end_time()};
 }
 

@@ -54,10 +54,11 @@ class Timeline {
     if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
-  // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to. Returns
-  // the works in it.
+  // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
+  // Returns the works in it.
   template <class Motion>
-  [[gnu::flatten]] Works<Real> pass(const Motion& motion, Real duration, State<Real>& end, const Real& wall_damping) {
+  [[gnu::flatten]] Works<Real> pass(const Motion& motion, Real duration, State<Real>& end,
+                                    const Real& wall_damping) {
     if (!(duration < remaining())) {
       duration = remaining();
       stopped_ = scene_.until_time ? StopReason::time : StopReason::time_budget;
@@ -82,8 +83,11 @@ class Timeline {
       turnover_ += works.turnover;
     }
     clock_.advance(duration);
+    passed_ = duration;
     return works;
   }
+  // How much of the last motion has passed.
+  const Real& passed() const { return passed_; }
 
   // An impact that is about to happen. False: it was one too many, and the scene ends before it.
   bool impact(Wall wall, const Real& relative_velocity) {
@@ -188,6 +192,7 @@ class Timeline {
   Real span_;
   bool tracks_half_cycles_;
   std::optional<StopReason> stopped_;
+  Real passed_{0};
   std::int64_t impacts_ = 0, rows_ = 0;
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
   // its largest |x| so far.

@@ -97,9 +97,9 @@ Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
           d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
 }
 
-// When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the parabola
-// through its beginning, then by Halley's method on the series: roughly, but accurately within a `short_time`.
-// u is the distance from the wall it left.
+// When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
+// parabola through its beginning, then by Halley's method on the series: roughly, but accurately within a
+// `short_time`. u is the distance from the wall it left.
 template <class Real>
 struct Guess {
   Real time;
@@ -114,7 +114,7 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
   const bool arrives = reach >= 0, across = arrives == rising;
-  Real t = arrives      ? Real(2 * ahead / (speed + square_root(reach)))
+  Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = most;
@@ -146,7 +146,8 @@ bool stays_between(const Derivatives<Real, 8>& from, const Real& u1, const Real&
   const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
   const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
   const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) / 6;
-  if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off)) return false;
+  if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
+    return false;
   if (after >= 0 && before >= 0 && middle > off) return true;
   // It leaves by its second and third derivative: third t^3/6 outweighs |fourth| t^4/24.
   return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;

@@ -1,4 +1,9 @@
 // The contact's characteristic polynomial P(s) (contact.hpp) as a product of two real quadratics.
+//
+// P = J H - g D^2: J = s^2 + j1 s + j0 is the two masses joined (the stuck regime), H = s^2 + h1 s + h0 the
+// wall between them, and what couples the two, D = 2 zeta s + 1, g = nu/(1+nu)^2, is weak if the wall is
+// stiff or viscous, or if one mass is light. The factors are sought as what they differ by from J and H:
+// these differences, not their sums with J and H, say how much of the one motion there is in the other.
 #pragma once
 
 #include <limits>
@@ -7,10 +12,11 @@
 
 namespace impact_damper {
 
-// (s^2 + p s + b)(s^2 + p2 s + b2), b <= b2.
+// (s^2 + p s + b)(s^2 + p2 s + b2), b <= b2, with p = j1 + dp, b = j0 + db, p2 = h1 - dp, b2 = h0 + db2.
 template <class Real>
 struct ContactFactors {
   Real p, b, p2, b2;
+  Real dp, db, db2;
 };
 
 struct QuadraticFactor {
@@ -24,47 +30,60 @@ QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0);
 template <class Real>
 ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real& stiffness,
                                     const Real& damping) {
-  const Real c3 = 2 * zeta + damping * (1 + nu), c2 = 1 + 2 * zeta * damping + stiffness * (1 + nu);
-  const Real c1 = damping + 2 * zeta * stiffness, c0 = stiffness;
-  ContactFactors<Real> factors;
-  // With a wall that is much stiffer than the spring the slow motion is nearly the stuck one.
-  Real p = 2 * zeta / (1 + nu), b = 1 / (1 + nu);
+  const Real both = 1 + nu, share = nu / both;
+  const Real j1 = 2 * zeta / both, j0 = 1 / both;
+  const Real h1 = damping * both + 2 * zeta * share, h0 = stiffness * both + share;
+  const Real g = share / both;
+  ContactFactors<Real> f{};
+  const auto differ_by = [&](const Real& dp, const Real& db) {
+    f.dp = dp;
+    f.db = db;
+    f.p = j1 + dp;
+    f.b = j0 + db;
+    f.p2 = h1 - dp;
+    f.db2 = -4 * g * zeta * zeta - db - dp * (f.p2 - j1);
+    f.b2 = h0 + f.db2;
+  };
+  differ_by(0, 0);
+  // With a wall that is much stiffer than the spring the joined motion is near enough to start from.
   const Real far = 100 * (1 + 2 * zeta);
   if (!(stiffness > far * far)) {
-    const QuadraticFactor factor = quadratic_factor(double(c3), double(c2), double(c1), double(c0));
-    p = factor.p;
-    b = factor.b;
+    const Real c3 = 2 * zeta + damping * both, c2 = 1 + 2 * zeta * damping + stiffness * both;
+    const Real c1 = damping + 2 * zeta * stiffness;
+    const QuadraticFactor start = quadratic_factor(double(c3), double(c2), double(c1), double(stiffness));
+    differ_by(start.p - j1, start.b - j0);
   }
-  // Bairstow's iteration: Newton on the remainder r1 s + r0 of P by s^2 + p s + b.
+  // Bairstow's iteration, Newton on the remainder r1 s + r0, until rounding errors keep it from coming
+  // nearer.
+  Real before = std::numeric_limits<Real>::infinity();
   for (int i = 0; i < 50; ++i) {
-    const Real p2 = c3 - p, b2 = c2 - b - p * p2;
-    const Real r1 = c1 - p * b2 - b * p2, r0 = c0 - b * b2;
-    const Real r1_p = -b2 + p * (p2 - p) + b, r1_b = p - p2;
-    const Real r0_p = -b * (p - p2), r0_b = b - b2;
-    const Real determinant = r1_p * r0_b - r1_b * r0_p;
-    const Real dp = (r1_b * r0 - r0_b * r1) / determinant, db = (r0_p * r1 - r1_p * r0) / determinant;
+    const Real alpha = f.p2 - f.p, beta = f.b2 - f.b;
+    const Real r1 = 4 * g * zeta + f.dp * beta + f.db * h1 + f.db2 * j1;
+    const Real r0 = g + f.db * h0 + f.db2 * f.b;
+    const Real determinant = beta * (beta - f.p * alpha) + f.b * alpha * alpha;
     if (!(determinant != 0)) break;
-    p += dp;
-    b += db;
-    const Real tiny = 4 * std::numeric_limits<Real>::epsilon();
-    if (absolute(db) <= tiny * absolute(b) && absolute(dp) <= tiny * (absolute(p) + square_root(absolute(b))))
-      break;
+    const Real dp = (alpha * r0 - beta * r1) / determinant;
+    const Real db = -(f.b * alpha * r1 + (beta - f.p * alpha) * r0) / determinant;
+    const Real step =
+        absolute(db) / absolute(f.b) + absolute(dp) / (absolute(f.p) + square_root(absolute(f.b)));
+    if (!(step > 0) || (step < Real(1e-3) && !(step < before / 2))) break;
+    before = step;
+    differ_by(f.dp + dp, f.db + db);
   }
-  factors.p = p;
-  factors.b = b;
-  factors.p2 = c3 - p;
-  factors.b2 = c2 - b - p * factors.p2;
-  if (factors.b2 < factors.b) {
-    const ContactFactors<Real> other = factors;
-    factors.p = other.p2;
-    factors.b = other.b2;
-    factors.p2 = other.p;
-    factors.b2 = other.b;
+  if (f.b2 < f.b) {
+    const ContactFactors<Real> other = f;
+    f.p = other.p2;
+    f.b = other.b2;
+    f.p2 = other.p;
+    f.b2 = other.b;
+    f.dp = f.p - j1;
+    f.db = f.b - j0;
+    f.db2 = f.b2 - h0;
   }
   // The energy bounds need damping that is not negative; a rounding error may make it so where it is zero.
-  if (factors.p < 0) factors.p = 0;
-  if (factors.p2 < 0) factors.p2 = 0;
-  return factors;
+  if (f.p < 0) f.p = 0;
+  if (f.p2 < 0) f.p2 = 0;
+  return f;
 }
 
 }  // namespace impact_damper

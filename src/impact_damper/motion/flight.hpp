@@ -68,7 +68,7 @@ class Flight {
     return swing_.outlook_at(order, sign, t, span);
   }
   typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
-  Real panel(const Real&) const { return swing_.panel(); }
+  Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
  private:
@@ -106,9 +106,10 @@ class Flight {
         // z has gone straight there.
         const Real x_there = here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level));
         const bool left = across == (wall_ == 1);
-        return Arrival<Real>{begin + h,
-                             left ? Wall::left : Wall::right,
-                             {x_there, here.v + away_ * (here.u1 - u1), left ? Real(0) : Real(1), away_ * u1}};
+        return Arrival<Real>{
+            begin + h,
+            left ? Wall::left : Wall::right,
+            {x_there, here.v + away_ * (here.u1 - u1), left ? Real(0) : Real(1), away_ * u1}};
       };
 
       const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
@@ -119,7 +120,8 @@ class Flight {
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto u_there = derivatives_of_u(there, swing_.template derivatives<6>(there.x, there.v, begin + h));
+        const auto u_there =
+            derivatives_of_u(there, swing_.template derivatives<6>(there.x, there.v, begin + h));
         const bool across = there.u > Real(0.5);
         const auto [shift, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
         if (!(absolute(shift) < h / 4) || correction == 3) break;

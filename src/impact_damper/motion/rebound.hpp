@@ -5,8 +5,8 @@
 // there; both are numbers of the scene. A contact then costs the sums
 //     q(T + s) = sum_n s^n (Q_n . (x, x', y')),      x(T + s) = x + sum_n s^n (X_n . (x, x', y')),
 // and solving the first for s, which must be so short that a term more would be a rounding error. Where the
-// motion hardly changes in T it is the change that is tabulated, and of y' what differs from -E y': so that no
-// rounding error is the same in every impact.
+// motion hardly changes in T it is the change that is tabulated, and of y' what differs from -E y': so that
+// no rounding error is the same in every impact.
 //
 // The proof that q has not been back at zero before T + s is that of arrival.hpp, for exp(a t) q, a the fast
 // motion's decay: the fast part of that is a plain sine, so that its fourth derivative does not outgrow what
@@ -106,9 +106,7 @@ class Rebound {
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {
     return bound(second_of_x_, {x, v, w});
   }
-  Real third_of_x(const Real& x, const Real& v, const Real& w) const {
-    return bound(third_of_x_, {x, v, w});
-  }
+  Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
 
  private:
   static constexpr std::size_t few = 10, many = 24;
@@ -162,9 +160,10 @@ class Rebound {
     if (!proved && s > 0) {
       // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
       const Real depth = inward * q[0], slope = inward * q[1];
-      proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)), swing_,
-                          Real(fast_fourth + slow_fourth)) &&
-               stays_open(depth, slope, Real(0), Real(-out), s, Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
+      proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
+                          swing_, Real(fast_fourth + slow_fourth)) &&
+               stays_open(depth, slope, Real(0), Real(-out), s,
+                          Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
     }
     if (!proved) return {};
     const std::array<Real, terms> x_terms = combine<terms>(x_, start);
@@ -174,10 +173,10 @@ class Rebound {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
   }
 
-  Real swing_{0}, left_{0};         // T and E = exp(-a T)
-  Real decay_{0}, growth_{0};       // a and exp(a T)
-  Real unweighted_{0};              // (b / omega^2)^2
-  Real accurate_{0};                // a correction of s whose third power is nothing
+  Real swing_{0}, left_{0};    // T and E = exp(-a T)
+  Real decay_{0}, growth_{0};  // a and exp(a T)
+  Real unweighted_{0};         // (b / omega^2)^2
+  Real accurate_{0};           // a correction of s whose third power is nothing
   Reach few_, many_;
   Table x_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};

@@ -38,7 +38,7 @@ class Stuck {
     return swing_.outlook_at(order, sign, t, span);
   }
   typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
-  Real panel(const Real&) const { return swing_.panel(); }
+  Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
  private:

@@ -1,16 +1,16 @@
 // x of a single oscillator under the forcing, a closed form from its beginning: what moves in free flight
 // (flight.hpp) and where both masses move as one (stuck.hpp).
 //
-// Every motion answers, for a time t since its beginning: the state, what it meets, and where a derivative of x
-// falls through zero.
+// Every motion answers, for a time t since its beginning: the state, what it meets, and where a derivative of
+// x falls through zero.
 #pragma once
+
+#include <cmath>
 
 #include "impact_damper/motion/arrival.hpp"
 #include "impact_damper/motion/first_root.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 #include "impact_damper/run.hpp"
-
-#include <cmath>
 namespace impact_damper {
 
 // The scene's numbers in the engine's scalar type.
@@ -30,6 +30,12 @@ struct System {
   Oscillator<Real> free;   // equation (3)
   Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
 };
+
+// A quadrature panel (Oscillator::panel), no longer than the forcing allows.
+template <class Real>
+Real panel_under(const Forcing<Real>& forcing, const Real& panel) {
+  return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
+}
 
 // The first time in [from, until) at which a function falls through zero, by its outlooks.
 template <class Real, class OutlookAt>
@@ -130,8 +136,7 @@ class Swing {
   Real rate() const {
     return forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
   }
-  // How far a smooth quadrature panel may reach.
-  Real panel() const { return Real(6) / rate(); }
+  Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
  private:
   const Oscillator<Real>& oscillator_;
