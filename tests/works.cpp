@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "impact_damper/motion/contact_works.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "reference.hpp"
 

@@ -291,8 +291,10 @@ class Contact {
     const Real faint = ringing_at(late) * b * b + slow_fourth;
     for (int correction = 0; correction < 4; ++correction) {
       Derivatives<Real, 6> x, q;
-      const State<Real> there = at(h);
-      c.derive({there.x, there.v, there.y - wall_, there.w}, x, q);
+      const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
+      c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
+                slow_end.w + fast_end.w},
+               x, q);
       const auto [shift, close] = nearby(Real(0), q, h, faint);
       h += shift;
       if (!(absolute(h - late * 4 / 3) < late / 4)) return {};

@@ -118,7 +118,7 @@ class Swing {
     const Real u = sign * x[order], u1 = sign * x[order + 1];
     if (u == 0 && u1 == 0) return {};
     if (!(from > 0) && u <= 0 && u1 < 0) return from < until ? std::optional(from) : std::nullopt;
-    Real time = oscillator_.fall(u > 0 ? u : Real(0), u1);
+    Real time = oscillator_.fall(u, u1);
     const Real period = 2 * oscillator_.half_period();
     if (time < from) time += Real(std::ceil(double((from - time) / period))) * period;
     return time < until ? std::optional(time) : std::nullopt;

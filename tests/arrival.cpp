@@ -1,0 +1,179 @@
+// The short ways to an event, guess and proof, closed form, table, against the certified search.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "impact_damper/motion/arrival.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/stuck.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Scene scene_of(reference::Random& random, bool forced) {
+  Scene scene;
+  scene.mass_ratio = random.log_uniform(1e-4, 10);
+  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 3);
+  scene.wall_stiffness = random.log_uniform(1e2, 1e10);
+  if (forced) {
+    scene.force_amplitude = random.log_uniform(1e-3, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
+  }
+  return scene;
+}
+
+double signed_log(reference::Random& random, double low, double high) {
+  return random.log_uniform(low, high) * random.sign();
+}
+
+}  // namespace
+
+TEST_CASE("a gap is proved open only where it is") {
+  // Random quartics, whose fourth derivative is one number, held against themselves at 400 points.
+  reference::Random random(11);
+  int proved = 0, open = 0;
+  for (int n = 0; n < 200000; ++n) {
+    const double u0 = random.chance(0.3) ? 0 : random.uniform(0, 1), w = random.uniform(-2, 2);
+    const double a = random.uniform(-10, 10), j = random.uniform(-30, 30), f = random.uniform(-100, 100);
+    const double h = random.uniform(0, 1);
+    const auto u = [&](double t) { return u0 + t * (w + t * (a / 2 + t * (j / 6 + t * f / 24))); };
+    const auto slope = [&](double t) { return w + t * (a + t * (j / 2 + t * f / 6)); };
+    const double u1 = u(h);
+    if (u1 < 0) continue;
+    double least = infinite, most = -infinite;
+    for (int i = 1; i < 400; ++i) {
+      least = std::min(least, u(h * i / 400));
+      most = std::max(most, u(h * i / 400));
+    }
+    CAPTURE(n);
+    open += least > 0;
+    if (stays_open(u0, w, u1, slope(h), h, std::abs(f))) {
+      ++proved;
+      CHECK(least > 0);
+    }
+    const Derivatives<double, 8> from{u0, w, a, j, f, 0, 0, 0};
+    if (stays_between(from, u1, slope(h), h, std::abs(f))) {
+      CHECK(least > 0);
+      CHECK(most < 1);
+    }
+  }
+  CHECK(proved > 0.8 * open);  // and mostly where it is
+}
+
+TEST_CASE("a flight meets the wall that the certified search finds, when it finds it") {
+  reference::Random random(12);
+  int met = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const Scene scene = scene_of(random, n % 4 == 0);
+    const System<double> system(scene);
+    const bool left = random.chance(0.5);
+    const double w = random.chance(0.1) ? 0 : random.log_uniform(1e-9, 30);
+    const State<double> start{random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
+                              random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
+                              random.chance(0.2) ? random.uniform(0, 1) : double(!left), left ? w : -w};
+    const double begin = random.uniform(0, 10), span = bounded_span(system.forcing), horizon = 10;
+    const Flight<double> flight(system, begin, start);
+    const auto lead = flight.lead_of_y();
+    const double away = left ? 1 : -1;
+    if (w == 0 && (start.y == 0 || start.y == 1) && !(away * lead[2] > 0)) continue;
+    const auto found = flight.next_wall(0, horizon, span), expected = flight.search_wall(0, horizon, span);
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++met;
+    CHECK(found->wall == expected->wall);
+    // y is off by a few roundings of what it is the sum of; so is the time, by that over y' (or, grazing, by
+    // the root of it over y'').
+    const double size =
+        std::abs(start.x) + std::abs(start.v) + w * expected->time + 1 + scene.force_amplitude;
+    const double noise = 32 * epsilon * size * (1 + expected->time);
+    const double w1 = std::abs(expected->state.w), graze = std::sqrt(2 * noise / (size + 1e-300));
+    CHECK(std::abs(found->time - expected->time) <=
+          8 * epsilon * expected->time + std::min(noise / w1, std::max(graze, 1e-6)));
+    const State<double> there = flight.at(found->time);
+    CHECK(std::abs(there.x - found->state.x) <= noise * (1 + scene.damping_ratio));
+    CHECK(std::abs(there.v - found->state.v) <= noise * (1 + scene.damping_ratio));
+    CHECK(std::abs(there.y - found->state.y) <= noise);
+    CHECK(std::abs(there.w - found->state.w) <= noise * (1 + scene.damping_ratio));
+  }
+  CHECK(met > 20000);
+}
+
+TEST_CASE("a contact ends when the certified search says, in the state that its parts give") {
+  reference::Random random(13);
+  int left = 0, brisk = 0, lasting = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const Scene scene = scene_of(random, false);
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
+    const double inward = wall == Wall::left ? -1 : 1;
+    const double w = random.log_uniform(1e-6, 30) * inward;
+    const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30),
+                              wall == Wall::left ? 0.0 : 1.0, w};
+    const Contact<double> contact(walls, 0.0, start, wall);
+    const auto found = contact.leave(100, infinite), expected = contact.search_leave(100, infinite);
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++left;
+    const double swing = walls.fast.half_period(), time = expected->time;
+    brisk += time < 1.5 * swing;
+    lasting += time > 4 * swing;
+    // What rounding makes of q, by what it is the sum of, over y' at the end.
+    const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
+    const double size = std::abs(slow.q) + std::abs(fast.q) + std::abs(slow.w) * time * epsilon +
+                        (std::abs(start.x) + std::abs(start.v)) / walls.stiffness +
+                        std::abs(w) / std::sqrt(walls.stiffness);
+    const double w1 = std::abs(expected->state.w);
+    CHECK(std::abs(found->time - time) <= 16 * epsilon * time + 64 * epsilon * size / w1);
+    const double rate = walls.fast.rate(), speed = std::abs(start.x) + std::abs(start.v) + std::abs(w);
+    const double off = std::abs(found->time - time);
+    CHECK(std::abs(found->state.x - expected->state.x) <= 128 * epsilon * speed + speed * off);
+    CHECK(std::abs(found->state.v - expected->state.v) <=
+          128 * epsilon * speed + (scene.mass_ratio * std::abs(w) * rate + speed) * off);
+    CHECK(std::abs(found->state.w - expected->state.w) <=
+          128 * epsilon * speed * (1 + scene.mass_ratio) + (std::abs(w) * rate + speed) * off);
+  }
+  CHECK(left > 20000);
+  CHECK(brisk > 5000);
+  CHECK(lasting > 1000);
+}
+
+TEST_CASE("a free motion's derivatives fall through zero where the certified search finds it") {
+  reference::Random random(14);
+  int fell = 0;
+  for (int n = 0; n < 40000; ++n) {
+    Scene scene = scene_of(random, false);
+    scene.damping_ratio = random.chance(0.3) ? 0 : random.uniform(0, 1.5);
+    const System<double> system(scene);
+    const double x = random.chance(0.1) ? 0 : signed_log(random, 1e-6, 10), v = signed_log(random, 1e-6, 10);
+    const Swing<double> swing(system.free, system.forcing, 0.0, x, v);
+    const std::size_t order = n % 3;
+    const double sign = random.sign(), from = random.chance(0.5) ? 0 : random.uniform(0, 10), until = 20;
+    const auto found = swing.falls(order, sign, from, until, infinite);
+    const auto expected = search_fall<double>(
+        [&](double t) { return swing.outlook_at(order, sign, t, infinite); }, from, until, infinite, 1.0);
+    CAPTURE(n);
+    const auto start = swing.outlook_at(order, sign, from, infinite).whole;
+    // From above; at a zero to rounding the two may take it for before or after.
+    if (!(start.g > 1e-14 * (std::abs(x) + std::abs(v)))) continue;
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++fell;
+    CHECK(*found == doctest::Approx(*expected).epsilon(1e-12));
+  }
+  CHECK(fell > 10000);
+}
