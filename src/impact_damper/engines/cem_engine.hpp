@@ -237,7 +237,6 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   if (met) enter(wall, time, s.w);
   if (locate_) {
     if (peaks_) trend_ = sign(s.v);
-    pace_ = small_;
     begin_segment(time, s);
   } else {
     before_.q += old_origin - origin_of_q();
