@@ -153,7 +153,7 @@ TEST_CASE("two rates find the very impacts that small steps alone find") {
         const Run two = simulate(scene, Cem{.locate = locate, .large_step = large}, everything());
         REQUIRE(one.impacts->wall == two.impacts->wall);
         // The large steps' clock is wrong by H^2/24 of the time, and bounces magnify that.
-        const double late = locate ? 5 * large * large : 0.02;
+        const double late = locate ? 5 * large * large : 0.1;
         CHECK(largest_difference(one.impacts->time, two.impacts->time) < late);
         CHECK(largest_difference(one.half_cycles->amplitude, two.half_cycles->amplitude) < late);
       }
@@ -261,10 +261,10 @@ TEST_CASE("long steps in a long contact, of a heavy mass too, leave the energy a
 TEST_CASE("in long flights times are counted and the motion keeps to the scheme's closed form") {
   // The first step is small; each of the others takes x by 2 asin(H/2) round the circle, the last a shorter
   // one.
-  const double small = 1e-4, large = 0.3, time = 1e6;
+  const double small = 1e-4, large = 2999 * small, time = 1e6;
   const Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = time};
   const Run run =
-      simulate(scene, Cem{.time_step = small, .large_step = large}, {.history = {{time - 0.25, time, 2}}});
+      simulate(scene, Cem{.time_step = small, .large_step = 0.29999}, {.history = {{time - 0.25, time, 2}}});
   const double steps = std::floor((time - small) / large), rest = std::fma(-steps, large, time - small);
   const double angle = steps * 2 * std::asin(large / 2) + 2 * std::asin(rest / 2) + small;
   CHECK(run.history->time.back() == time);
@@ -365,6 +365,9 @@ TEST_CASE(
   }
   CHECK(message(driven, {.large_step = 0.315}) ==
         "large_step: must be <= 0.314158, half a period of the forcing, got 0.315");
+  // Less than two small ones, and more than can be counted.
+  CHECK(message(scene, {.time_step = 1e-4, .large_step = 1.5e-4}).empty());
+  CHECK(message(scene, {.time_step = 1e-300, .large_step = 0.1, .max_steps = 1000}).empty());
   // Every problem at once.
   const std::string both = message(scene, {.time_step = 1, .large_step = 0.5});
   CHECK(both.starts_with("time_step: "));

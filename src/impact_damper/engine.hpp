@@ -55,8 +55,8 @@ struct Cem {
   std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;  // locate touch and release inside the step
-  // H, > h and < 2 and at most pi/omega_f with forcing: steps up to this long while no wall can be met
-  // (cem_rates.hpp); absent: all steps are h.
+  // H, > h, < 2 and with forcing <= pi/omega_f: while no wall can be met steps of whole multiples of h, up to
+  // this long (cem_rates.hpp). Absent: all steps are h.
   std::optional<double> large_step;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;

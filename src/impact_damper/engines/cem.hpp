@@ -136,6 +136,10 @@ class CemEngine {
   Real lag(const Real& x, const Real& v, const Real& time, const Real& h) const;
   State<Real> motion_at(const Real& at) const;
 
+  Real multiple_of_h(const Real& step) const {  // rounded down
+    const Real steps = step / small_.h;
+    return steps < 1e15 ? Real(std::int64_t(steps)) * small_.h : step;
+  }
   Pace<Real> pace_of(const Real& h) const {
     return {h, cem_step(flight_, damper_, h), cem_step(contact_, damper_, h)};
   }

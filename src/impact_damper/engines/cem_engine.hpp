@@ -26,9 +26,9 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       pace_(small_),
       steps_left_(options.max_steps) {
   if (options.large_step) {
-    const Real large = *options.large_step;
+    const Real large = multiple_of_h(*options.large_step);
     const Real pressed = stability_limit(scene, options.damper, options.calibration) / 2;
-    rates_ = Rates{pace_of(large), pace_of(std::clamp(pressed, small_.h, large)),
+    rates_ = Rates{pace_of(large), pace_of(multiple_of_h(std::clamp(pressed, small_.h, large))),
                    whole_steps(nominal_contact_time(scene) / double(small_.h))};
   }
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which

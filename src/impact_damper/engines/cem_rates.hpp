@@ -17,8 +17,11 @@
 // flight, is handed on as it is.
 //
 // The way to a wall. Where the next H is not certified free (Certificate, below) one step leads as far as the
-// certificate goes, less h/2; nearing the wall these steps shorten quadratically, and below a few h small
-// ones take over. A touch so falls into the middle of a small step, as with one rate it does on the average.
+// certificate goes. Nearing the wall these steps shorten quadratically; below a few h small ones take over.
+// All steps, H as well, are rounded down to whole multiples of h: so without `locate` a touch falls anywhere
+// in a small step, as with one rate. At the same place each time, release would come late by the same
+// fraction of h each time too, since a contact lasts as long at any speed, and errors that now cancel would
+// add up.
 //
 // Pressed to a wall for long, the mass rings until it follows the primary mass,
 //     q_p = -(x'' + c w_p) / omega_m^2,   w_p = -x''' / omega_m^2,   x'', x''' of both masses as one.
@@ -89,15 +92,14 @@ std::int64_t CemEngine<Real, Observer>::choose_pace_in_flight() {
   const State<Real> s = flown(now_.x, now_.q, now_.dx / h, now_.dq / h, time, h);
   const Real bend = forcing(time) - 2 * zeta * s.v - s.x;
 
-  const Real margin = small_.h / 2, large = rates_->large.h;
-  const Certificate<Real> sure(zeta, force_, s, bend, large, many * large + margin);
+  const Real large = rates_->large.h;
+  const Certificate<Real> sure(zeta, force_, s, bend, large, many * large);
   for (int steps = many; steps >= 1; steps /= 2) {
-    if (!sure.free_for(steps * large + margin)) continue;
+    if (!sure.free_for(steps * large)) continue;
     change_pace(rates_->large, s);
     return steps;
   }
-  const Real step = sure.free_time(large + margin) - margin;
-  if (step >= few * small_.h) {
+  if (const Real step = multiple_of_h(sure.free_time(large)); step >= few * small_.h) {
     change_pace(pace_of(step), s);
     return 1;
   }
