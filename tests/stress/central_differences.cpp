@@ -14,16 +14,17 @@
 //
 // Restitution. One impact on a primary mass at rest, two-body calibration, exactly e between free masses; the
 // largest error over 16 places of touch within a step, and the order fitted to it.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"
+#include "watch.hpp"
 
 namespace stress {
 
@@ -31,30 +32,18 @@ using namespace impact_damper;
 
 namespace {
 
-// Watches every step and nothing else.
-class Steps {
- public:
-  explicit Steps(double h) : h_(h) {}
-  bool wants_half_cycles() const { return false; }
-  bool wants_contacts() const { return false; }
-  bool wants_energy() const { return false; }
-  void half_cycle(double, double, double, double) {}
-  void impact(double, Wall, double) { ++impacts; }
-  void contact(double, double, Wall) {}
-  double next_sample() const { return double(x.size()) * h_; }
-  void sample(double, double new_x, double, double new_y, double) {
-    x.push_back(new_x);
-    y.push_back(new_y);
-  }
-  EnergyLedger& ledger() { return ledger_; }
+Watch every_step(double h) {
+  Watch watch;
+  watch.sample_at = 0;
+  watch.every = h;
+  return watch;
+}
 
-  std::vector<double> x, y;
-  int impacts = 0;
-
- private:
-  double h_;
-  EnergyLedger ledger_;
-};
+std::vector<double> column(const Watch& watch, double Sample::*member) {
+  std::vector<double> values;
+  for (const Sample& sample : watch.samples) values.push_back(sample.*member);
+  return values;
+}
 
 std::vector<double> differences(std::vector<double> u, int times) {
   for (; times > 0; --times) {
@@ -116,9 +105,9 @@ Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
   cem.time_step = 2 * by_limit;
   const double closed_form = closed_form_growth(Damper::centred, zeta, 2 * by_limit);
   scene.until_time = *cem.time_step * (steps_for(closed_form) + 0.5);
-  Steps steps(*cem.time_step);
-  run_cem<double>(scene, cem, steps);
-  return {steps.impacts == 0 ? measured_growth(steps.x) : std::nan(""), closed_form};
+  Watch watch = every_step(*cem.time_step);
+  run_cem<double>(scene, cem, watch);
+  return {watch.impacts == 0 ? measured_growth(column(watch, &Sample::x)) : std::nan(""), closed_form};
 }
 
 Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit_error) {
@@ -138,11 +127,11 @@ Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit
   const double closed_form = closed_form_growth(damper, z, by_limit * limit);
   scene.y0 = pressed * (1 + (closed_form > 1 ? 1e-9 : 1e-2));
   scene.until_time = *cem.time_step * (steps_for(closed_form) + 0.5);
-  Steps steps(*cem.time_step);
-  run_cem<double>(scene, cem, steps);
-  for (const double y : steps.y)
-    if (!(y < 0)) return {std::nan(""), closed_form};
-  return {measured_growth(differences(steps.y, 4)), closed_form};
+  Watch watch = every_step(*cem.time_step);
+  run_cem<double>(scene, cem, watch);
+  const std::vector<double> y = column(watch, &Sample::y);
+  if (!(*std::max_element(y.begin(), y.end()) < 0)) return {std::nan(""), closed_form};
+  return {measured_growth(differences(y, 4)), closed_form};
 }
 
 std::vector<Check> growth_checks(const Options& options) {
