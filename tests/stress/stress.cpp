@@ -67,6 +67,7 @@ int run(const std::vector<std::string>& arguments) {
     }
   }
   if (options.folder.empty()) return usage("FOLDER must be given");
+  options.scene_folder = SCENES_FOLDER;
   options.scenes = scenes.value_or(options.brief ? 20'000 : 1'000'000);
   if (options.seed && only.empty()) only = "random";
 
