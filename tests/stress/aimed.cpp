@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "examine.hpp"
 #include "counted.hpp"
+#include "examine.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/simulate.hpp"
@@ -101,7 +101,8 @@ Check grazing(const Options& options) {
         if (met(steps_from(edge, ulps)) == (dip < 0)) continue;
         wrong_side.take(by_rounding);
         if (!(by_rounding <= 64))
-          check.miss(which + " " + rounded(by_rounding) + " roundings on the wrong side; " + in_full(scene, engine));
+          check.miss(which + " " + rounded(by_rounding) + " roundings on the wrong side; " +
+                     in_full(scene, engine));
       }
     }
     progress.tell(i, seeds);
@@ -111,7 +112,8 @@ Check grazing(const Options& options) {
 }
 
 Check on_a_wall() {
-  Check check = about("release exactly on a wall: an impact at once if and only if it moves into the wall", "all");
+  Check check =
+      about("release exactly on a wall: an impact at once if and only if it moves into the wall", "all");
   const double least = std::numeric_limits<double>::denorm_min();
   for (const double y0 : {0.0, 1.0}) {
     for (const double w0 : {0.0, -0.0, least, -least, epsilon, -epsilon, 1.0, -1.0, 1e8, -1e8}) {
@@ -130,10 +132,12 @@ Check on_a_wall() {
                 // A lossless wall rings for ever, which is long to follow.
                 scene.until_time = std::abs(w0) > 1 ? 1e-6 : e == 1 ? 0.03 : 2;
                 if (!keep_promises(check, "case", scene, engine)) continue;
-                const Impacts impacts = *simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts;
+                const Impacts impacts =
+                    *simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts;
                 const bool at_once = !impacts.time.empty() && impacts.time[0] == 0;
                 if (at_once != (y0 == 0 ? w0 < 0 : w0 > 0))
-                  check.miss((at_once ? "an impact at once; " : "no impact at once; ") + in_full(scene, engine));
+                  check.miss((at_once ? "an impact at once; " : "no impact at once; ") +
+                             in_full(scene, engine));
               }
             }
           }
@@ -174,8 +178,8 @@ Check within_a_rounding(const Options& options) {
       const std::vector<std::int64_t>& each = run.half_cycles->impacts;
       const auto [fewest, most] = std::minmax_element(each.begin() + 2, each.end());
       if (*most - *fewest > 4)
-        check.miss("from " + std::to_string(*fewest) + " to " + std::to_string(*most) + " impacts in a half cycle; " +
-                   in_full(scene, engine));
+        check.miss("from " + std::to_string(*fewest) + " to " + std::to_string(*most) +
+                   " impacts in a half cycle; " + in_full(scene, engine));
     }
   }
   check.measured = std::to_string(coincident) + " coincident";
@@ -183,8 +187,8 @@ Check within_a_rounding(const Options& options) {
   return check;
 }
 
-// Released at the peak, the mass bounces on the right wall, and its bouncing comes to rest just before, or just
-// not before, x = 0 lets it go.
+// Released at the peak, the mass bounces on the right wall, and its bouncing comes to rest just before, or
+// just not before, x = 0 lets it go.
 Check accumulation_at_a_crossing() {
   Check check = about("a bounce-down that ends as x crosses zero, to the last bit", "all");
   for (const double e : {0.2, 0.4, 0.6, 0.8}) {
@@ -243,8 +247,8 @@ Check lossless(const Options& options, const Engine& engine) {
 // epsilon t where a frequency is rounded, and to epsilon where it is 1.
 std::vector<Check> no_wall(const Options& options) {
   Check none = about("flights that meet no wall: no impact is found", "0 impacts");
-  Check phase = about("the same: x at the end, by epsilon (1 + t) where a frequency was rounded, epsilon where not",
-                      "16");
+  Check phase = about(
+      "the same: x at the end, by epsilon (1 + t) where a frequency was rounded, epsilon where not", "16");
   Worst worst;
   std::int64_t found = 0;
   const double forced_end = options.brief ? 1e4 : 1e6;
@@ -273,7 +277,8 @@ std::vector<Check> no_wall(const Options& options) {
       if (f.f0 != 0) continue;
       ++phase.cases;
       const long double z = f.zeta, t = f.end, a = std::sqrt(std::abs(1 - z * z));
-      const long double x = z < 1 ? f.x0 * std::exp(-z * t) * (std::cos(a * t) + z / a * std::sin(a * t)) : 0.0L;
+      const long double x =
+          z < 1 ? f.x0 * std::exp(-z * t) * (std::cos(a * t) + z / a * std::sin(a * t)) : 0.0L;
       const double unit = epsilon * (f.zeta == 0 ? 1 : 1 + f.end * std::exp(-f.zeta * f.end)) * f.x0;
       const double error = double(std::abs(watch.samples[0].x - x)) / unit;
       worst.take(error);
@@ -289,17 +294,19 @@ std::vector<Check> no_wall(const Options& options) {
 // everywhere. A few hundred to a few thousand are usual.
 Check crawling() {
   constexpr double admitted = 1e6;
-  Check check = about("arithmetic operations for each search of an event, where nothing is easy to tell apart",
-                      rounded(admitted));
+  Check check =
+      about("arithmetic operations for each search of an event, where nothing is easy to tell apart",
+            rounded(admitted));
   Worst worst;
   const double least = std::numeric_limits<double>::denorm_min();
   struct Hard {
     double x0, v0, y0, w0, e, end;
   };
-  // Left at rest on a lossless wall with no more than a third derivative to go by; pressed to one; along a wall.
-  for (const Hard& h : {Hard{-least, 2, 0, 0, 1, 0.03}, Hard{0, 2, 0, 0, 0.6, 0.03}, Hard{-6, 0, 0, 0, 1, 0.1},
-                        Hard{6, 0, 1, 0, 1, 0.1}, Hard{6, 0, 1, 0, 0, 3}, Hard{6, 0, 1e-15, -1e-14, 0.6, 3},
-                        Hard{1, 0, 0, 0, 0.999999, 3}}) {
+  // Left at rest on a lossless wall with no more than a third derivative to go by; pressed to one; along a
+  // wall.
+  for (const Hard& h : {Hard{-least, 2, 0, 0, 1, 0.03}, Hard{0, 2, 0, 0, 0.6, 0.03},
+                        Hard{-6, 0, 0, 0, 1, 0.1}, Hard{6, 0, 1, 0, 1, 0.1}, Hard{6, 0, 1, 0, 0, 3},
+                        Hard{6, 0, 1e-15, -1e-14, 0.6, 3}, Hard{1, 0, 0, 0, 0.999999, 3}}) {
     Scene scene;
     scene.x0 = h.x0, scene.v0 = h.v0, scene.y0 = h.y0, scene.w0 = h.w0, scene.restitution = h.e;
     scene.until_time = h.end;
@@ -309,7 +316,8 @@ Check crawling() {
                                      counts.divisions + counts.other_arithmetic) /
                               double(counts.searches + 1);
     worst.take(operations);
-    if (!(operations <= admitted)) check.miss(rounded(operations) + " for each search; " + in_full(scene, Exact{}));
+    if (!(operations <= admitted))
+      check.miss(rounded(operations) + " for each search; " + in_full(scene, Exact{}));
   }
   check.measured = rounded(worst);
   return check;
@@ -318,14 +326,15 @@ Check crawling() {
 // A mass that drifts for half a thousand million radians before it meets a wall, one that stays in its wall,
 // one that rests on it.
 Check long_times() {
-  Check check = about("impacts and contacts up to t = 1e9: the ledger, order, the end", rounded(closed_ledger));
+  Check check =
+      about("impacts and contacts up to t = 1e9: the ledger, order, the end", rounded(closed_ledger));
   Worst worst;
   struct Slow {
     double x0, y0, w0, e, zeta;
   };
-  for (const Slow& s : {Slow{0.2, 0.5, 1e-9, 0.6, 0}, Slow{0.2, 0.5, -1e-8, 0.2, 0}, Slow{0.3, 0.5, 1e-9, 1, 0},
-                        Slow{0, -0.3, 0, 0, 0}, Slow{1, -0.3, 0, 0, 0.1}, Slow{0, 1.2, 0, 0.6, 1e-9},
-                        Slow{1e-9, 0.5, 1e-9, 0.6, 2}, Slow{6, 0, 0, 0.6, 3}}) {
+  for (const Slow& s : {Slow{0.2, 0.5, 1e-9, 0.6, 0}, Slow{0.2, 0.5, -1e-8, 0.2, 0},
+                        Slow{0.3, 0.5, 1e-9, 1, 0}, Slow{0, -0.3, 0, 0, 0}, Slow{1, -0.3, 0, 0, 0.1},
+                        Slow{0, 1.2, 0, 0.6, 1e-9}, Slow{1e-9, 0.5, 1e-9, 0.6, 2}, Slow{6, 0, 0, 0.6, 3}}) {
     Scene scene;
     scene.x0 = s.x0, scene.y0 = s.y0, scene.w0 = s.w0, scene.restitution = s.e, scene.damping_ratio = s.zeta;
     scene.until_time = 1e9;

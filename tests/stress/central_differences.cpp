@@ -81,8 +81,7 @@ double closed_form_limit(Damper damper, double z) {
 }
 
 double closed_form_growth(Damper damper, double z, double g) {
-  if (damper == Damper::centred)
-    return larger_root((2 - g * g) / (1 + g * z), -(1 - g * z) / (1 + g * z));
+  if (damper == Damper::centred) return larger_root((2 - g * g) / (1 + g * z), -(1 - g * z) / (1 + g * z));
   return larger_root(2 - g * g - 2 * g * z, -(1 - 2 * g * z));
 }
 
@@ -138,7 +137,8 @@ std::vector<Check> growth_checks(const Options& options) {
   const std::array<double, 6> by_limit{0.5, 0.9, 0.99, 1.001, 1.01, 1.1};
   std::string table = "# Growth per step of central differences, by step over its limit.\n";
   std::vector<Check> checks;
-  const auto block = [&](const std::string& name, const std::string& what, const auto& growth_at) {
+  const auto block = [&](const std::string& name, const std::string& what, const auto& closed_form,
+                         const auto& growth_at) {
     Check check{.subject = "central-differences", .what = what, .measured = {}, .admitted = {}};
     table += "\n\n# " + name + "\nstep measured closed_form\n";
     Worst worst;
@@ -150,9 +150,14 @@ std::vector<Check> growth_checks(const Options& options) {
       worst.take(error);
       ++check.cases;
       if (!(error < 1e-3) || (growth.measured > 1 + 1e-6) != (f > 1))
-        check.miss("step " + rounded(f, 4) + " of the limit: growth " + full(growth.measured) + ", closed form " +
-                   full(growth.closed_form));
+        check.miss("step " + rounded(f, 4) + " of the limit: growth " + full(growth.measured) +
+                   ", closed form " + full(growth.closed_form));
       table += rounded(f, 6) + " " + full(growth.measured) + " " + full(growth.closed_form) + "\n";
+    }
+    table += "\n\n# " + name + "-closed\nstep closed_form\n";
+    for (int i = 0; i <= 260; ++i) {
+      const double f = 0.46 + 0.0025 * i;
+      table += rounded(f, 6) + " " + rounded(closed_form(f), 6) + "\n";
     }
     check.measured = rounded(worst);
     check.admitted = "1e-3";
@@ -161,19 +166,25 @@ std::vector<Check> growth_checks(const Options& options) {
   for (const Damper damper : {Damper::centred, Damper::lagged}) {
     const std::string name(name_of(damper));
     for (const double zeta : {0.0, 0.05})
-      block(name + "-flight-" + rounded(zeta),
-            name + ", in flight, zeta = " + rounded(zeta) + ": growth per step, relative error of its logarithm",
-            [&](double f) { return growth_in_flight(damper, zeta, f); });
+      block(
+          name + "-flight-" + rounded(zeta),
+          name + ", in flight, zeta = " + rounded(zeta) +
+              ": growth per step, relative error of its logarithm",
+          [&](double f) { return closed_form_growth(Damper::centred, zeta, 2 * f); },
+          [&](double f) { return growth_in_flight(damper, zeta, f); });
     for (const double e : {1.0, 0.6, 0.1}) {
       Worst limit_error;
-      block(name + "-contact-" + rounded(e),
-            name + ", in contact, e = " + rounded(e) + ": growth per step, relative error of its logarithm",
-            [&](double f) {
-              double error = 0;
-              const Growth growth = growth_in_contact(damper, e, f, error);
-              limit_error.take(std::abs(error));
-              return growth;
-            });
+      const double z = zeta_m_closed_form(e) * std::sqrt(1 + Scene{}.mass_ratio);
+      block(
+          name + "-contact-" + rounded(e),
+          name + ", in contact, e = " + rounded(e) + ": growth per step, relative error of its logarithm",
+          [&](double f) { return closed_form_growth(damper, z, f * closed_form_limit(damper, z)); },
+          [&](double f) {
+            double error = 0;
+            const Growth growth = growth_in_contact(damper, e, f, error);
+            limit_error.take(std::abs(error));
+            return growth;
+          });
       Check check{.subject = "central-differences",
                   .what = name + ", in contact, e = " + rounded(e) + ": the stated limit, relative error",
                   .measured = rounded(limit_error),

@@ -34,8 +34,8 @@ void check_finite(const Run& run, std::string& broken) {
   column("history y", run.history->y);
   column("history w", run.history->w);
   const EnergyLedger& ledger = *run.energy;
-  column("ledger", {ledger.initial.total(), ledger.final.total(), ledger.contact_loss, ledger.bounce_down_loss,
-                    ledger.viscous_work, ledger.forcing_work, ledger.residual});
+  column("ledger", {ledger.initial.total(), ledger.final.total(), ledger.contact_loss,
+                    ledger.bounce_down_loss, ledger.viscous_work, ledger.forcing_work, ledger.residual});
 }
 
 void check_order(const Run& run, std::string& broken) {
@@ -46,7 +46,8 @@ void check_order(const Run& run, std::string& broken) {
   for (std::size_t i = 0; i < impacts.time.size(); ++i) {
     if (!(impacts.time[i] >= (i > 0 ? impacts.time[i - 1] : 0))) fault("impact before the one before it", i);
     const double w = impacts.relative_velocity[i];
-    if (!(impacts.wall[i] == Wall::left ? w <= 0 : w >= 0)) fault("impact with " + full(w) + " off its wall", i);
+    if (!(impacts.wall[i] == Wall::left ? w <= 0 : w >= 0))
+      fault("impact with " + full(w) + " off its wall", i);
   }
   const std::vector<double>& losses = run.energy->impact_loss;
   for (std::size_t i = 0; i < losses.size(); ++i)
@@ -108,7 +109,8 @@ void check_end(const Run& run, std::string& broken) {
   const bool cut = run.stop_reason == StopReason::time && (y < 0 || y > 1);
   if (cut && std::holds_alternative<Exact>(run.engine) && !run.contacts->end.empty() &&
       run.contacts->end.back() != run.end_time)
-    broken = "the last contact ends " + rounded(run.contacts->end.back() - run.end_time) + " from the run's end";
+    broken =
+        "the last contact ends " + rounded(run.contacts->end.back() - run.end_time) + " from the run's end";
 }
 
 }  // namespace

@@ -205,8 +205,8 @@ void write_histogram(const Options& options, const Tally& tally) {
       "# residual: upper end, by the energy that went through the ledger\n\n\n# residuals\n"
       "residual exact restitution\n";
   for (std::size_t i = 0; i < tally.histogram[0].size(); ++i)
-    text += rounded(std::pow(10, double(i + 1) / 2 - decades), 4) + " " + std::to_string(tally.histogram[0][i]) +
-            " " + std::to_string(tally.histogram[1][i]) + "\n";
+    text += rounded(std::pow(10, double(i + 1) / 2 - decades), 4) + " " +
+            std::to_string(tally.histogram[0][i]) + " " + std::to_string(tally.histogram[1][i]) + "\n";
   write_file(options.folder / "residuals.dat", text);
 }
 
@@ -251,10 +251,12 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
 
   std::vector<Check> checks;
   constexpr std::array<const char*, promises.size()> sentences{
-      "every number is finite", "times and signs are in order",
+      "every number is finite",
+      "times and signs are in order",
       "the run ends by its time or its impacts, none of them found again and again",
       "0 <= y <= 1 in flight, beyond its wall in contact, by rounding",
-      "a contact that the end of the run cuts ends with it", "the ledger closes"};
+      "a contact that the end of the run cuts ends with it",
+      "the ledger closes"};
   for (std::size_t e = 0; e < 2; ++e) {
     for (std::size_t p = 0; p < promises.size(); ++p) {
       Check check = whole.checks[e][p];
@@ -275,8 +277,10 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
   }
   Check check = whole.agreement;
   check.subject = "random";
-  check.what = "distance of the first impacts from those on rigid walls: a tenth with 100 times the stiffness";
-  check.measured = check.cases == 0 ? "-" : rounded(whole.least_ratio, 3) + " to " + rounded(whole.most_ratio, 3);
+  check.what =
+      "distance of the first impacts from those on rigid walls: a tenth with 100 times the stiffness";
+  check.measured =
+      check.cases == 0 ? "-" : rounded(whole.least_ratio, 3) + " to " + rounded(whole.most_ratio, 3);
   check.admitted = rounded(least_ratio) + " to " + rounded(most_ratio);
   checks.push_back(check);
   return checks;

@@ -15,11 +15,11 @@
 // Held against: free flight (no growth); one impact per half cycle with nu -> 0, in closed form; area in the
 // plane of y and w, which every impact shrinks by e^2; and two whole runs side by side.
 //
-// One impact per half cycle. Leaving one wall at t0 with the absolute speed V, the mass meets the other, which
-// is 1 + x(t1) - x(t0) away, at t1 = t0 + pi, and leaves it with (1 + e) v(t1) - e V = -V. Varied:
+// One impact per half cycle. Leaving one wall at t0 with the absolute speed V, the mass meets the other,
+// which is 1 + x(t1) - x(t0) away, at t1 = t0 + pi, and leaves it with (1 + e) v(t1) - e V = -V. Varied:
 //     (V - v1) dt1 = (V - v0) dt0 - pi dV,   dV1 = (1 + e) x''(t1) dt1 - e dV,
-// with v1 = -v0 = -b V; so dt1 = e dt0 - g dV, g = pi (1 + e) / (2 V), and, mirrored, dV1 = (1 + e) A cos(theta)
-// dt1 + e dV. Hence determinant e^2 and trace 2 e - (1 + e) A cos(theta) g, in any coordinates.
+// with v1 = -v0 = -b V; so dt1 = e dt0 - g dV, g = pi (1 + e) / (2 V), and, mirrored, dV1 = (1 + e) A
+// cos(theta) dt1 + e dV. Hence determinant e^2 and trace 2 e - (1 + e) A cos(theta) g, in any coordinates.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -97,8 +97,7 @@ double exponent(const Scene& scene, const Section& from, Section& direction, boo
   if (equal_amplitude) direction[0] = 0;
   const double size = length(direction);
   Section beside = from;
-  for (std::size_t i = 0; i < 3; ++i)
-    beside[i] += renormalised * (size > 0 ? direction[i] / size : i == 1);
+  for (std::size_t i = 0; i < 3; ++i) beside[i] += renormalised * (size > 0 ? direction[i] / size : i == 1);
   const Section before = difference(beside, from);  // as rounded
   Section after = difference(next(scene, beside), next(scene, from));
   if (equal_amplitude) after[0] = 0;
@@ -132,7 +131,8 @@ void decide(Check& check, double error, double admitted, const std::string& whic
 }
 
 Check free_flight() {
-  Check check = about("free flight: a perturbation neither grows nor shrinks, exponent per half cycle", "1e-3");
+  Check check =
+      about("free flight: a perturbation neither grows nor shrinks, exponent per half cycle", "1e-3");
   Scene scene;
   scene.x0 = 0.2, scene.y0 = 0.3, scene.until_time = 1000;
   const std::vector<HalfCycle> rows = half_cycles_of(scene);
@@ -161,7 +161,8 @@ std::array<double, 2> trace_and_determinant(const Scene& scene, const Section& a
 }
 
 std::vector<Check> one_impact() {
-  Check trace = about("one impact per half cycle: trace of the half cycle's map, closed form at nu -> 0", "1e-3");
+  Check trace =
+      about("one impact per half cycle: trace of the half cycle's map, closed form at nu -> 0", "1e-3");
   Check area = about("the same: its determinant, e^2", "1e-3");
   Worst worst_trace, worst_area;
   for (const double e : {0.4, 0.6, 0.8}) {
@@ -193,7 +194,8 @@ std::vector<Check> one_impact() {
 
 // Two whole runs, released 1e-12 apart, against the sum of the exponents: until either is 1e-6.
 Check side_by_side(const Scene& scene, const std::string& name) {
-  Check check = about(name + ": two runs released 1e-12 apart against the sum of exponents, in decades", "0.1");
+  Check check =
+      about(name + ": two runs released 1e-12 apart against the sum of exponents, in decades", "0.1");
   Scene shifted = scene;
   shifted.x0 *= 1 + perturbation;
   const std::vector<HalfCycle> one = half_cycles_of(scene), other = half_cycles_of(shifted);
@@ -207,7 +209,8 @@ Check side_by_side(const Scene& scene, const std::string& name) {
     if (apart > 1e-6 || sum > std::log(1e-6)) break;
     const double error = std::abs(std::log(apart) - sum) / std::log(10.0);
     worst.take(error);
-    decide(check, error, 0.1, "half cycle " + std::to_string(i + 1) + ", A = " + rounded(one[i + 1].amplitude, 4));
+    decide(check, error, 0.1,
+           "half cycle " + std::to_string(i + 1) + ", A = " + rounded(one[i + 1].amplitude, 4));
   }
   check.measured = rounded(worst);
   return check;
@@ -263,13 +266,20 @@ std::string table_of(const Followed& followed) {
   text += "\n\n# growth-" + followed.name + "\namplitude decades\n";
   lost_below(followed.members.front(), &text);
   text += "\n\n# windows-" + followed.name + "\nimpacts upper lower\n";
-  const Run run = simulate(followed.scene, Exact{}, {.half_cycles = true, .contacts = true});
+  const Run run = simulate(followed.scene, Exact{}, {.impacts = true, .contacts = true});
   const std::vector<RegularWindow> windows = regular_windows(run);
   for (std::int64_t impacts = 1; impacts <= 6; ++impacts)
     if (const auto window = longest_window(windows, impacts))
-      text += std::to_string(impacts) + " " + rounded(window->upper, 6) + " " + rounded(window->lower, 6) + "\n";
+      text +=
+          std::to_string(impacts) + " " + rounded(window->upper, 6) + " " + rounded(window->lower, 6) + "\n";
+  text += "\n\n# impacts-" + followed.name + "\namplitude phase_deg\n";
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i)
+    if (run.impacts->phase_deg[i] && run.impacts->amplitude[i])
+      text += rounded(*run.impacts->amplitude[i], 5) + " " + rounded(*run.impacts->phase_deg[i], 5) + "\n";
   return text;
 }
+
+std::string amplitude_text(double lost) { return lost > 0 ? rounded(lost, 3) : "never"; }
 
 }  // namespace
 
@@ -277,7 +287,7 @@ std::vector<Check> sensitivity(const Options& options) {
   std::vector<Check> checks{free_flight()};
   for (const Check& check : one_impact()) checks.push_back(check);
 
-  std::vector<std::string> names{"nu2-e06", "nu1-e06", "nu4-e06",        "nu2-e04",
+  std::vector<std::string> names{"nu2-e06", "nu1-e06",        "nu4-e06",        "nu2-e04",
                                  "nu2-e08", "nu2-e06-zeta02", "nu2-e06-zeta04", "nu2-e06-zeta08"};
   if (options.brief) names.resize(1);
   const EnsembleOptions ensemble{.members = options.brief ? 1 : 16};
@@ -301,16 +311,20 @@ std::vector<Check> sensitivity(const Options& options) {
   });
 
   std::string table =
-      "# Growth of a perturbation per half cycle: means over bins of the amplitude, and one decay's sum.\n";
+      "# Growth of a perturbation per half cycle: means over bins of the amplitude, and one decay's sum.\n"
+      "# Parameters: above: ν = 0.02, e = 0.6, ζ = 0, k = 10^4, means over " +
+      std::to_string(ensemble.members) + " releases; below: all scenes of the figures\n";
   for (const Followed& followed : all) {
     checks.push_back(side_by_side(followed.scene, followed.name));
     table += table_of(followed);
     std::vector<double> lost;
     for (const Exponents& member : followed.members) lost.push_back(lost_below(member));
     const Spread spread = spread_of(lost);
-    Check check = about(followed.name + ": 1e-12 has grown to 1e-3 at this amplitude (median, extremes)", "-");
+    Check check =
+        about(followed.name + ": 1e-12 has grown to 1e-3 at this amplitude (median, extremes)", "-");
     check.cases = std::int64_t(lost.size());
-    check.measured = rounded(spread.median, 3) + " (" + rounded(spread.low, 3) + " to " + rounded(spread.high, 3) + ")";
+    check.measured = amplitude_text(spread.median) + " (" + amplitude_text(spread.low) + " to " +
+                     amplitude_text(spread.high) + ")";
     checks.push_back(check);
   }
   write_file(options.folder / "sensitivity.dat", table);

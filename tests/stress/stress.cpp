@@ -31,9 +31,10 @@ constexpr std::array<Subject, 4> subjects{{{"central-differences", central_diffe
                                            {"sensitivity", sensitivity, false}}};
 
 int usage(const std::string& what) {
-  std::cerr << "impact-damper-stress: " << what
-            << "\nusage: impact-damper-stress [--brief] [--only SUBJECT] [--seed N] [--scenes N] [--threads N] "
-               "FOLDER\n";
+  std::cerr
+      << "impact-damper-stress: " << what
+      << "\nusage: impact-damper-stress [--brief] [--only SUBJECT] [--seed N] [--scenes N] [--threads N] "
+         "FOLDER\n";
   return 2;
 }
 
@@ -68,7 +69,7 @@ int run(const std::vector<std::string>& arguments) {
   }
   if (options.folder.empty()) return usage("FOLDER must be given");
   options.scene_folder = SCENES_FOLDER;
-  options.scenes = scenes.value_or(options.brief ? 20'000 : 1'000'000);
+  options.scenes = scenes.value_or(options.brief ? 10'000 : 1'000'000);
   if (options.seed && only.empty()) only = "random";
 
   std::filesystem::create_directories(options.folder);

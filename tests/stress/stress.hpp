@@ -12,11 +12,11 @@
 namespace stress {
 
 struct Options {
-  bool brief = false;  // the same with smaller counts
+  bool brief = false;                 // the same with smaller counts
   std::optional<std::uint64_t> seed;  // this case only, told in full
   std::int64_t scenes = 0;            // how many random ones
   impact_damper::Threads threads;
-  std::filesystem::path folder;  // for tables that are drawn
+  std::filesystem::path folder;        // for tables that are drawn
   std::filesystem::path scene_folder;  // the scenes of the figures
 };
 
