@@ -17,7 +17,7 @@ struct Check {
   std::int64_t cases = 0, missed = 0;
   std::vector<std::string> misses;  // the first ones: seed, numbers, scene
 
-  static constexpr std::size_t most_misses = 40;
+  static constexpr std::size_t most_misses = 20;
   void miss(const std::string& what_and_how_to_repeat) {
     ++missed;
     if (misses.size() < most_misses) misses.push_back(what_and_how_to_repeat);
