@@ -42,7 +42,7 @@ do for [column=1:2] {
   set xlabel "peak amplitude A of the half cycle"
   set yrange [-13:0]; set ytics 3; set mytics 3
   if (column == 1) { set ylabel "10^{-12} at the release becomes 10^n" offset 1,0 }
-  if (column == 1) { set key at graph 0.985, 0.9 right top maxcols 1 samplen 1.6 spacing 1 font ",11" }
+  if (column == 1) { set key at graph 0.94, 0.95 right top maxcols 1 maxrows 8 samplen 1.6 spacing 1 font ",11" }
   plot table index "growth-".base using 1:2 with lines lc rgb black lw 2 title "ν = 0.02, e = 0.6, ζ = 0", \
        table index "growth-nu1-e06" using 1:2 with lines lc rgb blue lw 1.2 title "ν = 0.01", \
        table index "growth-nu4-e06" using 1:2 with lines lc rgb blue lw 1.2 dt (6,3) title "ν = 0.04", \
