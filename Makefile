@@ -18,7 +18,7 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps build figures verify test bench check paper clean
+.PHONY: help deps build figures verify test bench stress stress-results check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -70,6 +70,12 @@ test: build  ## run every test
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (a minute or two), print and draw it
 	@cmake --build $(BUILD) --target bench
+
+stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random scenes, aimed ones (minutes)
+	@cmake --build $(BUILD) --target stress
+
+stress-results: $(BUILD)/build.ninja
+	@cmake --build $(BUILD) --target stress-results
 
 check: build test  ## build, run every test, regenerate everything with all engines and verify it
 	@for engine in exact restitution cem; do \

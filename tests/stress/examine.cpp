@@ -1,0 +1,154 @@
+#include "examine.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "impact_damper/simulate.hpp"
+#include "report.hpp"
+
+namespace stress {
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+void check_finite(const Run& run, std::string& broken) {
+  const auto column = [&](const char* name, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!std::isfinite(values[i]) && broken.empty())
+        broken = std::string(name) + "[" + std::to_string(i) + "] is " + full(values[i]);
+  };
+  column("end_time", {run.end_time});
+  column("zero_crossing", run.half_cycles->zero_crossing);
+  column("peak_time", run.half_cycles->peak_time);
+  column("amplitude", run.half_cycles->amplitude);
+  column("impact time", run.impacts->time);
+  column("relative_velocity", run.impacts->relative_velocity);
+  column("contact begin", run.contacts->begin);
+  column("contact end", run.contacts->end);
+  column("impact_loss", run.energy->impact_loss);
+  column("history x", run.history->x);
+  column("history v", run.history->v);
+  column("history y", run.history->y);
+  column("history w", run.history->w);
+  const EnergyLedger& ledger = *run.energy;
+  column("ledger", {ledger.initial.total(), ledger.final.total(), ledger.contact_loss,
+                    ledger.bounce_down_loss, ledger.viscous_work, ledger.forcing_work, ledger.residual});
+}
+
+void check_order(const Run& run, std::string& broken) {
+  const auto fault = [&](const std::string& what, std::size_t i) {
+    if (broken.empty()) broken = what + " at row " + std::to_string(i);
+  };
+  const Impacts& impacts = *run.impacts;
+  for (std::size_t i = 0; i < impacts.time.size(); ++i) {
+    if (!(impacts.time[i] >= (i > 0 ? impacts.time[i - 1] : 0))) fault("impact before the one before it", i);
+    const double w = impacts.relative_velocity[i];
+    if (!(impacts.wall[i] == Wall::left ? w <= 0 : w >= 0))
+      fault("impact with " + full(w) + " off its wall", i);
+  }
+  const std::vector<double>& losses = run.energy->impact_loss;
+  for (std::size_t i = 0; i < losses.size(); ++i)
+    if (!(losses[i] >= 0)) fault("impact loss " + full(losses[i]), i);
+  const Contacts& contacts = *run.contacts;
+  for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
+    if (!(contacts.end[i] >= contacts.begin[i])) fault("contact ends before it begins", i);
+    if (i > 0 && !(contacts.begin[i] >= contacts.end[i - 1])) fault("contacts overlap", i);
+  }
+  const HalfCycles& rows = *run.half_cycles;
+  for (std::size_t i = 0; i < rows.amplitude.size(); ++i) {
+    if (i > 0 && !(rows.zero_crossing[i] > rows.zero_crossing[i - 1])) fault("half cycle of no length", i);
+    if (!(rows.amplitude[i] >= 0)) fault("negative amplitude", i);
+  }
+  if (!(run.end_time <= *run.scene.until_time)) fault("end after until_time", 0);
+}
+
+void check_bounds(const Run& run, std::string& broken) {
+  if (run.stop_reason != StopReason::time && run.stop_reason != StopReason::impact_budget)
+    broken = "stopped by " + std::string(name_of(run.stop_reason));
+  // An impact that is found again and again where the state lies within rounding of a wall. (With e = 1
+  // bounces too low for the last bit of time go on for ever.)
+  const Impacts& impacts = *run.impacts;
+  if (run.scene.restitution == 1) return;
+  for (std::size_t i = 3; i < impacts.time.size(); ++i) {
+    if (impacts.wall[i] == impacts.wall[i - 3] && impacts.time[i] - impacts.time[i - 3] == 0 &&
+        impacts.relative_velocity[i] == impacts.relative_velocity[i - 3] && broken.empty())
+      broken = "the same impact four times, at row " + std::to_string(i);
+  }
+}
+
+// How far y lies beyond its side of a wall, by the rounding of a straight flight less an oscillation. Within
+// a rounding of a contact's ends, in time, either side will do.
+double outside(const Run& run) {
+  Worst worst;
+  const History& history = *run.history;
+  const Contacts& contacts = *run.contacts;
+  const bool rigid = std::holds_alternative<Restitution>(run.engine);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < history.time.size(); ++i) {
+    const double t = history.time[i], y = history.y[i], instant = 4 * epsilon * (1 + t);
+    while (next < contacts.end.size() && contacts.end[next] < t - instant) ++next;
+    double beyond = std::max(-y, y - 1);
+    if (next < contacts.begin.size() && contacts.begin[next] <= t + instant) {
+      const double inwards = contacts.wall[next] == Wall::left ? -y : y - 1;
+      const bool inside = contacts.begin[next] < t - instant && t + instant < contacts.end[next];
+      const double beyond_in_contact = rigid ? std::abs(inwards) : -inwards;
+      beyond = inside ? beyond_in_contact : std::min(beyond, beyond_in_contact);
+    }
+    const double speed = std::abs(history.w[i]) + std::abs(history.v[i]) + std::abs(history.x[i]) +
+                         run.scene.force_amplitude + 1;
+    worst.take(beyond / (epsilon * (1 + t) * speed));
+  }
+  return worst;
+}
+
+void check_end(const Run& run, std::string& broken) {
+  const double y = run.history->y.back();  // at the end, if the run came so far
+  const bool cut = run.stop_reason == StopReason::time && (y < 0 || y > 1);
+  if (cut && std::holds_alternative<Exact>(run.engine) && !run.contacts->end.empty() &&
+      run.contacts->end.back() != run.end_time)
+    broken =
+        "the last contact ends " + rounded(run.contacts->end.back() - run.end_time) + " from the run's end";
+}
+
+}  // namespace
+
+bool Examined::all_kept() const {
+  for (const std::string& each : broken)
+    if (!each.empty()) return false;
+  return true;
+}
+
+Examined examine(const Scene& scene, const Engine& engine) {
+  const double end = *scene.until_time;
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  double from = 0;
+  for (const double part : {1e-6, 1e-3, 1e-1, 1.0}) {
+    record.history.push_back({from, part * end, 8});
+    from = part * end;
+  }
+  Examined result;
+  const auto broken = [&](Promise promise) -> std::string& {
+    return result.broken[static_cast<std::size_t>(promise)];
+  };
+  try {
+    const Run run = simulate(scene, engine, record);
+    check_finite(run, broken(Promise::finite));
+    check_order(run, broken(Promise::ordered));
+    check_bounds(run, broken(Promise::bounded));
+    result.outside = outside(run);
+    if (!(result.outside <= roundings_beyond_a_wall))
+      broken(Promise::between_walls) = rounded(result.outside) + " roundings beyond a wall";
+    check_end(run, broken(Promise::end_on_the_dot));
+    result.residual = std::abs(run.energy->residual);
+    if (!(result.residual <= closed_ledger)) broken(Promise::ledger) = "open by " + rounded(result.residual);
+  } catch (const std::exception& error) {
+    broken(Promise::finite) = std::string("threw ") + error.what();
+  }
+  return result;
+}
+
+}  // namespace stress
