@@ -1,0 +1,50 @@
+// This project's own engines as contenders: one call of simulate() each, everything included.
+#include "contender.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper::bench {
+namespace {
+
+Rows rows_of(Run run) {
+  HalfCycles& table = *run.half_cycles;
+  Rows rows{std::move(table.zero_crossing), std::move(table.peak_time), std::move(table.amplitude), 0};
+  for (const std::int64_t impacts : table.impacts) rows.impacts += impacts;
+  return rows;
+}
+
+Contender closed_form(const std::string& name, Walls walls, const Engine& engine) {
+  return {name, walls, "", [](const Scene&) { return std::vector<double>{0}; },
+          [engine](const Scene& scene, double) {
+            return rows_of(simulate(scene, engine, {.half_cycles = true}));
+          }};
+}
+
+// From 8 steps in a contact of nominal length to 2048.
+std::vector<double> time_steps(const Scene& scene) {
+  return geometric(nominal_contact_time(scene) / 8, 0.5, 9);
+}
+
+Contender stepping(const std::string& name, Cem options) {
+  return {name, Walls::compliant, "time step", time_steps, [options](const Scene& scene, double step) mutable {
+            options.time_step = step;
+            return rows_of(simulate(scene, options, {.half_cycles = true}));
+          }};
+}
+
+}  // namespace
+
+std::vector<Contender> engines() {
+  return {closed_form("exact", Walls::compliant, Exact{}),
+          closed_form("restitution", Walls::rigid, Restitution{}),
+          stepping("cem", Cem{}),
+          stepping("cem located", Cem{.locate = true})};
+}
+
+std::vector<double> geometric(double from, double factor, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i, from *= factor) values.push_back(from);
+  return values;
+}
+
+}  // namespace impact_damper::bench
