@@ -1,22 +1,16 @@
 // Whoever runs the bench's scenes: an engine of ours or a peer, each behind the same two questions.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "impact_damper/scene.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 
 enum class Walls { compliant, rigid };
-
-// What each must deliver, the rows of HalfCycles (run.hpp), and how many impacts it met on the way.
-struct Rows {
-  std::vector<double> zero_crossing, peak_time, amplitude;
-  std::int64_t impacts = 0;
-};
 
 struct Contender {
   std::string name;

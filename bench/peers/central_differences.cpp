@@ -27,7 +27,7 @@ Rows run(const Scene& scene, double h) {
   double x1 = x0 + h * scene.v0 + h2 / 2 * a, y1 = y0 + h * scene.w0 - h2 / 2 * a;
   const double end = scene.until_time ? *scene.until_time : 1e6;
 
-  RowBook rows(scene);
+  RowBook rows(scene.x0, scene.until_amplitude);
   bool in_contact = y1 < 0 || y1 > 1;
   for (long step = 1; double(step) * h < end; ++step) {
     const double f = f0 == 0 ? 0 : h2 * f0 * std::sin(omega * (double(step) * h));

@@ -107,7 +107,7 @@ class OdeintRun {
   using State = typename HybridSystem<Real>::State;
 
   OdeintRun(const Scene& scene, Walls walls, const Real& tolerance)
-      : scene_(scene), system_(scene, walls), view_{&system_}, stepper_(tolerance), rows_(scene) {
+      : scene_(scene), system_(scene, walls), view_{&system_}, stepper_(tolerance), rows_(scene.x0, scene.until_amplitude) {
     longest_.fill(Real(0.5));
     longest_[std::size_t(Regime::left)] = longest_[std::size_t(Regime::right)] = system_.contact_time() / 2;
     steps_ = longest_;

@@ -3,15 +3,17 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
-#include "contender.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 
 class RowBook {
  public:
-  explicit RowBook(const Scene& scene)
-      : until_(scene.until_amplitude), best_(std::abs(scene.x0)), rows_(Rows{}) {}
+  explicit RowBook(double x0, std::optional<double> until_amplitude = {})
+      : until_(until_amplitude), best_(std::abs(x0)) {}
 
   void peak(double time, double x) {
     if (!(std::abs(x) > best_)) return;

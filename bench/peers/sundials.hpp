@@ -69,7 +69,7 @@ Rows run(const Scene& scene, Walls walls, double tolerance) {
   N_Vector u = vector.vector;
   Solver solver(problem, u, context.context, tolerance);
 
-  RowBook rows(scene);
+  RowBook rows(scene.x0, scene.until_amplitude);
   const double end = scene.until_time ? *scene.until_time : 1e6;
   double t = 0;
   while (solver.advance(end - problem.origin, u, t)) {
