@@ -7,6 +7,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "impact_damper/files/run_file.hpp"
+
 using namespace impact_damper;
 
 TEST_CASE("an ensemble begins with the scene itself and shifts the release of the others by whole steps") {
@@ -59,6 +61,36 @@ TEST_CASE("a spread is the median and the extremes, and NaN if anything is") {
   CHECK(spread_of({4, 1, 2, 8}).median == 3);
   CHECK(std::isnan(spread_of({1, std::nan(""), 2}).median));
   CHECK_THROWS_AS(spread_of({}), std::invalid_argument);
+}
+
+TEST_CASE("an ensemble is the same to the last byte with any number of threads") {
+  Scene scene;
+  scene.until_amplitude = 1.0;  // through chaos, where any other bit would show
+  scene.x0 = 4;
+  const Record record{.impacts = true, .contacts = true, .energy = true};
+  const auto texts = [&](const Threads& threads) {
+    std::vector<std::string> all;
+    for (const Run& run : simulate_ensemble(scene, Exact{}, record, {.members = 9, .threads = threads}))
+      all.push_back(run_text(run));
+    return all;
+  };
+  const std::vector<std::string> alone = texts(1);
+  for (const std::int64_t threads : {2, 3, 20}) CHECK(texts(threads) == alone);
+  CHECK(texts({}) == alone);
+}
+
+TEST_CASE("scenes are run in their order, and the first that is not admitted is the one that is named") {
+  std::vector<Scene> scenes(5);
+  for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i].until_time = double(i + 1);
+  for (const std::int64_t threads : {1, 3}) {
+    const std::vector<Run> runs = simulate_scenes(scenes, Exact{}, Record{}, threads);
+    REQUIRE(runs.size() == scenes.size());
+    for (std::size_t i = 0; i < scenes.size(); ++i) CHECK(runs[i].end_time == *scenes[i].until_time);
+  }
+  scenes[1].mass_ratio = -1;
+  scenes[3].restitution = 2;
+  CHECK_THROWS_WITH_AS(simulate_scenes(scenes, Exact{}, Record{}, 3),
+                       "mass_ratio: must be > 0 and <= 1e+06, got -1", std::invalid_argument);
 }
 
 TEST_CASE("an unchaotic decay does not spread, a chaotic one does") {

@@ -61,6 +61,14 @@ void Arguments::finish() const {
   if (!problems_.empty()) throw UsageError(problems_);
 }
 
+void add_threads_option(CLI::App& app) {
+  app.add_option("--threads",
+                 "how many simulate at once; default one for each processor, same results with any")
+      ->type_name("N");
+}
+
+Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
+
 std::optional<Triple> parse_triple(std::string_view text) {
   const std::size_t first = text.find(':');
   const std::size_t second = first == text.npos ? text.npos : text.find(':', first + 1);

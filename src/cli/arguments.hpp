@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/files/json_reader.hpp"
 
 namespace impact_damper::cli {
@@ -53,6 +54,10 @@ class Arguments {
   const CLI::App& app_;
   std::string problems_;
 };
+
+// --threads N, of every command that simulates more than one scene.
+void add_threads_option(CLI::App& app);
+Threads threads_of(Arguments& arguments);
 
 // The numbers A:B:N of `text`, for options that ask for samples: two finite numbers and a count.
 struct Triple {

@@ -64,6 +64,7 @@ int make_tables(Arguments arguments) {
   const fs::path runs_folder = arguments.text("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
   const auto output = arguments.text("--output");
+  const Threads threads = threads_of(arguments);
   const Catalogue catalogue =
       read_catalogue(arguments.text("--catalogue").value_or("figures/catalogue.json"));
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
@@ -76,7 +77,7 @@ int make_tables(Arguments arguments) {
   FigureRuns runs;
   for (const Figure* figure : figures) {
     load(*figure, runs_folder, runs);
-    const std::string text = to_text(figure_table(*figure, runs));
+    const std::string text = to_text(figure_table(*figure, runs, threads));
     if (!output) {
       write_standard_output(text);
     } else {
@@ -99,6 +100,7 @@ Command series_command(CLI::App& program) {
       ->take_all();
   app->add_option("-o,--output", "file, or folder for figNN.dat; default standard output")
       ->type_name("PLACE");
+  add_threads_option(*app);
   app->footer(
       "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
       "numbers.\n"

@@ -201,6 +201,7 @@ Command verify_command(CLI::App& program) {
       ->type_name("N");
   app->add_option("-o,--output", "write the verdicts as JSON")->type_name("FILE");
   app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
+  add_threads_option(*app);
   app->footer(
       "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
       "and extremes over an ensemble of minutely different releases), and the verdict: reproduced, not\n"
@@ -213,6 +214,7 @@ Command verify_command(CLI::App& program) {
         Arguments arguments(*app);
         EnsembleOptions ensemble;
         ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+        ensemble.threads = threads_of(arguments);
         arguments.finish();
         return verify(arguments.text("--claims").value_or("data/claims.json"),
                       arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),

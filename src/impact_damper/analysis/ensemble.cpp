@@ -37,11 +37,19 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
   return scenes;
 }
 
+std::vector<Run> simulate_scenes(const std::vector<Scene>& scenes, const Engine& engine, const Record& record,
+                                 const Threads& threads) {
+  std::vector<Run> runs(scenes.size());
+  for_each_index(static_cast<std::int64_t>(scenes.size()), threads, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    runs[n] = simulate(scenes[n], engine, record);
+  });
+  return runs;
+}
+
 std::vector<Run> simulate_ensemble(const Scene& scene, const Engine& engine, const Record& record,
                                    const EnsembleOptions& options) {
-  std::vector<Run> runs;
-  for (const Scene& member : ensemble_of(scene, options)) runs.push_back(simulate(member, engine, record));
-  return runs;
+  return simulate_scenes(ensemble_of(scene, options), engine, record, options.threads);
 }
 
 Spread spread_of(std::vector<double> values) {

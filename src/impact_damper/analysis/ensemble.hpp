@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -17,13 +18,18 @@ struct EnsembleOptions {
   double step = 1e-9;              // relative to the initial displacement
   std::int64_t most_steps = 1000;  // a member is shifted by a whole number of steps up to this, either way
   std::uint64_t seed = 1;
+  Threads threads;  // that simulate the members; no result depends on it
 };
 
 // The scene itself, then members - 1 shifted ones: x0 (1 + step n), n drawn from the seed, never 0. With
 // x0 = 0 it is v0 that is shifted. Equal options give equal scenes on every machine.
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options = {});
 
-// One run for each of them.
+// One run for each scene, in their order. Throws what simulate() throws for the first scene that fails.
+std::vector<Run> simulate_scenes(const std::vector<Scene>& scenes, const Engine& engine, const Record& record,
+                                 const Threads& threads = {});
+
+// One run for each member of the ensemble.
 std::vector<Run> simulate_ensemble(const Scene& scene, const Engine& engine, const Record& record,
                                    const EnsembleOptions& options = {});
 

@@ -1,11 +1,11 @@
 #include "impact_damper/paper/measures.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
 #include "impact_damper/files/run_file.hpp"
-#include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
 
@@ -25,8 +25,9 @@ const std::vector<Run>& Runs::ensemble(const std::string& scene) {
     Record record;
     record.impacts = record.contacts = true;
     std::vector<Scene> members = ensemble_of(first.scene, options_);
-    const Engine engine = first.engine;
-    for (std::size_t i = 1; i < members.size(); ++i) runs.push_back(simulate(members[i], engine, record));
+    members.erase(members.begin());
+    std::vector<Run> others = simulate_scenes(members, first.engine, record, options_.threads);
+    runs.insert(runs.end(), std::move_iterator(others.begin()), std::move_iterator(others.end()));
   }
   return runs;
 }

@@ -149,7 +149,7 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) 
   return rows;
 }
 
-Table figure_table(const Figure& figure, const FigureRuns& runs) {
+Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& threads) {
   std::vector<const FigureRun*> sources;
   for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
   check_comparable(figure, sources);
@@ -175,7 +175,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs) {
         if (figure.table == TableKind::decay) {
           add_decay_block(figure, *sources[i], number, legend, table);
         } else {
-          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
+          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, threads, table);
         }
       }
       if (!figure.range.empty()) add_spread_block(figure, table);

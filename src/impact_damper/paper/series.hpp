@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/table.hpp"
 #include "impact_damper/run.hpp"
@@ -32,6 +33,7 @@ using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to; or if a drawn value is not finite.
-Table figure_table(const Figure& figure, const FigureRuns& runs);
+// `threads` simulate the ensembles; the table does not depend on them.
+Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& threads = {});
 
 }  // namespace impact_damper

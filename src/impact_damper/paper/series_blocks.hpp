@@ -17,7 +17,8 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source);
 
 void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table);
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
-                    const std::string& number, const std::string& legend, Table& table);
+                    const std::string& number, const std::string& legend, const Threads& threads,
+                    Table& table);
 void add_spread_block(const Figure& figure, Table& table);
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table);
 void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table);

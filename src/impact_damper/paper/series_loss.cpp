@@ -77,14 +77,14 @@ std::optional<double> value_at(double amplitude, const LossFactor& loss, const s
 
 // The extremes over an ensemble of the run's scene, where all members have a value.
 TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
-                      const std::string& number) {
+                      const std::string& number, const Threads& threads) {
   struct Member {
     LossFactor loss;
     std::vector<double> values;
     std::size_t kept;
   };
   std::vector<Member> members;
-  const EnsembleOptions options{.members = curve.ensemble};
+  const EnsembleOptions options{.members = curve.ensemble, .threads = threads};
   for (const Run& each : simulate_ensemble(run.scene, run.engine, Record{}, options)) {
     Member member{averaged_loss_factor(*each.half_cycles, curve.loss_factor), {}, 0};
     member.values = ordinate(member.loss, each.scene, *figure.ordinate);
@@ -119,7 +119,8 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
 }  // namespace
 
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
-                    const std::string& number, const std::string& legend, Table& table) {
+                    const std::string& number, const std::string& legend, const Threads& threads,
+                    Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
   const int span = curve.loss_factor.half_cycles;
   const LossFactor loss = averaged_loss_factor(rows, curve.loss_factor);
@@ -146,7 +147,7 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   block("curve-" + number, "", 0, kept);
   if (kept < values.size())
     block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
-  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, number));
+  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, number, threads));
 }
 
 void add_spread_block(const Figure& figure, Table& table) {

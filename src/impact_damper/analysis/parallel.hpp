@@ -1,0 +1,58 @@
+// Work that splits into equal-looking pieces, spread over threads.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace impact_damper {
+
+// How many threads work. Absent: one for each processor; no number below 1 is meant.
+using Threads = std::optional<std::int64_t>;
+
+inline std::int64_t number_of(const Threads& threads) {
+  return std::max<std::int64_t>(1, threads ? *threads : std::int64_t(std::thread::hardware_concurrency()));
+}
+
+// work(i) once for every i in [0, count), the calling thread among those that work. Each index is taken by
+// whichever thread is free, so work(i) must write only what belongs to i; results then do not depend on the
+// number of threads. Neither does what is thrown: of the indices whose work throws it is the smallest's
+// exception that reaches the caller, after all threads have ended; no index is begun once one has thrown.
+template <class Work>
+void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
+  std::atomic<std::int64_t> next{0};
+  std::atomic<bool> failed{false};
+  std::mutex mutex;
+  std::int64_t first_failure = count;
+  std::exception_ptr failure;
+  // Indices are taken in order: when one fails, every smaller one has been taken and is worked through.
+  const auto take_indices = [&] {
+    while (!failed) {
+      const std::int64_t i = next++;
+      if (i >= count) return;
+      try {
+        work(i);
+      } catch (...) {
+        failed = true;
+        const std::lock_guard lock(mutex);
+        if (i < first_failure) {
+          first_failure = i;
+          failure = std::current_exception();
+        }
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (std::int64_t n = std::min(number_of(threads), count); n > 1; --n) helpers.emplace_back(take_indices);
+    take_indices();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace impact_damper
