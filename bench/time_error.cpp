@@ -1,0 +1,119 @@
+#include "time_error.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "peers/peers.hpp"
+#include "reference.hpp"
+
+namespace impact_damper::bench {
+
+std::optional<double> Reference::error_of(const Rows& rows) const {
+  return loss_curve ? curve_error(*loss_curve, rows) : amplitude_error(rows.amplitude, amplitude);
+}
+
+Reference reference_of(const BenchScene& scene, Walls walls) {
+  const Engine engine = walls == Walls::compliant ? Engine(Exact{}) : Engine(Restitution{});
+  Reference reference{.scene = scene.name, .walls = walls};
+  if (scene.chaotic) {
+    reference.loss_curve = ensemble_curve(scene.scene, engine, 32);
+    return reference;
+  }
+  std::vector<double> in_long_double;
+  if (walls == Walls::compliant) {
+    reference.amplitude = reference_amplitudes(scene.scene, Exact{});
+    in_long_double = long_double_amplitudes(scene.scene, Exact{});
+  } else {
+    reference.amplitude = reference_amplitudes(scene.scene, Restitution{});
+    in_long_double = long_double_amplitudes(scene.scene, Restitution{});
+  }
+  // Where the reference is long double itself there is nothing to hold it against.
+  if (reference_scalar() != "long double") {
+    reference.from_long_double = amplitude_error(in_long_double, reference.amplitude);
+  }
+  if (walls == scene.walls) {
+    if (const auto independent = independent_amplitudes(scene.scene, walls)) {
+      reference.from_independent = amplitude_error(*independent, reference.amplitude);
+    }
+  }
+  return reference;
+}
+
+Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours, const Reference& reference,
+                    const Limits& limits, const Told& told) {
+  Curve curve{.scene = scene.name,
+              .contender = contender.name,
+              .walls = contender.walls,
+              .ours = ours,
+              .setting = contender.setting};
+  told.curve(scene.name + " " + contender.name);
+  std::vector<double> seconds;
+  for (const double setting : contender.settings(scene.scene)) {
+    // As much longer than the last as that was than the one before.
+    if (!seconds.empty()) {
+      const double before = seconds.size() > 1 ? seconds[seconds.size() - 2] : seconds.back();
+      if (seconds.back() * std::max(1.0, seconds.back() / before) > limits.longest_run) {
+        curve.cut = true;
+        break;
+      }
+    }
+    Point point{.setting = setting};
+    try {
+      Rows rows;
+      const double first = cpu_seconds([&] { rows = contender.run(scene.scene, setting); });
+      point.impacts = rows.impacts;
+      point.error = reference.error_of(rows);
+      const int repeats = first > limits.repeated_fully ? limits.few : limits.repeats;
+      point.timing = measure([&] { contender.run(scene.scene, setting); }, repeats, first);
+    } catch (const std::exception& error) {
+      curve.failures.push_back(contender.setting + " " + std::to_string(setting) + ": " + error.what());
+      continue;
+    }
+    seconds.push_back(point.timing.seconds.median);
+    curve.points.push_back(point);
+    told.point(curve, point);
+  }
+  return curve;
+}
+
+std::optional<double> time_at(const Curve& curve, double error) {
+  const Point* before = nullptr;
+  for (const Point& point : curve.points) {
+    if (!point.error) continue;
+    const double time = point.timing.yardsticks.median;
+    if (*point.error <= error) {
+      // An error of zero has no logarithm; nothing is coarser than the first.
+      if (!before || !(*point.error > 0)) return time;
+      const double part = std::log(*before->error / error) / std::log(*before->error / *point.error);
+      const double coarser = before->timing.yardsticks.median;
+      return coarser * std::pow(time / coarser, part);
+    }
+    before = &point;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> least_error(const Curve& curve) {
+  std::optional<double> least;
+  for (const Point& point : curve.points) {
+    if (point.error && !(least && *least <= *point.error)) least = point.error;
+  }
+  return least;
+}
+
+std::optional<double> observed_order(const Curve& curve, double below) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const Point& point : curve.points) {
+    if (!point.error || !(*point.error > 0 && *point.error < below)) continue;
+    const double a = std::log(point.setting), b = std::log(*point.error);
+    n += 1;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  if (n < 2) return std::nullopt;
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace impact_damper::bench
