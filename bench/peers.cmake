@@ -12,9 +12,8 @@ function(peer name files)
   target_link_libraries(impact_damper_bench PRIVATE ${ARGN})
 endfunction()
 
-include(CheckIncludeFileCXX)
-check_include_file_cxx(boost/numeric/odeint.hpp HAVE_ODEINT_HEADERS)
-if(HAVE_ODEINT_HEADERS)
+find_path(ODEINT_HEADERS boost/numeric/odeint.hpp)
+if(ODEINT_HEADERS)
   peer(odeint "peers/odeint.cpp;peers/odeint_reference.cpp")
   # odeint copies steppers whose scratch arrays were never written.
   target_compile_options(bench_odeint PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)

@@ -81,6 +81,7 @@ Json json_of(const Sweep& sweep) {
   for (const SweepPoint& point : sweep.points) {
     Json row{{"at", point.at},
              {"impacts", point.impacts},
+             {"half_cycles", point.half_cycles},
              {"yardsticks_per_impact", point.cost()},
              {"ledger_residual", point.residual}};
     add(row, point.timing);

@@ -146,13 +146,17 @@ void add_sweeps(std::string& page, const Findings& found) {
     }
     if (columns.empty()) continue;
     Cells headings{columns[0]->what};
-    for (const Sweep* sweep : columns) headings.push_back(sweep->engine);
+    for (const Sweep* sweep : columns) {
+      headings.push_back(sweep->engine);
+      headings.push_back("impacts in a half cycle");
+    }
     PageTable table(page, headings);
     for (std::size_t i = 0; i < columns[0]->points.size(); ++i) {
       Cells cells{printed("%g", columns[0]->points[i].at)};
       for (const Sweep* sweep : columns) {
         const SweepPoint& point = sweep->points[i];
         cells.push_back(printed("%.1f (%.0e)", point.cost(), point.residual));
+        cells.push_back(printed("%.1f", double(point.impacts) / double(point.half_cycles)));
       }
       table.row(cells);
     }

@@ -13,7 +13,7 @@ std::vector<BenchScene> bench_scenes() {
        .with_others = true},
       {.name = "S4",
        .what = "forced and damped to t = 100",
-       .scene = {.damping_ratio = 0.01, .x0 = 4.5, .force_amplitude = 0.1, .until_time = 100}},
+       .scene = {.damping_ratio = 0.01, .x0 = 6, .force_amplitude = 0.05, .until_time = 100}},
       {.name = "S5",
        .what = "the whole decay, 6 to 0.03",
        .scene = {.x0 = 6, .until_amplitude = 0.03},

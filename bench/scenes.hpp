@@ -20,7 +20,8 @@ struct BenchScene {
 //   S1  regular motion just above the first chaotic range, x0 = 4.5 to t = 100
 //   S2  the same with rigid walls
 //   S3  bounce-down and stuck, x0 = 6 to t = 400
-//   S4  forced at resonance and damped, zeta = 0.01: a growing, regular motion of several impacts to t = 100
+//   S4  forced at resonance, f0 = 0.05, and damped, zeta = 0.01: x0 = 6 to t = 100, from bounce-down to two
+//       impacts in a half cycle; a shift of x0 does not grow on the way
 //   S5  the whole decay from 6 to 0.03: chaotic in its middle
 // nu = 0.02, e = 0.6, k = 1e4; zeta = 0 and no force but in S4. (S6, the figures, is no scene: figure_set.hpp.)
 std::vector<BenchScene> bench_scenes();

@@ -24,6 +24,7 @@ SweepPoint measure_point(double at, const Scene& scene, const Options& options) 
   QuietObserver accountant(true);
   run(scene, options, accountant);
   point.impacts = accountant.impacts;
+  point.half_cycles = accountant.rows;
   point.residual = std::abs(accountant.ledger().residual);
 
   const auto once = [&] {
@@ -53,18 +54,18 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   all.push_back(impacts);
 
   if constexpr (std::same_as<Options, Exact>) {
-    Sweep stiffness{name, "stiffness", "wall stiffness k, e = 0.6, decay from 6 to 0.1", {}};
+    Sweep stiffness{name, "stiffness", "wall stiffness k, e = 0.6, decay from 6 to 0.5", {}};
     for (double k = 1e2; k < 2e10; k *= 10) {
-      add(stiffness, k, {.wall_stiffness = k, .x0 = 6, .until_amplitude = 0.1}, {});
+      add(stiffness, k, {.wall_stiffness = k, .x0 = 6, .until_amplitude = 0.5}, {});
     }
     all.push_back(stiffness);
   }
 
-  Sweep restitution{name, "restitution", "restitution e, decay from 6 to 0.1", {}};
+  Sweep restitution{name, "restitution", "restitution e, decay from 6 to 0.5", {}};
   for (const double e : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99}) {
     Options options;
     options.budget.max_impacts = 20'000;
-    add(restitution, e, {.restitution = e, .x0 = 6, .until_amplitude = 0.1}, options);
+    add(restitution, e, {.restitution = e, .x0 = 6, .until_amplitude = 0.5}, options);
   }
   all.push_back(restitution);
 }

@@ -68,7 +68,7 @@ std::vector<Contender> central_differences_peers() {
              const double nu = scene.mass_ratio;
              const double contact_time =
                  std::numbers::pi / std::sqrt(scene.wall_stiffness / nu * (1 + nu));
-             return geometric(contact_time / 8, 0.5, 12);
+             return geometric(contact_time / 2, 0.5, 14);
            },
            run}};
 }
