@@ -13,6 +13,7 @@
 #include "findings.hpp"
 #include "impact_damper/files/file_output.hpp"
 #include "peers/peers.hpp"
+#include "reference.hpp"
 #include "report.hpp"
 
 namespace impact_damper::bench {
@@ -49,7 +50,12 @@ void measure_curves(const Limits& limits, Findings& found, std::vector<double>& 
         if (!reference) {
           tell(scene.name + " reference");
           found.references.push_back(reference_of(scene, contender.walls));
-          reference = &found.references.back();
+          Reference& made = found.references.back();
+          if (contender.walls == scene.walls && !scene.chaotic) {
+            const auto independent = independent_amplitudes(scene.scene, scene.walls);
+            if (independent) made.from_independent = amplitude_error(*independent, made.amplitude);
+          }
+          reference = &made;
         }
         found.curves.push_back(measure_curve(scene, contender, own, *reference, limits, {tell, tell_point}));
         for (const Point& point : found.curves.back().points) {

@@ -1,4 +1,4 @@
-# The peers whose packages are there; each sees only its own libraries.
+# The peers whose packages are there, for the bench's program alone; each sees only its own libraries.
 
 # peer(NAME FILES LIBRARIES...): compiled apart, with warnings of foreign templates off.
 function(peer name files)
@@ -6,10 +6,10 @@ function(peer name files)
   target_include_directories(bench_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(bench_${name} PRIVATE impact_damper_options ${ARGN})
   target_compile_options(bench_${name} PRIVATE -Wno-missing-field-initializers)
-  target_sources(impact_damper_bench PRIVATE $<TARGET_OBJECTS:bench_${name}>)
+  target_sources(impact-damper-bench PRIVATE $<TARGET_OBJECTS:bench_${name}>)
   string(TOUPPER ${name} upper)
-  target_compile_definitions(impact_damper_bench PRIVATE HAVE_${upper})
-  target_link_libraries(impact_damper_bench PRIVATE ${ARGN})
+  target_compile_definitions(impact-damper-bench PRIVATE HAVE_${upper})
+  target_link_libraries(impact-damper-bench PRIVATE ${ARGN})
 endfunction()
 
 find_path(ODEINT_HEADERS boost/numeric/odeint.hpp)

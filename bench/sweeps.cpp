@@ -1,6 +1,5 @@
 #include "sweeps.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "impact_damper/engines/exact.hpp"
@@ -71,11 +70,6 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
 }
 
 }  // namespace
-
-double Sweep::flatness() const {
-  const auto [least, most] = std::ranges::minmax_element(points, {}, &SweepPoint::cost);
-  return most->cost() / least->cost();
-}
 
 std::vector<Sweep> measure_sweeps(double most_impacts, const std::function<void(const std::string&)>& told) {
   std::vector<Sweep> all;

@@ -24,8 +24,6 @@ struct Sweep {
   std::string against;  // "impacts", "stiffness", "restitution"
   std::string what;     // in words
   std::vector<SweepPoint> points;
-
-  double flatness() const;  // largest cost by smallest
 };
 
 //   impacts      e = 1, released at x0 = 6, stopped after 1e2, 1e3, ... 1e7 impacts

@@ -90,7 +90,7 @@ void measure_flatness(const Findings& found, const std::string& engine, const st
   for (const Sweep& sweep : found.sweeps) {
     if (sweep.engine != engine || sweep.against != against) continue;
     const auto [least, most] = std::ranges::minmax_element(sweep.points, {}, &SweepPoint::cost);
-    target.measured = sweep.flatness();
+    target.measured = most->cost() / least->cost();
     target.note = digits(least->cost(), "%.1f") + " yardsticks at " + digits(least->at) + " to " +
                   digits(most->cost(), "%.1f") + " at " + digits(most->at);
   }
@@ -157,6 +157,11 @@ std::vector<Target> targets_of(const Findings& found) {
     add(at_most(sweep.engine + ": cost per impact against " + sweep.against + ", largest by smallest", 2, {},
                 "x"),
         [&](Target& t) { measure_flatness(found, sweep.engine, sweep.against, t); });
+  }
+  for (const Reference& reference : found.references) {
+    if (!reference.from_independent) continue;
+    add(at_most("reference of " + reference.scene + ": distance from another integrator's", 1e-14, {}),
+        [&](Target& t) { t.measured = reference.from_independent; });
   }
   add(at_least("an ensemble on 2 threads against 1", 1.8, {}), [&](Target& t) {
     t.measured = found.speedup.ratio.median;

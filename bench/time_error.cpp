@@ -3,7 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "peers/peers.hpp"
 #include "reference.hpp"
 
 namespace impact_damper::bench {
@@ -30,11 +29,6 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
   // Where the reference is long double itself there is nothing to hold it against.
   if (reference_scalar() != "long double") {
     reference.from_long_double = amplitude_error(in_long_double, reference.amplitude);
-  }
-  if (walls == scene.walls) {
-    if (const auto independent = independent_amplitudes(scene.scene, walls)) {
-      reference.from_independent = amplitude_error(*independent, reference.amplitude);
-    }
   }
   return reference;
 }

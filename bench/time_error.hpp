@@ -19,7 +19,7 @@ struct Reference {
   Walls walls = Walls::compliant;
   std::vector<double> amplitude;              // of the exact or restitution engine in higher precision
   std::optional<double> from_long_double;     // its distance from the same engine in long double
-  std::optional<double> from_independent;     // and from another integrator in its own precision
+  std::optional<double> from_independent;     // and from another integrator's, which the caller has
   std::optional<EnsembleCurve> loss_curve;    // chaotic scenes: this instead of all those
 
   std::optional<double> error_of(const Rows& rows) const;
