@@ -2,8 +2,8 @@
 //
 //   impact-damper-bench FOLDER [--quick]
 //
-// writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. --quick is for
-// trying it out: short runs, few repeats.
+// writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. --quick is
+// for trying it out: short runs, few repeats.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -78,7 +78,8 @@ void measure_curves(const Limits& limits, Findings& found, std::vector<double>& 
 void print(const std::vector<Target>& targets) {
   for (const Target& target : targets) {
     char measured[32] = "-";
-    if (target.measured) std::snprintf(measured, sizeof measured, "%.3g %s", *target.measured, target.unit.c_str());
+    if (target.measured)
+      std::snprintf(measured, sizeof measured, "%.3g %s", *target.measured, target.unit.c_str());
     std::printf("%-4s%-74s%s %-8g%-14s%s\n", target.met() ? "" : "NO", target.what.c_str(),
                 target.at_most ? "<=" : ">=", target.bound, measured, target.note.c_str());
   }

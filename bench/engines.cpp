@@ -26,7 +26,8 @@ std::vector<double> time_steps(const Scene& scene) {
 }
 
 Contender stepping(const std::string& name, Cem options) {
-  return {name, Walls::compliant, "time step", time_steps, [options](const Scene& scene, double step) mutable {
+  return {name, Walls::compliant, "time step", time_steps,
+          [options](const Scene& scene, double step) mutable {
             options.time_step = step;
             return rows_of(simulate(scene, options, {.half_cycles = true}));
           }};
@@ -36,8 +37,7 @@ Contender stepping(const std::string& name, Cem options) {
 
 std::vector<Contender> engines() {
   return {closed_form("exact", Walls::compliant, Exact{}),
-          closed_form("restitution", Walls::rigid, Restitution{}),
-          stepping("cem", Cem{}),
+          closed_form("restitution", Walls::rigid, Restitution{}), stepping("cem", Cem{}),
           stepping("cem located", Cem{.locate = true})};
 }
 

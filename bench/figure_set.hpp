@@ -1,5 +1,5 @@
-// S6: everything behind the paper's figures, in process and on one core: the eight scenes, and from their runs
-// all tables that gnuplot draws, as text. Only files are not touched.
+// S6: everything behind the paper's figures, in process and on one core: the eight scenes, and from their
+// runs all tables that gnuplot draws, as text. Only files are not touched.
 #pragma once
 
 #include <filesystem>

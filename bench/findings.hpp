@@ -46,7 +46,9 @@ struct Target {
   std::optional<double> measured;
   std::string note;
 
-  bool reaches(double number) const { return measured && (at_most ? *measured <= number : *measured >= number); }
+  bool reaches(double number) const {
+    return measured && (at_most ? *measured <= number : *measured >= number);
+  }
   bool met() const { return reaches(bound); }
 };
 std::vector<Target> targets_of(const Findings& findings);

@@ -1,5 +1,5 @@
-// What the bench concludes from its measurements: errors of chaotic decays, times at an error, orders, targets;
-// and what the peers are built on.
+// What the bench concludes from its measurements: errors of chaotic decays, times at an error, orders,
+// targets; and what the peers are built on.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -69,7 +69,8 @@ TEST_CASE("a finer setting that is worse by luck does not undo a coarser one") {
 
 TEST_CASE("the observed order of a power law is its exponent, errors above the bound left out") {
   const Curve curve =
-      curve_of("S3", "cem", {{1, 0.5, 1}, {0.5, 3 * 0.25e-3, 1}, {0.25, 3 * 0.0625e-3, 1}, {0.125, 3 * 0.015625e-3, 1}});
+      curve_of("S3", "cem",
+               {{1, 0.5, 1}, {0.5, 3 * 0.25e-3, 1}, {0.25, 3 * 0.0625e-3, 1}, {0.125, 3 * 0.015625e-3, 1}});
   CHECK(*observed_order(curve, 1e-3) == Approx(2));
   CHECK(*observed_order(curve, 1) > 2.5);
   CHECK(!observed_order(curve, 1e-5));
@@ -98,7 +99,8 @@ TEST_CASE("the error of a loss curve is its relative distance from the median") 
   CHECK(curve_error(ensemble, {1.03, 2, 4}) == Approx(0.03 / std::sqrt(3)));
 }
 
-TEST_CASE("another restitution shows in the loss curve far beyond the ensemble's scatter, a member does not") {
+TEST_CASE(
+    "another restitution shows in the loss curve far beyond the ensemble's scatter, a member does not") {
   const Scene decay{.x0 = 6, .until_amplitude = 0.03};
   const EnsembleCurve ensemble = ensemble_curve(decay, Exact{}, 9);
   CHECK(ensemble.lower > 0);

@@ -17,8 +17,8 @@ std::optional<std::vector<double>> loss_curve(const std::vector<double>& peak_ti
                                               const std::vector<double>& amplitude);
 
 struct EnsembleCurve {
-  std::vector<double> median;                         // eta, at each of the amplitudes
-  double lower = 0, scatter = 0, upper = 0;           // quartiles and median of its own members' errors
+  std::vector<double> median;                // eta, at each of the amplitudes
+  double lower = 0, scatter = 0, upper = 0;  // quartiles and median of its own members' errors
 };
 EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine, int members);
 

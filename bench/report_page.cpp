@@ -72,7 +72,8 @@ void add_times(std::string& page, const Findings& found) {
       "![Run time against error, scene by scene](time_error.svg)\n\n"
       "Milliseconds, in brackets yardsticks; —: the error is not reached. Interpolated between settings on "
       "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
-      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor by the median of "
+      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor by the median "
+      "of "
       "an ensemble of 32, less 1.\n";
   for (const BenchScene& scene : found.scenes) {
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
@@ -93,8 +94,8 @@ void add_times(std::string& page, const Findings& found) {
       table.row({curve.contender, time_cell(found, curve, errors[0]), time_cell(found, curve, errors[1]),
                  rounded(*best->error),
                  rounded(best->timing.seconds.median * 1e3) + " ms (" +
-                     printed("%.0f ± %.0f %%", time.median,
-                             50 * (time.upper - time.lower) / time.median) + ")",
+                     printed("%.0f ± %.0f %%", time.median, 50 * (time.upper - time.lower) / time.median) +
+                     ")",
                  curve.setting.empty() ? "" : curve.setting + " " + printed("%.1e", best->setting),
                  std::to_string(best->timing.repeats)});
     }
@@ -104,16 +105,17 @@ void add_times(std::string& page, const Findings& found) {
 void add_references(std::string& page, const Findings& found) {
   page += "\n## What the errors are measured from\n\n";
   page += "The engine for the walls in question in " + std::string(reference_scalar()) +
-          "; Runge-Kutta-Fehlberg 78 of odeint in the same precision, tolerance 1e-20, as another integrator.\n\n";
+          "; Runge-Kutta-Fehlberg 78 of odeint in the same precision, tolerance 1e-20, as another "
+          "integrator.\n\n";
   PageTable table(page, {"", "distance from long double", "from another integrator", "members' scatter"});
   const auto cell = [](const std::optional<double>& number) { return number ? rounded(*number) : "—"; };
   for (const Reference& reference : found.references) {
     table.row({reference.scene + (reference.walls == Walls::compliant ? ", compliant" : ", rigid"),
                cell(reference.from_long_double), cell(reference.from_independent),
-               reference.loss_curve ? rounded(reference.loss_curve->scatter) + " (" +
-                                          rounded(reference.loss_curve->lower) + " to " +
-                                          rounded(reference.loss_curve->upper) + ")"
-                                    : ""});
+               reference.loss_curve
+                   ? rounded(reference.loss_curve->scatter) + " (" + rounded(reference.loss_curve->lower) +
+                         " to " + rounded(reference.loss_curve->upper) + ")"
+                   : ""});
   }
 }
 
@@ -167,14 +169,14 @@ void add_sweeps(std::string& page, const Findings& found) {
 void add_rest(std::string& page, const Findings& found) {
   const FigureSet& set = found.figures;
   page += "## The figures' scenes and tables\n\n" + std::to_string(set.scenes) + " scenes, " +
-          std::to_string(set.tables) + " tables, " + printed("%.1f", double(set.bytes) / 1e6) + " MB of text: " +
-          rounded(set.timing.seconds.median * 1e3) + " ms (" +
+          std::to_string(set.tables) + " tables, " + printed("%.1f", double(set.bytes) / 1e6) +
+          " MB of text: " + rounded(set.timing.seconds.median * 1e3) + " ms (" +
           printed("%.0f", set.timing.yardsticks.median) + "). Where it goes:\n\n";
   PageTable parts(page, {"", "share"});
   for (const FigureSet::Part& part : set.parts) parts.row({part.name, printed("%.0f %%", 100 * part.share)});
 
-  page += "\n## Two threads\n\n" + std::to_string(found.speedup.members) + " decays from 6 to 0.03: " +
-          rounded(found.speedup.one.median * 1e3) + " ms on one thread, " +
+  page += "\n## Two threads\n\n" + std::to_string(found.speedup.members) +
+          " decays from 6 to 0.03: " + rounded(found.speedup.one.median * 1e3) + " ms on one thread, " +
           rounded(found.speedup.two.median * 1e3) + " ms on two; " +
           printed("%.2f (quartiles %.2f to %.2f)", found.speedup.ratio.median, found.speedup.ratio.lower,
                   found.speedup.ratio.upper) +

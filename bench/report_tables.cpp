@@ -42,8 +42,8 @@ std::string time_error_table(const Findings& found) {
       add_row(rows, {*point.error, time.median, time.lower, time.upper, point.setting});
     }
     if (rows.empty()) continue;
-    text += "\n\n# " + block_name(curve.scene + "-" + curve.contender) + "\nerror time lower upper setting\n" +
-            rows;
+    text += "\n\n# " + block_name(curve.scene + "-" + curve.contender) +
+            "\nerror time lower upper setting\n" + rows;
   }
   for (const Reference& reference : found.references) {
     if (!reference.loss_curve) continue;
@@ -57,7 +57,8 @@ std::string time_error_table(const Findings& found) {
 std::string sweep_table(const Findings& found) {
   std::string text =
       "# What an impact costs, drawn by bench/cost.gp.\n"
-      "# cost, lower, upper: median and quartiles, in yardsticks; residual: of the ledger, relative, at least "
+      "# cost, lower, upper: median and quartiles, in yardsticks; residual: of the ledger, relative, at "
+      "least "
       "2^-53\n"
       "# Parameters: " +
       parameters(found) + "\n";

@@ -33,8 +33,8 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
   return reference;
 }
 
-Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours, const Reference& reference,
-                    const Limits& limits, const Told& told) {
+Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours,
+                    const Reference& reference, const Limits& limits, const Told& told) {
   Curve curve{.scene = scene.name,
               .contender = contender.name,
               .walls = contender.walls,

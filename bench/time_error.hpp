@@ -17,10 +17,10 @@ namespace impact_damper::bench {
 struct Reference {
   std::string scene;
   Walls walls = Walls::compliant;
-  std::vector<double> amplitude;              // of the exact or restitution engine in higher precision
-  std::optional<double> from_long_double;     // its distance from the same engine in long double
-  std::optional<double> from_independent;     // and from another integrator's, which the caller has
-  std::optional<EnsembleCurve> loss_curve;    // chaotic scenes: this instead of all those
+  std::vector<double> amplitude;            // of the exact or restitution engine in higher precision
+  std::optional<double> from_long_double;   // its distance from the same engine in long double
+  std::optional<double> from_independent;   // and from another integrator's, which the caller has
+  std::optional<EnsembleCurve> loss_curve;  // chaotic scenes: this instead of all those
 
   std::optional<double> error_of(const Rows& rows) const;
 };
@@ -56,8 +56,8 @@ struct Told {
   std::function<void(const std::string& what)> curve;
   std::function<void(const Curve&, const Point&)> point;
 };
-Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours, const Reference& reference,
-                    const Limits& limits, const Told& told);
+Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours,
+                    const Reference& reference, const Limits& limits, const Told& told);
 
 // Yardsticks that a curve takes for an error: on the straight line, in logarithms of both, from the last
 // setting that misses `error` to the first that meets it. Absent if none does.

@@ -15,7 +15,8 @@ class Arkode {
   Arkode(Problem& problem, N_Vector u, SUNContext context, double tolerance)
       : memory_(ERKStepCreate(derivative, 0, u, context)) {
     // What it says on stderr of two roots near each other, see advance.
-    require(ERKStepSetErrHandlerFn(memory_, [](int, const char*, const char*, char*, void*) {}, nullptr),
+    require(ERKStepSetErrHandlerFn(
+                memory_, [](int, const char*, const char*, char*, void*) {}, nullptr),
             "ERKStepSetErrHandlerFn");
     require(ERKStepSetUserData(memory_, &problem), "ERKStepSetUserData");
     require(ERKStepSStolerances(memory_, tolerance, tolerance), "ERKStepSStolerances");

@@ -14,8 +14,7 @@ using namespace sundials;
 class Cvode {
  public:
   Cvode(Problem& problem, N_Vector u, SUNContext context, double tolerance)
-      : memory_(CVodeCreate(CV_ADAMS, context)),
-        solver_(SUNNonlinSol_FixedPoint(u, 0, context)) {
+      : memory_(CVodeCreate(CV_ADAMS, context)), solver_(SUNNonlinSol_FixedPoint(u, 0, context)) {
     require(CVodeInit(memory_, derivative, 0, u), "CVodeInit");
     require(CVodeSetUserData(memory_, &problem), "CVodeSetUserData");
     require(CVodeSStolerances(memory_, tolerance, tolerance), "CVodeSStolerances");

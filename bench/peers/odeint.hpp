@@ -3,7 +3,8 @@
 //
 // After every step the guards and x, x' are compared at its two ends; what changed sign is solved for by
 // Newton's method inside a bracket, to the last bits of the step. A gap that closes and opens again within a
-// step is looked for where the cubic through its two ends dips. Each regime keeps the step length that it last went with.
+// step is looked for where the cubic through its two ends dips. Each regime keeps the step length that it
+// last went with.
 #pragma once
 
 #include <algorithm>
@@ -107,7 +108,11 @@ class OdeintRun {
   using State = typename HybridSystem<Real>::State;
 
   OdeintRun(const Scene& scene, Walls walls, const Real& tolerance)
-      : scene_(scene), system_(scene, walls), view_{&system_}, stepper_(tolerance), rows_(scene.x0, scene.until_amplitude) {
+      : scene_(scene),
+        system_(scene, walls),
+        view_{&system_},
+        stepper_(tolerance),
+        rows_(scene.x0, scene.until_amplitude) {
     longest_.fill(Real(0.5));
     longest_[std::size_t(Regime::left)] = longest_[std::size_t(Regime::right)] = system_.contact_time() / 2;
     steps_ = longest_;

@@ -13,8 +13,8 @@ namespace {
 
 SiconosScene siconos_scene(const Scene& scene) {
   if (!scene.until_time || scene.force_amplitude != 0) throw std::invalid_argument("not a scene for Siconos");
-  return {scene.mass_ratio, scene.restitution, scene.damping_ratio, scene.x0,
-          scene.v0,         scene.y0,          scene.w0,            *scene.until_time};
+  return {scene.mass_ratio, scene.restitution, scene.damping_ratio, scene.x0, scene.v0,
+          scene.y0,         scene.w0,          *scene.until_time};
 }
 
 }  // namespace

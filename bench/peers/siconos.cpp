@@ -4,11 +4,12 @@
 // z - x >= 0 and 1 - z + x >= 0, and Newton's impact law. Between the steps or events that Siconos delivers
 // x is harmonic where nothing damps or forces it, so its largest value follows from x and x' at hand: the
 // peaks cost the peer no accuracy.
+#include "peers/siconos.hpp"
+
 #include <SiconosKernel.hpp>
 #include <cmath>
 
 #include "peers/row_book.hpp"
-#include "peers/siconos.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -51,8 +51,7 @@ struct Context {
 };
 struct Vector {
   N_Vector vector;
-  Vector(const System::State& from, SUNContext context)
-      : vector(N_VNew_Serial(System::events, context)) {
+  Vector(const System::State& from, SUNContext context) : vector(N_VNew_Serial(System::events, context)) {
     state_of(vector) = from;
   }
   ~Vector() { N_VDestroy(vector); }
@@ -95,10 +94,9 @@ template <class Solver>
 std::vector<Contender> contenders(const char* name) {
   std::vector<Contender> all;
   for (const Walls walls : {Walls::compliant, Walls::rigid}) {
-    all.push_back({name, walls, "tolerance", [](const Scene&) { return geometric(1e-4, 0.1, 11); },
-                   [walls](const Scene& scene, double tolerance) {
-                     return run<Solver>(scene, walls, tolerance);
-                   }});
+    all.push_back(
+        {name, walls, "tolerance", [](const Scene&) { return geometric(1e-4, 0.1, 11); },
+         [walls](const Scene& scene, double tolerance) { return run<Solver>(scene, walls, tolerance); }});
   }
   return all;
 }
