@@ -91,8 +91,12 @@ int bench(const std::filesystem::path& folder, bool quick) {
     require_writable(folder / name);
   }
   const auto begin = std::chrono::steady_clock::now();
-  const Limits limits =
-      quick ? Limits{.longest_run = 0.03, .repeated_fully = 1, .repeats = 3, .few = 3} : Limits{};
+  const Limits limits = quick ? Limits{.longest_run = 0.03,
+                                       .longest_chaotic_run = 0.03,
+                                       .repeated_fully = 1,
+                                       .repeats = 3,
+                                       .few = 3}
+                              : Limits{};
 
   Findings found{.processor = processor(), .scenes = bench_scenes(), .missing_peers = missing_peers()};
   for (const std::string& peer : found.missing_peers) tell("Not in this build: " + peer);

@@ -73,8 +73,7 @@ void add_times(std::string& page, const Findings& found) {
       "Milliseconds, in brackets yardsticks; —: the error is not reached. Interpolated between settings on "
       "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
       "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor by the median "
-      "of "
-      "an ensemble of 32, less 1.\n";
+      "of an ensemble of 32, less 1; the median of that over five releases.\n";
   for (const BenchScene& scene : found.scenes) {
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
     const double errors[] = {scene.chaotic ? 0.1 : 1e-6, scene.chaotic ? 0.03 : 1e-9};

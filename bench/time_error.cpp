@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "reference.hpp"
 
 namespace impact_damper::bench {
@@ -33,6 +34,24 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
   return reference;
 }
 
+namespace {
+
+// The error of a run whose rows are at hand. In a chaotic scene that is a matter of luck: the median over as
+// many releases as EnsembleOptions shifts, the scene's own among them.
+std::optional<double> error_of_setting(const BenchScene& scene, const Contender& contender, double setting,
+                                       const Rows& own, const Reference& reference) {
+  if (!scene.chaotic) return reference.error_of(own);
+  std::vector<double> errors;
+  for (const Scene& release : ensemble_of(scene.scene, {.members = 5})) {
+    const auto error = reference.error_of(release == scene.scene ? own : contender.run(release, setting));
+    if (!error) return std::nullopt;
+    errors.push_back(*error);
+  }
+  return spread_of(errors).median;
+}
+
+}  // namespace
+
 Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours,
                     const Reference& reference, const Limits& limits, const Told& told) {
   Curve curve{.scene = scene.name,
@@ -46,7 +65,8 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
     // As much longer than the last as that was than the one before.
     if (!seconds.empty()) {
       const double before = seconds.size() > 1 ? seconds[seconds.size() - 2] : seconds.back();
-      if (seconds.back() * std::max(1.0, seconds.back() / before) > limits.longest_run) {
+      const double longest = scene.chaotic ? limits.longest_chaotic_run : limits.longest_run;
+      if (seconds.back() * std::max(1.0, seconds.back() / before) > longest) {
         curve.cut = true;
         break;
       }
@@ -56,7 +76,7 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
       Rows rows;
       const double first = cpu_seconds([&] { rows = contender.run(scene.scene, setting); });
       point.impacts = rows.impacts;
-      point.error = reference.error_of(rows);
+      point.error = error_of_setting(scene, contender, setting, rows, reference);
       const int repeats = first > limits.repeated_fully ? limits.few : limits.repeats;
       point.timing = measure([&] { contender.run(scene.scene, setting); }, repeats, first);
     } catch (const std::exception& error) {
