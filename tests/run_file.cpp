@@ -24,6 +24,14 @@ Engine lagged_cem() {
   return engine;
 }
 
+Engine cem_of_two_rates() {
+  Cem engine;
+  engine.time_step = 1e-4;
+  engine.locate = true;
+  engine.large_step = 0.1;
+  return engine;
+}
+
 Engine two_body_exact() {
   Exact engine;
   engine.calibration = Calibration::two_body;
@@ -125,7 +133,8 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
 }
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
-  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), Engine(Cem{})}) {
+  for (const Engine& engine :
+       {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(), Engine(Cem{})}) {
     Run run = full_run(engine);
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
     CHECK(parse_run("r.json", run_text(run)).engine == engine);

@@ -71,6 +71,7 @@ void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
       {"--time-step", {Cem::name}},
       {"--damper", {Cem::name}},
       {"--locate", {Cem::name}},
+      {"--large-step", {Cem::name}},
       {"--unstable", {Cem::name}},
       {"--max-steps", {Cem::name}},
       {"--calibration", {Exact::name, Cem::name}},
@@ -108,6 +109,7 @@ Engine engine_of(Arguments& arguments) {
   engine.time_step = arguments.number("--time-step", above(0));
   engine.damper = arguments.choice("--damper", {Damper::centred, Damper::lagged}, Damper::centred);
   engine.locate = arguments.given("--locate");
+  engine.large_step = arguments.number("--large-step", above(0));
   engine.unstable = arguments.given("--unstable");
   engine.calibration = calibration;
   if (const auto most = arguments.whole_number("--max-steps", at_least(1))) engine.max_steps = *most;
@@ -255,6 +257,10 @@ void add_engine_options(CLI::App& app) {
       "cem: the velocity the wall's damper sees, centred (default)\n"
       "or lagged (one step behind)");
   add_flag("--locate", "cem: locate touch and release inside the step");
+  add("--large-step", "H",
+      "cem: steps of up to H, for instance 0.05, while no wall can be\n"
+      "met, the time step near contact only; a number > the time step\n"
+      "and < 2, with forcing at most half its period. Best with --locate");
   add_flag("--unstable", "cem: run even with a step beyond the stability limit");
   add("--accumulation-tolerance", "X",
       "restitution: bounce-down jumps to its end once the relative\n"

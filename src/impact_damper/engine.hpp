@@ -54,7 +54,10 @@ struct Cem {
   // mass, pi, and with forcing half a period of that, pi/omega_f.
   std::optional<double> time_step;
   Damper damper = Damper::centred;
-  bool locate = false;    // locate touch and release inside the step
+  bool locate = false;  // locate touch and release inside the step
+  // H, > h and < 2 and at most pi/omega_f with forcing: steps up to this long while no wall can be met
+  // (cem_rates.hpp); absent: all steps are h.
+  std::optional<double> large_step;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
   std::int64_t max_steps = 1'000'000'000;  // > 0; a budget like the others, for steps too small for the scene

@@ -35,19 +35,43 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
   if (options.max_steps < 1) return {{"max_steps", "must be >= 1, got " + std::to_string(options.max_steps)}};
   const double h = options.time_step.value();
   if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0 and finite, got " + number_text(h)}};
+  std::vector<Problem> problems;
   const double limit = stability_limit(scene, options.damper, options.calibration);
-  if (h <= limit || options.unstable) return {};
-  return {{"time_step",
-           "must be <= " + rounded_down(limit) + ", got " + number_text(h) +
-               ": beyond this stability limit the fastest mode in contact grows (angular frequency " +
-               rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
-               " damper); take a smaller step, or run it all the same with --unstable"}};
+  if (!(h <= limit || options.unstable)) {
+    problems.push_back(
+        {"time_step",
+         "must be <= " + rounded_down(limit) + ", got " + number_text(h) +
+             ": beyond this stability limit the fastest mode in contact grows (angular frequency " +
+             rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
+             " damper); take a smaller step, or run it all the same with --unstable"});
+  }
+  if (options.large_step) {
+    const double large = *options.large_step;
+    const double half_period = scene.force_amplitude != 0 ? std::numbers::pi / scene.force_frequency : 2;
+    if (!(large > h && large < 2)) {
+      problems.push_back({"large_step", "must be > " + rounded(h) +
+                                            ", the time step, and < 2, the stability limit in flight, got " +
+                                            number_text(large)});
+    } else if (!(large <= half_period)) {
+      problems.push_back({"large_step", "must be <= " + rounded_down(half_period) +
+                                            ", half a period of the forcing, got " + number_text(large)});
+    }
+  }
+  return problems;
 }
 
 void require_no_problems(const Scene& scene, const Cem& options) {
+  std::string all;
   for (const Problem& problem : problems_of(scene, options)) {
-    throw std::invalid_argument(problem.field + ": " + problem.message);
+    if (!all.empty()) all += '\n';
+    all += problem.field + ": " + problem.message;
   }
+  if (!all.empty()) throw std::invalid_argument(all);
+}
+
+std::int64_t whole_steps(double steps) {
+  constexpr double many = 1e15;
+  return steps < 1 ? 1 : steps < many ? std::int64_t(std::ceil(steps)) : std::int64_t(many);
 }
 
 void fail_of_overflow(double time, double step) {

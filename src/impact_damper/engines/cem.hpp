@@ -8,9 +8,11 @@
 // method steps exactly onto the event and starts anew from there, and is of second order (first with the
 // lagged damper). Two crossings of a wall within one step are not seen.
 //
+// With `large_step` the steps are small only near contact (cem_rates.hpp).
+//
 // Observations (zero crossing, peak, history, and touch and release without `locate`) are read off the
 // parabola through three steps, errors O(h^3) in position and O(h^2) in velocity. Times are counted, n h
-// from the start or the last located event, not accumulated.
+// from the start, the last located event or the last change of step, not accumulated.
 //
 // Energy. The scheme conserves |d/h|^2_M / 2 + u_n.K u_{n+1} / 2 within a regime but for the sums
 // of damping and forcing power at the steps, so those sums are the ledger's losses. The residual holds what
@@ -36,12 +38,15 @@ namespace impact_damper {
 Cem resolved(const Scene& scene, Cem options);
 
 // What is wrong with the (resolved) options: no steps admitted, a step that is no positive number, or one
-// beyond the stability limit without `unstable`. Empty if nothing.
+// beyond the stability limit without `unstable`; a large step that is no larger, beyond the limit in flight,
+// or longer than half a period of the forcing. Empty if nothing.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 // Throws them as std::invalid_argument.
 void require_no_problems(const Scene& scene, const Cem& options);
 
 [[noreturn]] void fail_of_overflow(double time, double step);
+// Rounded up, 1 at least and 1e15 at most.
+std::int64_t whole_steps(double steps);
 
 // The parabola through three successive steps of one coordinate, about the middle one.
 template <class Real>
@@ -93,10 +98,11 @@ class CemEngine {
   void finish(StopReason reason, const Real& at);
 
   // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
-  Real last_step_begin() const { return origin_ + Real(step_ - 1) * h_; }
+  Real last_step_begin() const { return origin_ + Real(step_ - 1) * pace_.h; }
+  Real last_step_end() const { return origin_ + Real(step_) * pace_.h; }
   Arc<Real> arc(Real Moment::*position, Real Moment::*increment) const {
     const Real &before = before_.*increment, &after = now_.*increment;
-    return {before_.*position, (before + after) / (2 * h_), (after - before) / (h_ * h_)};
+    return {before_.*position, (before + after) / (2 * pace_.h), (after - before) / (pace_.h * pace_.h)};
   }
   Arc<Real> x_arc() const { return arc(&Moment::x, &Moment::dx); }
   Arc<Real> q_arc() const { return arc(&Moment::q, &Moment::dq); }
@@ -104,6 +110,36 @@ class CemEngine {
     const Arc<Real> x = x_arc(), q = q_arc();
     return {x.at(at), x.slope_at(at), origin_of_q() + q.at(at), q.slope_at(at)};
   }
+
+  // The same with the velocities by the trapezoid of the accelerations, one order better than the slopes.
+  State<Real> refined(State<Real> s, const Real& at) const {
+    const auto a = acceleration(last_step_begin() + at, s);
+    const Arc<Real> x = x_arc(), q = q_arc();
+    s.v = x.slope + at * (x.bend + a.x) / 2;
+    s.w = q.slope + at * (q.bend + a.q) / 2;
+    return s;
+  }
+
+  // Two rates (cem_rates.hpp).
+  struct Rates {
+    Pace<Real> large, pressed;
+    std::int64_t steps_of_contact;  // small ones
+  };
+  std::int64_t choose_pace();
+  std::int64_t choose_pace_in_flight();
+  std::int64_t choose_pace_in_contact();
+  void change_pace(const Pace<Real>& pace, const State<Real>& s);
+  State<Real> of_scheme(State<Real> s, const Real& time, const Real& h) const;
+  State<Real> flown(const Real& x, const Real& y, const Real& middle_v, const Real& middle_w,
+                    const Real& time, const Real& h) const;
+  Real turn(const Real& h) const;
+  Real lag(const Real& x, const Real& v, const Real& time, const Real& h) const;
+  State<Real> motion_at(const Real& at) const;
+
+  Pace<Real> pace_of(const Real& h) const {
+    return {h, cem_step(flight_, damper_, h), cem_step(contact_, damper_, h)};
+  }
+  Real stiffness() const { return wall_ ? 1 / (1 + flight_.nu) : Real(1); }
 
   Real origin_of_q() const { return wall_ == Wall::right ? Real(1) : Real(0); }
   auto acceleration(const Real& time, const State<Real>& s) const {
@@ -113,6 +149,10 @@ class CemEngine {
   const RegimeEquations<Real>& equations() const { return wall_ ? contact_ : flight_; }
   Real forcing(const Real& time) const {
     return forced_ ? force_.amplitude * sin_cos(Real(force_.frequency * time)).sin : Real(0);
+  }
+  Real forcing_rate(const Real& time) const {
+    return forced_ ? force_.amplitude * force_.frequency * sin_cos(Real(force_.frequency * time)).cos
+                   : Real(0);
   }
 
   Energy energy(const State<Real>& state);
@@ -129,13 +169,15 @@ class CemEngine {
 
   const System<Real> system_;
   const Forcing<Real> force_;
-  const Real h_;
   const RegimeEquations<Real> flight_, contact_;
-  const CemStep<Real> flight_step_, contact_step_;
+  const Pace<Real> small_;  // the time step
   const bool forced_, ledger_;
   const bool peaks_;  // somebody looks at amplitudes
   const State<Real> initial_;
 
+  std::optional<Rates> rates_;  // small_ beside them
+
+  Pace<Real> pace_;           // of the steps since origin_
   Moment before_{}, now_{};   // the last step went from the one to the other
   Real origin_ = 0;           // time of step 0
   std::int64_t step_ = 0;     // number of now_
@@ -167,3 +209,4 @@ Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
 }  // namespace impact_damper
 
 #include "impact_damper/engines/cem_engine.hpp"
+#include "impact_damper/engines/cem_rates.hpp"

@@ -16,16 +16,21 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       observer_(observer),
       system_(scene),
       force_(system_.forcing),
-      h_(options.time_step.value()),
       flight_(regime_equations<Real>(scene, options.calibration, Regime::flight)),
       contact_(regime_equations<Real>(scene, options.calibration, Regime::contact)),
-      flight_step_(cem_step(flight_, options.damper, h_)),
-      contact_step_(cem_step(contact_, options.damper, h_)),
+      small_(pace_of(options.time_step.value())),
       forced_(bool(force_)),
       ledger_(observer.wants_energy()),
       peaks_(observer.wants_half_cycles() || scene.until_amplitude),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
+      pace_(small_),
       steps_left_(options.max_steps) {
+  if (options.large_step) {
+    const Real large = *options.large_step;
+    const Real pressed = stability_limit(scene, options.damper, options.calibration) / 2;
+    rates_ = Rates{pace_of(large), pace_of(std::clamp(pressed, small_.h, large)),
+                   whole_steps(nominal_contact_time(scene) / double(small_.h))};
+  }
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
   // the first derivative of y that is not zero tells.
   const State<Real>& s = initial_;
@@ -48,7 +53,8 @@ Outcome CemEngine<Real, Observer>::run() {
   }
   while (!end_) {
     const Real sample = observer_.next_sample();
-    take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), steps_left_));
+    const std::int64_t most = rates_ ? std::min(choose_pace(), steps_left_) : steps_left_;
+    take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), most));
     look_at_last_step();
   }
   return *end_;
@@ -58,10 +64,10 @@ Outcome CemEngine<Real, Observer>::run() {
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real>& s) {
   const auto a = acceleration(time, s);
-  now_ = {s.x, s.y - origin_of_q(), h_ * (s.v - h_ * a.x / 2), h_ * (s.w - h_ * a.q / 2)};
+  now_ = {s.x, s.y - origin_of_q(), pace_.h * (s.v - pace_.h * a.x / 2), pace_.h * (s.w - pace_.h * a.q / 2)};
   origin_ = time;
   step_ = 0;
-  if (ledger_) add_powers(-h_ / 2, time, s);
+  if (ledger_) add_powers(-pace_.h / 2, time, s);
 }
 
 // At least one; a rounding error short of `time` is made good by the next call.
@@ -70,9 +76,7 @@ std::int64_t CemEngine<Real, Observer>::steps_until(const Real& time) const {
   // Where x still rests, its first movement has to be seen, to know the sides.
   const bool at_rest = !forced_ && !wall_ && now_.x == 0 && now_.dx == 0;
   if ((side_ == 0 || (peaks_ && trend_ == 0)) && !at_rest) return 1;
-  constexpr double many = 1e15;
-  const double steps = double((time - origin_) / h_ - Real(step_));
-  return steps < 1 ? 1 : steps < many ? std::int64_t(std::ceil(steps)) : std::int64_t(many);
+  return whole_steps(double((time - origin_) / pace_.h - Real(step_)));
 }
 
 template <class Real, class Observer>
@@ -91,7 +95,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
 template <class Real, class Observer>
 template <Regime regime, bool forced, bool ledger>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
-  const CemStep<Real> a = regime == Regime::contact ? contact_step_ : flight_step_;
+  const CemStep<Real> a = regime == Regime::contact ? pace_.contact : pace_.flight;
   const Real side = side_, trend = trend_, overlap = wall_ == Wall::left ? Real(-1) : Real(1);
   const bool centred = damper_ == Damper::centred;
   Moment now = now_, before = now_;
@@ -100,7 +104,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   Real f = 0, df = 0, curb = 0;
   if constexpr (forced) {
     most = std::min<std::int64_t>(most, 1024);
-    const Real half = force_.frequency * h_ / 2, time = origin_ + Real(step_) * h_;
+    const Real half = force_.frequency * pace_.h / 2, time = origin_ + Real(step_) * pace_.h;
     const Real sin_half = sin_cos(half).sin;
     f = forcing(time);
     df = 2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos;
@@ -150,8 +154,8 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   step_ += n;
   steps_left_ -= n;
   if constexpr (ledger) {
-    viscous_work_ += flight_.zeta * sum_vv / (2 * h_);
-    if constexpr (regime == Regime::contact) wall_work_ += contact_.nu * contact_.c * sum_ww / (4 * h_);
+    viscous_work_ += flight_.zeta * sum_vv / (2 * pace_.h);
+    if constexpr (regime == Regime::contact) wall_work_ += contact_.nu * contact_.c * sum_ww / (4 * pace_.h);
     if constexpr (forced) forcing_work_ += sum_fv / 2;
   }
 }
@@ -160,21 +164,21 @@ template <class Real, class Observer>
 void CemEngine<Real, Observer>::look_at_last_step() {
   const Real begin = last_step_begin();
   if (!std::isfinite(double(now_.x)) || !std::isfinite(double(now_.q))) {
-    fail_of_overflow(double(begin), double(h_));
+    fail_of_overflow(double(begin), double(pace_.h));
   }
-  const bool last = !(begin + h_ < end_time_);
-  Real span = last ? std::max(end_time_ - begin, Real(0)) : h_;
+  const bool last = !(begin + pace_.h < end_time_);
+  Real span = last ? std::max(end_time_ - begin, Real(0)) : pace_.h;
 
   std::optional<Real> change = wall_crossing();
   if (change && *change > span) change.reset();
   const bool restart = change && locate_;
   if (restart) span = *change;
   std::optional<Real> zero;
-  if (side_ * now_.x < 0) zero = x_arc().times(side_).fall(h_);
+  if (side_ * now_.x < 0) zero = x_arc().times(side_).fall(pace_.h);
   if (zero && *zero > span) zero.reset();
 
   if (trend_ * now_.dx < 0) {
-    consider_peak(step_ == 1 ? Real(0) : -h_ / 2, span);
+    consider_peak(step_ == 1 ? Real(0) : -pace_.h / 2, span);
     trend_ = -trend_;
   } else if (restart && peaks_) {
     consider_peak(Real(0), span);
@@ -201,13 +205,13 @@ std::optional<Real> CemEngine<Real, Observer>::wall_crossing() const {
   if (wall_) {
     const Real overlap = *wall_ == Wall::left ? Real(-1) : Real(1);
     if (overlap * now_.q > 0) return {};
-    return q_arc().times(overlap).fall(h_);
+    return q_arc().times(overlap).fall(pace_.h);
   }
-  if (now_.q < 0) return q_arc().fall(h_);
+  if (now_.q < 0) return q_arc().fall(pace_.h);
   if (now_.q > 1) {
     Arc<Real> gap = q_arc().times(Real(-1));
     gap.g += 1;
-    return gap.fall(h_);
+    return gap.fall(pace_.h);
   }
   return {};
 }
@@ -224,11 +228,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
 
   if (locate_) {
-    // The velocities by the trapezoid of the accelerations, one order better than the arc's slope.
-    const auto a = acceleration(time, s);
-    const Arc<Real> x = x_arc(), q = q_arc();
-    s.v = x.slope + at * (x.bend + a.x) / 2;
-    s.w = q.slope + at * (q.bend + a.q) / 2;
+    s = refined(s, at);
     s.y = (wall_ ? *wall_ : wall) == Wall::right ? 1 : 0;
     if (ledger_) close_powers(at);
   }
@@ -299,7 +299,7 @@ template <class Real, class Observer>
 void CemEngine<Real, Observer>::give_samples(const Real& until) {
   while (observer_.next_sample() <= until) {
     const double time = observer_.next_sample();
-    const State<Real> s = state_at(Real(time) - last_step_begin());
+    const State<Real> s = motion_at(Real(time) - last_step_begin());
     observer_.sample(time, double(s.x), double(s.v), double(s.y), double(s.w));
   }
 }
@@ -310,7 +310,7 @@ void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
   give_samples(time);
   if (ledger_) {
     close_powers(at);
-    observer_.ledger().final = energy(state_at(at));
+    observer_.ledger().final = energy(motion_at(at));
   }
   if (wall_) leave(time);
   if (ledger_) {
@@ -342,7 +342,7 @@ void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time,
 
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::close_powers(const Real& at) {
-  add_powers((at - h_) / 2, last_step_begin(), state_at(Real(0)));
+  add_powers((at - pace_.h) / 2, last_step_begin(), state_at(Real(0)));
   add_powers(at / 2, last_step_begin() + at, state_at(at));
 }
 

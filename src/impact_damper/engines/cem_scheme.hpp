@@ -79,6 +79,13 @@ CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, co
   };
 }
 
+// A step and what it makes of the equations.
+template <class Real>
+struct Pace {
+  Real h{};
+  CemStep<Real> flight{}, contact{};
+};
+
 // The fastest of the undamped modes in contact. With K = k/nu,
 //     omega^2 = (1 + K (1 + nu) + sqrt((1 + K (1 + nu))^2 - 4 K)) / 2 > max(1, K).
 double fastest_contact_frequency(const Scene& scene);

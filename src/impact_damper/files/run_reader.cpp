@@ -67,6 +67,7 @@ Cem read_options(ObjectReader& object, Cem engine) {
   object.required("time_step", engine.time_step, above(0));
   object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
   object.required("locate", engine.locate);
+  object.optional("large_step", engine.large_step, above(0));
   object.required("unstable", engine.unstable);
   engine.calibration = read_calibration(object);
   object.required("max_steps", engine.max_steps, at_least(1));

@@ -123,6 +123,7 @@ void write_options(Writer& out, const Cem& engine) {
   out.field("time_step", engine.time_step);
   out.field("damper", name_of(engine.damper));
   out.field("locate", engine.locate);
+  if (engine.large_step) out.field("large_step", engine.large_step);
   out.field("unstable", engine.unstable);
   out.field("calibration", name_of(engine.calibration));
   out.field("max_steps", engine.max_steps);

@@ -76,6 +76,7 @@ struct EngineOptions {
   std::string operator()(const Cem& cem) const {
     return "cem" + (cem.time_step ? " time_step=" + number_text(*cem.time_step) : "") +
            " damper=" + std::string(name_of(cem.damper)) + " locate=" + (cem.locate ? "true" : "false") +
+           (cem.large_step ? " large_step=" + number_text(*cem.large_step) : "") +
            " calibration=" + std::string(name_of(cem.calibration));
   }
 };
