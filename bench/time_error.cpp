@@ -36,8 +36,8 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
 
 namespace {
 
-// The error of a run whose rows are at hand. In a chaotic scene that is a matter of luck: the median over five
-// releases, shifted as ensembles are, the scene's own among them.
+// The error of a run whose rows are at hand. In a chaotic scene that is a matter of luck: the median over
+// five releases, shifted as ensembles are, the scene's own among them.
 std::optional<double> error_of_setting(const BenchScene& scene, const Contender& contender, double setting,
                                        const Rows& own, const Reference& reference) {
   if (!scene.chaotic) return reference.error_of(own);

@@ -19,16 +19,17 @@ unset key
 
 # What two recorded amplitudes can differ by at all; an error below it is drawn at it.
 floor_of(error) = error > 4.4e-16 ? error : 4.4e-16
-names = "exact restitution cem cem-located cem-two-rates odeint-fehlberg78 odeint-dopri5 CVODE ARKODE ".\
+names = "exact restitution cem cem-two-rates cem-located cem-located-two-rates odeint-fehlberg78 odeint-dopri5 CVODE ARKODE ".\
         "Siconos-Moreau-Jean Siconos-event-driven central-differences"
-array styles[12] = [ \
+array styles[13] = [ \
   "lc rgb black pt 7 ps 1.4", "lc rgb black pt 6 ps 1.4 lw 1.6", \
-  "lc rgb green pt 8 ps 0.8 dt (3,2.5)", "lc rgb green pt 9 ps 0.8", "lc rgb green pt 11 ps 0.8 dt (9,3)", \
+  "lc rgb green pt 8 ps 0.8 dt (3,2.5)", "lc rgb green pt 10 ps 0.8", \
+  "lc rgb orange pt 9 ps 0.8 dt (3,2.5)", "lc rgb orange pt 11 ps 0.8", \
   "lc rgb vermillion pt 5 ps 0.6", "lc rgb vermillion pt 4 ps 0.6 dt (9,3)", \
   "lc rgb blue pt 13 ps 0.8", "lc rgb blue pt 12 ps 0.8 dt (9,3)", \
   "lc rgb purple pt 1 ps 0.8", "lc rgb purple pt 2 ps 0.8 dt (9,3)", \
   "lc rgb grey pt 3 ps 0.7"]
-spelled(name) = system("echo '".name."' | sed 's/-/ /'")
+spelled(name) = system("echo '".name."' | sed 's/-/ /; s/-two-rates/, two rates/; s/two-rates/two rates/'")
 # What a scene's contenders are drawn by; those that are not there are not missed.
 contenders(scene) = system("for name in ".names."; do if grep -q -x \"# ".scene."-$name\" '".table."'; then echo $name; fi; done")
 number_of(name) = int(system("i=0; for n in ".names."; do i=$((i+1)); if [ $n = ".name." ]; then echo $i; fi; done"))
@@ -62,9 +63,9 @@ unset grid
 unset logscale
 set xrange [0:1]
 set yrange [0:1]
-set key at graph 0.05, graph 0.95 top left Left reverse maxrows 14 font ",13"
+set key at graph 0.05, graph 0.95 top left Left reverse maxrows 15 font ",13"
 command = "plot "
-do for [i=1:12] {
+do for [i=1:13] {
   name = word(names, i)
   if (system("grep -c -- '^# S[0-9]-".name."$' '".table."' || true") > 0) {
     command = command.sprintf("1/0 with linespoints %s title '%s', ", styles[i], spelled(name))
