@@ -4,6 +4,7 @@
 //
 // writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. --quick is
 // for trying it out: short runs, few repeats.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -37,34 +38,36 @@ void tell_point(const Curve& curve, const Point& point) {
                point.setting, error, point.timing.seconds.median * 1e3);
 }
 
-void measure_curves(const Limits& limits, Findings& found, std::vector<double>& yardsticks) {
-  const std::vector<Contender> ours = engines(), others = peers();
-  for (const BenchScene& scene : found.scenes) {
-    const auto run_all = [&](const std::vector<Contender>& contenders, bool own) {
-      for (const Contender& contender : contenders) {
-        if (!takes_part(contender, own, scene)) continue;
-        const Reference* reference = nullptr;
-        for (const Reference& known : found.references) {
-          if (known.scene == scene.name && known.walls == contender.walls) reference = &known;
-        }
-        if (!reference) {
-          tell(scene.name + " reference");
-          found.references.push_back(reference_of(scene, contender.walls));
-          Reference& made = found.references.back();
-          if (contender.walls == scene.walls && !scene.chaotic) {
-            const auto independent = independent_amplitudes(scene.scene, scene.walls);
-            if (independent) made.from_independent = amplitude_error(*independent, made.amplitude);
-          }
-          reference = &made;
-        }
-        found.curves.push_back(measure_curve(scene, contender, own, *reference, limits, {tell, tell_point}));
-        for (const Point& point : found.curves.back().points) {
-          yardsticks.push_back(point.timing.yardstick.median);
-        }
+// Made when the first contender asks for it.
+const Reference& reference_for(const BenchScene& scene, Walls walls, Findings& found) {
+  for (const Reference& known : found.references) {
+    if (known.scene == scene.name && known.walls == walls) return known;
+  }
+  tell(scene.name + " reference");
+  Reference reference = reference_of(scene, walls);
+  if (walls == scene.walls && !scene.chaotic) {
+    const auto independent = independent_amplitudes(scene.scene, walls);
+    if (independent) reference.from_independent = amplitude_error(*independent, reference.amplitude);
+  }
+  return found.references.emplace_back(std::move(reference));
+}
+
+void measure_curves(const Limits& limits, Findings& found) {
+  const auto enter = [&](const std::vector<Contender>& contenders, bool ours, const BenchScene& scene) {
+    for (const Contender& contender : contenders) {
+      if (!takes_part(contender, ours, scene)) continue;
+      const Reference& reference = reference_for(scene, contender.walls, found);
+      found.curves.push_back(measure_curve(scene, contender, ours, reference, limits, {tell, tell_point}));
+      const auto known = [&](const Findings::Entrant& entrant) { return entrant.name == contender.name; };
+      if (std::ranges::none_of(found.entrants, known)) {
+        found.entrants.push_back({contender.name, contender.about});
       }
-    };
-    run_all(ours, true);
-    run_all(others, false);
+    }
+  };
+  const std::vector<Contender> own = engines(), others = peers();
+  for (const BenchScene& scene : found.scenes) {
+    enter(own, true, scene);
+    enter(others, false, scene);
     if (scene.walls == Walls::compliant || scene.with_others) {
       found.counts.push_back({scene.name, "exact", count(scene.scene, Exact{})});
     }
@@ -72,6 +75,11 @@ void measure_curves(const Limits& limits, Findings& found, std::vector<double>& 
       found.counts.push_back({scene.name, "restitution", count(scene.scene, Restitution{})});
     }
   }
+  std::vector<double> yardsticks;
+  for (const Curve& curve : found.curves) {
+    for (const Point& point : curve.points) yardsticks.push_back(point.timing.yardstick.median);
+  }
+  found.yardstick = spread_of(yardsticks);
 }
 
 // The rows of what must come out, for the terminal.
@@ -100,9 +108,7 @@ int bench(const std::filesystem::path& folder, bool quick) {
 
   Findings found{.processor = processor(), .scenes = bench_scenes(), .missing_peers = missing_peers()};
   for (const std::string& peer : found.missing_peers) tell("Not in this build: " + peer);
-  std::vector<double> yardsticks;
-  measure_curves(limits, found, yardsticks);
-  found.yardstick = spread_of(yardsticks);
+  measure_curves(limits, found);
   found.sweeps = measure_sweeps(quick ? 1e4 : 1e7, tell);
   tell("the figures' scenes and tables");
   found.figures = measure_figure_set(IMPACT_DAMPER_SOURCE, quick ? 3 : 9);

@@ -20,6 +20,7 @@ struct Contender {
   std::function<std::vector<double>(const Scene&)> settings;
   // Runs a scene that ends by until_time or until_amplitude. May throw where a setting is beyond it.
   std::function<Rows(const Scene&, double setting)> run;
+  std::string about = {};  // how it goes about it, and whose it is
 };
 
 // The engines of this project; the component element method once for each way of stepping.

@@ -21,7 +21,11 @@ struct Counting {
 
 struct Findings {
   std::string processor;
-  Spread yardstick;  // seconds
+  struct Entrant {
+    std::string name, about;
+  };
+  std::vector<Entrant> entrants;  // each name once
+  Spread yardstick;               // seconds
   std::vector<BenchScene> scenes;
   std::vector<Reference> references;
   std::vector<Curve> curves;

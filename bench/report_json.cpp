@@ -128,6 +128,7 @@ std::string report_json(const Findings& found) {
               {"nanoseconds", json_of(found.yardstick, 1e9)}}},
             {"missing_peers", found.missing_peers}};
   for (const Target& target : targets_of(found)) json["targets"].push_back(json_of(target));
+  for (const Findings::Entrant& entrant : found.entrants) json["contenders"][entrant.name] = entrant.about;
   for (const Reference& reference : found.references) json["references"].push_back(json_of(reference));
   for (const Curve& curve : found.curves) json["curves"].push_back(json_of(curve));
   for (const Counting& counting : found.counts) json["counts"].push_back(json_of(counting));

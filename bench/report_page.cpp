@@ -101,6 +101,12 @@ void add_times(std::string& page, const Findings& found) {
   }
 }
 
+void add_entrants(std::string& page, const Findings& found) {
+  page += "\n## Who takes part\n\n";
+  PageTable table(page, {"", "how"});
+  for (const Findings::Entrant& entrant : found.entrants) table.row({entrant.name, entrant.about});
+}
+
 void add_references(std::string& page, const Findings& found) {
   page += "\n## What the errors are measured from\n\n";
   page += "The engine for the walls in question in " + std::string(reference_scalar()) +
@@ -208,6 +214,7 @@ std::string report_page(const Findings& found) {
           printed("%.0f s", found.seconds) + " |\n\n";
   add_targets(page, found);
   add_times(page, found);
+  add_entrants(page, found);
   add_references(page, found);
   add_counts(page, found);
   add_sweeps(page, found);

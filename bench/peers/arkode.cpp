@@ -53,6 +53,8 @@ class Arkode {
 
 }  // namespace
 
-std::vector<Contender> arkode_peers() { return contenders<Arkode>("ARKODE"); }
+std::vector<Contender> arkode_peers() {
+  return contenders<Arkode>("ARKODE", "ERKStep of Cash and Karp, fifth order");
+}
 
 }  // namespace impact_damper::bench

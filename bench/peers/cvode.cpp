@@ -49,6 +49,8 @@ class Cvode {
 
 }  // namespace
 
-std::vector<Contender> cvode_peers() { return contenders<Cvode>("CVODE"); }
+std::vector<Contender> cvode_peers() {
+  return contenders<Cvode>("CVODE", "Adams with fixed-point iteration");
+}
 
 }  // namespace impact_damper::bench

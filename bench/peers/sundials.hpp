@@ -91,12 +91,13 @@ Rows run(const Scene& scene, Walls walls, double tolerance) {
 
 // A contender for each kind of wall.
 template <class Solver>
-std::vector<Contender> contenders(const char* name) {
+std::vector<Contender> contenders(const std::string& name, const std::string& about) {
   std::vector<Contender> all;
   for (const Walls walls : {Walls::compliant, Walls::rigid}) {
     all.push_back(
         {name, walls, "tolerance", [](const Scene&) { return geometric(1e-4, 0.1, 11); },
-         [walls](const Scene& scene, double tolerance) { return run<Solver>(scene, walls, tolerance); }});
+         [walls](const Scene& scene, double tolerance) { return run<Solver>(scene, walls, tolerance); },
+         about + ", root-finding; SUNDIALS " SUNDIALS_VERSION});
   }
   return all;
 }
