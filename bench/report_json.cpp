@@ -72,6 +72,7 @@ Json json_of(const Counting& counting) {
             {"steps", double(c.steps) / n},
             {"sincos", double(c.sincos) / n},
             {"exponentials", double(c.exponentials) / n},
+            {"arctangents", double(c.arctangents) / n},
             {"square_roots", double(c.square_roots) / n},
             {"divisions", double(c.divisions) / n},
             {"other_arithmetic", double(c.other_arithmetic) / n}}}};
