@@ -46,7 +46,7 @@ struct Curve {
 };
 
 struct Limits {
-  double longest_run = 1.2;          // seconds; finer settings than that are left out
+  double longest_run = 0.8;          // seconds; finer settings than that are left out
   double longest_chaotic_run = 0.3;  // the same where finer settings bring nothing any more
   double repeated_fully = 0.4;       // seconds; longer runs are repeated `few` times
   int repeats = 7, few = 3;
