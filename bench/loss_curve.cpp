@@ -38,21 +38,30 @@ std::optional<std::vector<double>> loss_curve(const std::vector<double>& peak_ti
   return curve;
 }
 
-EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine, int members) {
+std::vector<double> median_curve(const std::vector<std::vector<double>>& curves) {
+  std::vector<double> median;
+  for (std::size_t i = 0; i < curves.at(0).size(); ++i) {
+    std::vector<double> values;
+    for (const std::vector<double>& curve : curves) values.push_back(curve[i]);
+    median.push_back(impact_damper::spread_of(values).median);
+  }
+  return median;
+}
+
+EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine) {
+  constexpr int groups = 7;
   std::vector<std::vector<double>> curves;
-  for (const Run& run : simulate_ensemble(scene, engine, {.half_cycles = true}, {.members = members})) {
+  for (const Run& run :
+       simulate_ensemble(scene, engine, {.half_cycles = true}, {.members = groups * releases})) {
     auto curve = loss_curve(run.half_cycles->peak_time, run.half_cycles->amplitude);
     if (!curve) throw std::logic_error("the ensemble's decays must pass all amplitudes of the loss curve");
     curves.push_back(std::move(*curve));
   }
-  EnsembleCurve ensemble;
-  for (std::size_t i = 0; i < curves[0].size(); ++i) {
-    std::vector<double> values;
-    for (const std::vector<double>& curve : curves) values.push_back(curve[i]);
-    ensemble.median.push_back(impact_damper::spread_of(values).median);
-  }
+  EnsembleCurve ensemble{.median = median_curve(curves)};
   std::vector<double> errors;
-  for (const std::vector<double>& curve : curves) errors.push_back(curve_error(ensemble, curve));
+  for (auto group = curves.begin(); group != curves.end(); group += releases) {
+    errors.push_back(curve_error(ensemble, median_curve({group, group + releases})));
+  }
   const Spread spread = spread_of(errors);
   ensemble.lower = spread.lower;
   ensemble.scatter = spread.median;
@@ -67,13 +76,6 @@ double curve_error(const EnsembleCurve& ensemble, const std::vector<double>& cur
     sum += difference * difference;
   }
   return std::sqrt(sum / double(curve.size()));
-}
-
-std::optional<double> curve_error(const EnsembleCurve& ensemble, const Rows& rows) {
-  const auto curve = loss_curve(rows.peak_time, rows.amplitude);
-  if (!curve) return std::nullopt;
-  const double error = curve_error(ensemble, *curve);
-  return std::isfinite(error) ? std::optional(error) : std::nullopt;
 }
 
 }  // namespace impact_damper::bench

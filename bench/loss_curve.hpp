@@ -16,14 +16,22 @@ namespace impact_damper::bench {
 std::optional<std::vector<double>> loss_curve(const std::vector<double>& peak_time,
                                               const std::vector<double>& amplitude);
 
+// How many releases make one curve of a contender: their median, since one decay's own luck hides what its
+// method does to it.
+inline constexpr int releases = 9;
+
+// At each of the amplitudes the median of the curves, of which there must be one.
+std::vector<double> median_curve(const std::vector<std::vector<double>>& curves);
+
 struct EnsembleCurve {
-  std::vector<double> median;                // eta, at each of the amplitudes
-  double lower = 0, scatter = 0, upper = 0;  // quartiles and median of its own members' errors
+  std::vector<double> median;  // eta, at each of the amplitudes
+  double lower = 0, scatter = 0,
+         upper = 0;  // errors of its own groups of so many releases: quartiles, median
 };
-EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine, int members);
+// Of seven groups. Throws std::logic_error if a decay does not pass all the amplitudes.
+EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine);
 
 // Root mean square over the amplitudes of eta / median - 1.
 double curve_error(const EnsembleCurve& ensemble, const std::vector<double>& curve);
-std::optional<double> curve_error(const EnsembleCurve& ensemble, const Rows& rows);
 
 }  // namespace impact_damper::bench

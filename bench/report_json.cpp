@@ -31,7 +31,7 @@ Json json_of(const Reference& reference) {
   Json json{{"scene", reference.scene}, {"walls", name_of(reference.walls)}};
   if (reference.loss_curve) {
     json["error_is"] =
-        "rms over amplitudes of the loss factor by the ensemble's median, less 1; median over five releases";
+        "rms over amplitudes of the loss factor, median of nine releases, by the ensemble's median, less 1";
     json["scatter_of_the_ensemble"] = {{"median", reference.loss_curve->scatter},
                                        {"lower_quartile", reference.loss_curve->lower},
                                        {"upper_quartile", reference.loss_curve->upper}};

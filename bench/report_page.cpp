@@ -72,8 +72,8 @@ void add_times(std::string& page, const Findings& found) {
       "![Run time against error, scene by scene](time_error.svg)\n\n"
       "Milliseconds, in brackets yardsticks; —: the error is not reached. Interpolated between settings on "
       "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
-      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor by the median "
-      "of an ensemble of 32, less 1; the median of that over five releases.\n";
+      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor, the "
+      "median of nine releases, by the median of an ensemble of 63, less 1.\n";
   for (const BenchScene& scene : found.scenes) {
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
     const double errors[] = {scene.chaotic ? 0.1 : 1e-6, scene.chaotic ? 0.03 : 1e-9};
@@ -112,7 +112,8 @@ void add_references(std::string& page, const Findings& found) {
   page += "The engine for the walls in question in " + std::string(reference_scalar()) +
           "; Runge-Kutta-Fehlberg 78 of odeint in the same precision, tolerance 1e-20, as another "
           "integrator.\n\n";
-  PageTable table(page, {"", "distance from long double", "from another integrator", "members' scatter"});
+  PageTable table(page,
+                  {"", "distance from long double", "from another integrator", "the ensemble's own scatter"});
   const auto cell = [](const std::optional<double>& number) { return number ? rounded(*number) : "—"; };
   for (const Reference& reference : found.references) {
     table.row({reference.scene + (reference.walls == Walls::compliant ? ", compliant" : ", rigid"),

@@ -8,15 +8,11 @@
 
 namespace impact_damper::bench {
 
-std::optional<double> Reference::error_of(const Rows& rows) const {
-  return loss_curve ? curve_error(*loss_curve, rows) : amplitude_error(rows.amplitude, amplitude);
-}
-
 Reference reference_of(const BenchScene& scene, Walls walls) {
   const Engine engine = walls == Walls::compliant ? Engine(Exact{}) : Engine(Restitution{});
   Reference reference{.scene = scene.name, .walls = walls};
   if (scene.chaotic) {
-    reference.loss_curve = ensemble_curve(scene.scene, engine, 32);
+    reference.loss_curve = ensemble_curve(scene.scene, engine);
     return reference;
   }
   std::vector<double> in_long_double;
@@ -36,18 +32,20 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
 
 namespace {
 
-// The error of a run whose rows are at hand. In a chaotic scene that is a matter of luck: the median over
-// five releases, shifted as ensembles are, the scene's own among them.
+// The error of a run whose rows are at hand; where the scene is chaotic, of a few more releases instead.
 std::optional<double> error_of_setting(const BenchScene& scene, const Contender& contender, double setting,
                                        const Rows& own, const Reference& reference) {
-  if (!scene.chaotic) return reference.error_of(own);
-  std::vector<double> errors;
-  for (const Scene& release : ensemble_of(scene.scene, {.members = 5})) {
-    const auto error = reference.error_of(release == scene.scene ? own : contender.run(release, setting));
-    if (!error) return std::nullopt;
-    errors.push_back(*error);
+  if (!scene.chaotic) return amplitude_error(own.amplitude, reference.amplitude);
+  std::vector<std::vector<double>> curves;
+  // Not the releases that the reference is made of.
+  for (const Scene& release : ensemble_of(scene.scene, {.members = releases, .seed = 2})) {
+    const Rows rows = contender.run(release, setting);
+    auto curve = loss_curve(rows.peak_time, rows.amplitude);
+    if (!curve) return std::nullopt;
+    curves.push_back(std::move(*curve));
   }
-  return spread_of(errors).median;
+  const double error = curve_error(*reference.loss_curve, median_curve(curves));
+  return std::isfinite(error) ? std::optional(error) : std::nullopt;
 }
 
 }  // namespace

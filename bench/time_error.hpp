@@ -21,8 +21,6 @@ struct Reference {
   std::optional<double> from_long_double;   // its distance from the same engine in long double
   std::optional<double> from_independent;   // and from another integrator's, which the caller has
   std::optional<EnsembleCurve> loss_curve;  // chaotic scenes: this instead of all those
-
-  std::optional<double> error_of(const Rows& rows) const;
 };
 Reference reference_of(const BenchScene& scene, Walls walls);
 
@@ -46,9 +44,9 @@ struct Curve {
 };
 
 struct Limits {
-  double longest_run = 0.8;          // seconds; finer settings than that are left out
-  double longest_chaotic_run = 0.3;  // the same where finer settings bring nothing any more
-  double repeated_fully = 0.4;       // seconds; longer runs are repeated `few` times
+  double longest_run = 0.8;           // seconds; finer settings than that are left out
+  double longest_chaotic_run = 0.13;  // the same where finer settings bring nothing any more
+  double repeated_fully = 0.4;        // seconds; longer runs are repeated `few` times
   int repeats = 7, few = 3;
 };
 
