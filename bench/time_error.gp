@@ -63,7 +63,7 @@ unset grid
 unset logscale
 set xrange [0:1]
 set yrange [0:1]
-set key at graph 0.05, graph 0.95 top left Left reverse maxrows 15 font ",13"
+set key at graph 0.02, graph 0.98 top left Left reverse vertical maxcols 1 spacing 1.1 font ",13"
 command = "plot "
 do for [i=1:13] {
   name = word(names, i)
