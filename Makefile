@@ -14,38 +14,49 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
+# What the bench's references and peers are made of.
+BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps build figures verify test bench stress stress-results check paper clean
+.PHONY: help deps deps-bench build figures verify test bench bench-record stress stress-results check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
-	@sed -n 's/^\([a-z]*\):[^#]*## */\1\t/p' $(firstword $(MAKEFILE_LIST)) | while IFS="$$(printf '\t')" read -r name what; do \
-	  printf '  %-9s %s\n' "$$name" "$$what"; done
+	@sed -n 's/^\([a-z-]*\):[^#]*## */\1\t/p' $(firstword $(MAKEFILE_LIST)) | while IFS="$$(printf '\t')" read -r name what; do \
+	  printf '  %-13s %s\n' "$$name" "$$what"; done
+
+# A shell command that installs what is missing of the packages $(1).
+define install
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then \
+  echo "Wanted, under the names your system has for them (these are Debian's):"; \
+  echo "  $(1)"; \
+  exit 0; \
+fi; \
+missing=; \
+for package in $(1); do \
+  dpkg-query -W -f='$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
+done; \
+if [ -z "$$missing" ]; then echo "Nothing is missing."; exit 0; fi; \
+sudo=; \
+if [ "$$(id -u)" -ne 0 ]; then \
+  if ! command -v sudo >/dev/null; then \
+    echo "make deps: neither root nor sudo; as root: apt-get install$$missing" >&2; exit 1; \
+  fi; \
+  sudo=sudo; \
+fi; \
+echo "Installing$$missing"; \
+$$sudo apt-get update -q && \
+$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing
+endef
 
 deps:  ## install what is missing (Debian); elsewhere say what is wanted
-	@if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then \
-	  echo "Wanted, under the names your system has for them (these are Debian's):"; \
-	  echo "  $(PACKAGES)"; \
-	  exit 0; \
-	fi; \
-	missing=; \
-	for package in $(PACKAGES); do \
-	  dpkg-query -W -f='$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
-	done; \
-	if [ -z "$$missing" ]; then echo "Nothing is missing."; exit 0; fi; \
-	sudo=; \
-	if [ "$$(id -u)" -ne 0 ]; then \
-	  if ! command -v sudo >/dev/null; then \
-	    echo "make deps: neither root nor sudo; as root: apt-get install$$missing" >&2; exit 1; \
-	  fi; \
-	  sudo=sudo; \
-	fi; \
-	echo "Installing$$missing"; \
-	$$sudo apt-get update -q && \
-	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing
+	@$(call install,$(PACKAGES))
+
+deps-bench:  ## the same for the bench: its peers and its higher precision
+	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
+	@rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
 
 # Made by a recipe, not while the Makefile is read: `make deps figures` has no CMake before its first half.
 $(BUILD)/build.ninja:
@@ -68,13 +79,17 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-bench: $(BUILD)/build.ninja  ## measure run time beside error (a minute or two), print and draw it
+bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
 	@cmake --build $(BUILD) --target bench
+
+bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
+	@mkdir -p bench/results
+	@cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
 stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random scenes, aimed ones (minutes)
 	@cmake --build $(BUILD) --target stress
 
-stress-results: $(BUILD)/build.ninja
+stress-results: $(BUILD)/build.ninja  ## the same, and keep page and figures in tests/stress/
 	@cmake --build $(BUILD) --target stress-results
 
 check: build test  ## build, run every test, regenerate everything with all engines and verify it

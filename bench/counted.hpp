@@ -26,7 +26,7 @@ struct Counts {
   std::int64_t steps = 0;         // of the search, one for each function watched (certified_step)
   std::int64_t sincos = 0;        // sine and cosine of one angle count once
   std::int64_t exponentials = 0;  // exp and expm1
-  std::int64_t angles = 0;        // atan2
+  std::int64_t arctangents = 0;
   std::int64_t square_roots = 0;
   std::int64_t divisions = 0;
   std::int64_t other_arithmetic = 0;  // + - *
@@ -77,7 +77,7 @@ inline Counted exponential_minus_1(const Counted& x) {
   return impact_damper::exponential_minus_1(double(x));
 }
 inline Counted angle_of(const Counted& y, const Counted& x) {
-  ++counts.angles;
+  ++counts.arctangents;
   return impact_damper::angle_of(double(y), double(x));
 }
 inline Counted square_root(const Counted& x) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace impact_damper::bench {
@@ -22,7 +23,11 @@ struct Timing {
   int repeats = 0;
   int runs = 0;  // in each repeat
 };
-// Each repeat lasts a fiftieth of a second at least; the first run of all is not counted.
-Timing measure(const std::function<void()>& run, int repeats);
+// Each repeat lasts a fiftieth of a second at least. A first run, not counted, tells how many runs make one
+// repeat; whoever has made it already says how many CPU seconds it took.
+Timing measure(const std::function<void()>& run, int repeats, std::optional<double> first = {});
+
+// CPU time, not wall time: what others do on the machine is not the contender's.
+double cpu_seconds(const std::function<void()>& work);
 
 }  // namespace impact_damper::bench

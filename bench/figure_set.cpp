@@ -1,0 +1,82 @@
+#include "figure_set.hpp"
+
+#include <map>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/paper/catalogue.hpp"
+#include "impact_damper/paper/series.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper::bench {
+namespace {
+
+struct Work {
+  Catalogue catalogue;
+  std::map<std::string, Scene> scenes;
+};
+
+// Seconds by part, in the order in which the parts come up.
+class Parts {
+ public:
+  template <class Do>
+  void spend(const std::string& name, Do&& work) {
+    const double seconds = cpu_seconds(work);
+    for (FigureSet::Part& part : parts_) {
+      if (part.name == name) {
+        part.share += seconds;
+        return;
+      }
+    }
+    parts_.push_back({name, seconds});
+  }
+  std::vector<FigureSet::Part> shares() const {
+    double sum = 0;
+    for (const FigureSet::Part& part : parts_) sum += part.share;
+    std::vector<FigureSet::Part> all = parts_;
+    for (FigureSet::Part& part : all) part.share /= sum;
+    return all;
+  }
+
+ private:
+  std::vector<FigureSet::Part> parts_;
+};
+
+void make_all(const Work& work, Parts& parts, FigureSet& set) {
+  const Threads one{1};
+  FigureRuns runs;
+  set.scenes = set.tables = set.bytes = 0;
+  for (const CatalogueScene& scene : work.catalogue.scenes) {
+    parts.spend("scenes", [&] {
+      runs[scene.name] = {scene.name, simulate(work.scenes.at(scene.name), Exact{}, scene.record)};
+    });
+    ++set.scenes;
+  }
+  for (const Figure& figure : work.catalogue.figures) {
+    if (figure.table == TableKind::drawing) continue;
+    bool ensemble = false;
+    for (const FigureCurve& curve : figure.curves) ensemble |= curve.ensemble > 0;
+    const std::string kind =
+        "tables: " + std::string(name_of(figure.table)) + (ensemble ? " with an ensemble" : "");
+    Table table;
+    parts.spend(kind, [&] { table = figure_table(figure, runs, one); });
+    parts.spend("tables as text", [&] { set.bytes += std::int64_t(to_text(table).size()); });
+    ++set.tables;
+  }
+}
+
+}  // namespace
+
+FigureSet measure_figure_set(const std::filesystem::path& source, int repeats) {
+  Work work{read_catalogue(source / "figures/catalogue.json"), {}};
+  for (const CatalogueScene& scene : work.catalogue.scenes) {
+    work.scenes[scene.name] = read_scene(source / "data/scenes" / (scene.name + ".json"));
+  }
+  FigureSet set;
+  Parts parts;
+  set.timing = measure([&] { make_all(work, parts, set); }, repeats);
+  set.parts = parts.shares();
+  return set;
+}
+
+}  // namespace impact_damper::bench

@@ -1,0 +1,60 @@
+// Everything one run of the bench has found, and what it was to find.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "allocations.hpp"
+#include "counted.hpp"
+#include "figure_set.hpp"
+#include "sweeps.hpp"
+#include "threads.hpp"
+#include "time_error.hpp"
+
+namespace impact_damper::bench {
+
+struct Counting {
+  std::string scene, engine;
+  CountedRun run;
+};
+
+struct Findings {
+  std::string processor;
+  struct Entrant {
+    std::string name, about;
+  };
+  std::vector<Entrant> entrants;  // each name once
+  Spread yardstick;               // seconds
+  std::vector<BenchScene> scenes;
+  std::vector<Reference> references;
+  std::vector<Curve> curves;
+  std::vector<Counting> counts;
+  std::vector<Sweep> sweeps;
+  FigureSet figures;
+  std::vector<Allocations> allocations;
+  Speedup speedup;
+  std::vector<std::string> missing_peers;
+  double seconds = 0;  // that it all took, by the clock on the wall
+
+  const Curve* curve(const std::string& scene, const std::string& contender) const;
+};
+
+// One line of what must come out. A number that could not be measured is absent, and `note` says why.
+struct Target {
+  std::string what;
+  bool at_most = true;  // else at least
+  double bound = 0;
+  std::optional<double> aim;
+  std::string unit;  // "", "ms", "x"
+  std::optional<double> measured;
+  std::string note;
+
+  bool reaches(double number) const {
+    return measured && (at_most ? *measured <= number : *measured >= number);
+  }
+  bool met() const { return reaches(bound); }
+};
+std::vector<Target> targets_of(const Findings& findings);
+
+}  // namespace impact_damper::bench

@@ -1,0 +1,240 @@
+// What the bench concludes from its measurements: errors of chaotic decays, times at an error, orders,
+// targets; and what the peers are built on.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "allocations.hpp"
+#include "findings.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/simulate.hpp"
+#include "peers/hybrid_system.hpp"
+#include "peers/peers.hpp"
+#include "peers/row_book.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+using namespace impact_damper::bench;
+using doctest::Approx;
+
+namespace {
+
+const Scene tiny{.x0 = 4.5, .until_time = 20};
+
+// A curve of made-up points: setting, error, yardsticks.
+struct Made {
+  double setting;
+  std::optional<double> error;
+  double time;
+};
+Curve curve_of(const std::string& scene, const std::string& contender, const std::vector<Made>& points) {
+  Curve curve{.scene = scene, .contender = contender};
+  for (const Made& made : points) {
+    Point point{.setting = made.setting, .impacts = 100, .error = made.error};
+    point.timing.yardsticks = {made.time, made.time, made.time};
+    curve.points.push_back(point);
+  }
+  return curve;
+}
+
+const Target& find(const std::vector<Target>& targets, const std::string& what) {
+  for (const Target& target : targets) {
+    if (target.what.find(what) != std::string::npos) return target;
+  }
+  FAIL("no target " << what);
+  return targets[0];
+}
+
+}  // namespace
+
+TEST_CASE("the time for an error lies on the straight line between two settings, in both logarithms") {
+  const Curve curve = curve_of("S1", "peer", {{1, 1e-4, 100}, {0.1, std::nullopt, 1}, {0.01, 1e-8, 1e4}});
+  CHECK(*time_at(curve, 1e-6) == Approx(1000));
+  CHECK(*time_at(curve, 1e-5) == Approx(100 * std::sqrt(10)));
+  CHECK(*time_at(curve, 1e-8) == Approx(1e4));
+}
+
+TEST_CASE("nothing is extrapolated: not below the smallest error, not before the coarsest setting") {
+  const Curve curve = curve_of("S1", "peer", {{1, 1e-4, 100}, {0.1, 1e-8, 1e4}});
+  CHECK(!time_at(curve, 1e-9));
+  CHECK(*time_at(curve, 1e-2) == 100);
+  CHECK(*least_error(curve) == 1e-8);
+  CHECK(!least_error(curve_of("S1", "peer", {{1, std::nullopt, 5}})));
+}
+
+TEST_CASE("a finer setting that is worse by luck does not undo a coarser one") {
+  const Curve curve = curve_of("S1", "peer", {{1, 1e-2, 1}, {0.1, 1e-6, 10}, {0.01, 1e-5, 100}});
+  CHECK(*time_at(curve, 1e-6) == Approx(10));
+}
+
+TEST_CASE("the observed order of a power law is its exponent, errors above the bound left out") {
+  const Curve curve =
+      curve_of("S3", "cem",
+               {{1, 0.5, 1}, {0.5, 3 * 0.25e-3, 1}, {0.25, 3 * 0.0625e-3, 1}, {0.125, 3 * 0.015625e-3, 1}});
+  CHECK(*observed_order(curve, 1e-3) == Approx(2));
+  CHECK(*observed_order(curve, 1) > 2.5);
+  CHECK(!observed_order(curve, 1e-5));
+}
+
+TEST_CASE("the loss curve of a viscous decay is twice the damping ratio everywhere") {
+  // Peaks a half period apart; the parabola's bias is 89/30 (zeta p)^2 (loss_factor.hpp).
+  const double zeta = 0.01, p = 3.14159265358979, bias = 1 + 89.0 / 30 * (zeta * p) * (zeta * p);
+  std::vector<double> time, amplitude;
+  for (int i = 0; i < 300; ++i) {
+    time.push_back(i * p);
+    amplitude.push_back(6 * std::exp(-zeta * time.back()));
+  }
+  const auto curve = loss_curve(time, amplitude);
+  REQUIRE(curve);
+  for (const double eta : *curve) CHECK(eta == Approx(2 * zeta * bias).epsilon(1e-5));
+  // Rows end five peaks before the last: at 0.089 with 140 peaks, at 0.12 with 130.
+  const auto ends_after = [&](std::size_t peaks) {
+    return loss_curve({time.begin(), time.begin() + std::ptrdiff_t(peaks)},
+                      {amplitude.begin(), amplitude.begin() + std::ptrdiff_t(peaks)});
+  };
+  CHECK(ends_after(140));
+  CHECK(!ends_after(130));
+}
+
+TEST_CASE("the error of a loss curve is its relative distance from the median") {
+  const EnsembleCurve ensemble{.median = {1, 2, 4}};
+  CHECK(curve_error(ensemble, {1, 2, 4}) == 0);
+  CHECK(curve_error(ensemble, {1.01, 2.02, 4.04}) == Approx(0.01));
+  CHECK(curve_error(ensemble, {1.03, 2, 4}) == Approx(0.03 / std::sqrt(3)));
+}
+
+TEST_CASE("another restitution shows in the loss curve far beyond the scatter, other releases do not") {
+  const Scene decay{.x0 = 6, .until_amplitude = 0.03};
+  const EnsembleCurve ensemble = ensemble_curve(decay, Exact{});
+  CHECK(ensemble.lower > 0);
+  CHECK(ensemble.upper < 0.02);
+  const auto error_of = [&](double e) {
+    Scene other = decay;
+    other.restitution = e;
+    std::vector<std::vector<double>> curves;
+    for (const Scene& release : ensemble_of(other, {.members = releases, .seed = 3})) {
+      const Run run = simulate(release, Exact{}, {.half_cycles = true});
+      curves.push_back(*loss_curve(run.half_cycles->peak_time, run.half_cycles->amplitude));
+    }
+    return curve_error(ensemble, median_curve(curves));
+  };
+  CHECK(error_of(0.6) < 2 * ensemble.upper);
+  CHECK(error_of(0.58) > 2 * ensemble.upper);
+}
+
+TEST_CASE("rows are kept as the recorder keeps them") {
+  RowBook book(2, 0.5);
+  book.peak(0.1, 1.5);  // lower than the release
+  CHECK(!book.zero_crossing(1));
+  book.peak(2, -1);
+  book.peak(2.5, -1.25);
+  CHECK(!book.zero_crossing(3));
+  book.impact();
+  book.peak(4, 0.4);
+  CHECK(book.zero_crossing(5));
+  const Rows rows = book.finish();
+  CHECK(rows.zero_crossing == std::vector<double>{1, 3, 5});
+  CHECK(rows.peak_time == std::vector<double>{0, 2.5, 4});
+  CHECK(rows.amplitude == std::vector<double>{2, 1.25, 0.4});
+  CHECK(rows.impacts == 1);
+}
+
+TEST_CASE("the peers' rigid wall keeps momentum and restores e") {
+  const Scene scene{.mass_ratio = 0.3, .restitution = 0.7};
+  HybridSystem<double> system(scene, Walls::rigid);
+  HybridSystem<double>::State u{0.5, -0.25, -1e-12, -2};
+  const double momentum = 1.3 * u[1] + 0.3 * u[3];
+  CHECK(system.pass(0, u, 0));
+  CHECK(u[3] == Approx(1.4));
+  CHECK(1.3 * u[1] + 0.3 * u[3] == Approx(momentum));
+  CHECK(u[2] == 0);
+  CHECK(system.regime() == Regime::free);
+}
+
+TEST_CASE("the peers' compliant wall gives back e of the speed to a mass that moves no other") {
+  for (const double e : {0.0, 0.3, 0.6, 1.0}) {
+    // Runge and Kutta's fourth order through one contact, 1000 steps: h^4 is far below the tolerance.
+    const Scene scene{.mass_ratio = 1e-12, .restitution = e, .wall_stiffness = 1e-2};
+    HybridSystem<double> system(scene, Walls::compliant);
+    HybridSystem<double>::State u{0, 0, 0, -1};
+    system.pass(0, u, 0);
+    const double h = system.contact_time() / 1000;
+    const auto moved = [](auto from, const auto& by, double t) {
+      for (std::size_t i = 0; i < from.size(); ++i) from[i] += t * by[i];
+      return from;
+    };
+    double last = 0;
+    for (int step = 0; step < 20'000 && u[2] <= 0; ++step) {
+      HybridSystem<double>::State a{}, b{}, c{}, d{};
+      system.derivative(u, a, 0);
+      system.derivative(moved(u, a, h / 2), b, 0);
+      system.derivative(moved(u, b, h / 2), c, 0);
+      system.derivative(moved(u, c, h), d, 0);
+      u = moved(moved(moved(moved(u, a, h / 6), b, h / 3), c, h / 3), d, h / 6);
+      last = u[3];
+    }
+    // Within a step of its release the speed changes by c w h at most, c h = 2 zeta_m pi / 1000.
+    CHECK(last == Approx(e).epsilon(0.01));
+    CHECK((u[2] > 0) == (e > 0));
+  }
+}
+
+TEST_CASE("plain central differences come nearer to the exact engine with the first power of their step") {
+  const Contender plain = central_differences_peers()[0];
+  const std::vector<double> reference = reference_amplitudes(tiny, Exact{});
+  const auto error_at = [&](double step) {
+    return *amplitude_error(plain.run(tiny, step).amplitude, reference);
+  };
+  CHECK(error_at(2e-5) < 1e-3);
+  CHECK(error_at(2e-6) < error_at(1e-4) / 5);
+  Scene other = tiny;
+  other.restitution = 0.55;
+  CHECK(*amplitude_error(plain.run(other, 2e-6).amplitude, reference) > 10 * error_at(2e-6));
+}
+
+TEST_CASE("all engines run a scene to within their settings' errors of the reference") {
+  for (const Contender& engine : engines()) {
+    const auto reference = engine.walls == Walls::rigid ? reference_amplitudes(tiny, Restitution{})
+                                                        : reference_amplitudes(tiny, Exact{});
+    const std::vector<double> settings = engine.settings(tiny);
+    const double setting = settings[settings.size() / 2];
+    const double error = *amplitude_error(engine.run(tiny, setting).amplitude, reference);
+    CAPTURE(engine.name);
+    CHECK(error < (engine.setting.empty() ? 1e-11 : 1e-2));
+  }
+}
+
+TEST_CASE("a peer that does not reach the error has no ratio, and how far it came is said") {
+  Findings found;
+  found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));
+  found.curves.push_back(curve_of("S1", "CVODE", {{1, 1e-3, 100}, {0.1, 7e-5, 1000}}));
+  const std::vector<Target> targets = targets_of(found);
+  const Target& cvode = find(targets, "against CVODE");
+  CHECK(!cvode.measured);
+  CHECK(!cvode.met());
+  CHECK(cvode.note.find("never below 7e-05") != std::string::npos);
+  CHECK(find(targets, "error on S1").met());
+  CHECK(!find(targets, "error on S3").met());
+}
+
+TEST_CASE("the best of two peers is what an engine is held against") {
+  Findings found;
+  found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));
+  found.curves.push_back(curve_of("S1", "odeint fehlberg78", {{1, 1e-8, 100}, {0.1, 1e-10, 1000}}));
+  found.curves.push_back(curve_of("S1", "odeint dopri5", {{1, 1e-9, 150}}));
+  const std::vector<Target> targets = targets_of(found);
+  const Target& odeint = find(targets, "odeint at 1e-9, S1");
+  CHECK(*odeint.measured == Approx(15));
+  CHECK(odeint.note == "odeint dopri5");
+  CHECK(odeint.met());
+  CHECK(!odeint.reaches(*odeint.aim));
+}
+
+TEST_CASE("a decay that records nothing asks for no memory, one that records does") {
+  for (const Allocations& counted : count_allocations()) {
+    CHECK(counted.impacts > 1000);
+    CHECK(counted.quiet == 0);
+    CHECK(counted.recorded > 0);
+  }
+}

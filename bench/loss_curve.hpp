@@ -1,0 +1,37 @@
+// The error of a chaotic decay. No amplitude of it can be compared, but what comes of it: the averaged loss
+// factor as a curve over the amplitude, held against the median curve of an ensemble.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "contender.hpp"
+#include "impact_damper/engine.hpp"
+
+namespace impact_damper::bench {
+
+// The loss factor (averaged over 10 half cycles) at 60 amplitudes from 5 down to 0.1, equally spaced in their
+// logarithm: where the decay first falls through each, between the two rows beside it. Absent if one of them
+// is not passed or the rows are not admitted.
+std::optional<std::vector<double>> loss_curve(const std::vector<double>& peak_time,
+                                              const std::vector<double>& amplitude);
+
+// How many releases make one curve of a contender: their median, since one decay's own luck hides what its
+// method does to it.
+inline constexpr int releases = 9;
+
+// At each of the amplitudes the median of the curves, of which there must be one.
+std::vector<double> median_curve(const std::vector<std::vector<double>>& curves);
+
+struct EnsembleCurve {
+  std::vector<double> median;  // eta, at each of the amplitudes
+  double lower = 0, scatter = 0,
+         upper = 0;  // errors of its own groups of so many releases: quartiles, median
+};
+// Of seven groups. Throws std::logic_error if a decay does not pass all the amplitudes.
+EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine);
+
+// Root mean square over the amplitudes of eta / median - 1.
+double curve_error(const EnsembleCurve& ensemble, const std::vector<double>& curve);
+
+}  // namespace impact_damper::bench

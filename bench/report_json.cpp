@@ -1,0 +1,152 @@
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "impact_damper/files/provenance.hpp"
+#include "reference.hpp"
+#include "report.hpp"
+
+namespace impact_damper::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Spread& spread, double scale = 1) {
+  return {{"median", scale * spread.median},
+          {"lower_quartile", scale * spread.lower},
+          {"upper_quartile", scale * spread.upper}};
+}
+
+void add(Json& json, const Timing& timing) {
+  json["nanoseconds"] = json_of(timing.seconds, 1e9);
+  json["yardsticks"] = json_of(timing.yardsticks);
+  json["repeats"] = timing.repeats;
+  json["runs_per_repeat"] = timing.runs;
+}
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+std::string_view name_of(Walls walls) { return walls == Walls::compliant ? "compliant" : "rigid"; }
+
+Json json_of(const Reference& reference) {
+  Json json{{"scene", reference.scene}, {"walls", name_of(reference.walls)}};
+  if (reference.loss_curve) {
+    json["error_is"] =
+        "rms over amplitudes of the loss factor, median of nine releases, by the ensemble's median, less 1";
+    json["scatter_of_the_ensemble"] = {{"median", reference.loss_curve->scatter},
+                                       {"lower_quartile", reference.loss_curve->lower},
+                                       {"upper_quartile", reference.loss_curve->upper}};
+    return json;
+  }
+  json["error_is"] = "largest difference of a half-cycle amplitude, by epsilon";
+  json["scalar"] = reference_scalar();
+  json["distance_from_long_double"] = json_of(reference.from_long_double);
+  json["distance_from_another_integrator"] = json_of(reference.from_independent);
+  return json;
+}
+
+Json json_of(const Curve& curve) {
+  Json json{{"scene", curve.scene}, {"contender", curve.contender}, {"walls", name_of(curve.walls)}};
+  if (!curve.setting.empty()) json["setting"] = curve.setting;
+  for (const Point& point : curve.points) {
+    Json row;
+    if (!curve.setting.empty()) row["setting"] = point.setting;
+    row["error"] = json_of(point.error);
+    row["impacts"] = point.impacts;
+    add(row, point.timing);
+    json["points"].push_back(row);
+  }
+  if (!curve.failures.empty()) json["failures"] = curve.failures;
+  if (curve.cut) json["finer_settings"] = "left out: a run would take too long";
+  return json;
+}
+
+Json json_of(const Counting& counting) {
+  const Counts& c = counting.run.counts;
+  const double n = double(counting.run.impacts);
+  return {{"scene", counting.scene},
+          {"engine", counting.engine},
+          {"impacts", counting.run.impacts},
+          {"per_impact",
+           {{"searches", double(c.searches) / n},
+            {"evaluations", double(c.evaluations) / n},
+            {"steps", double(c.steps) / n},
+            {"sincos", double(c.sincos) / n},
+            {"exponentials", double(c.exponentials) / n},
+            {"arctangents", double(c.arctangents) / n},
+            {"square_roots", double(c.square_roots) / n},
+            {"divisions", double(c.divisions) / n},
+            {"other_arithmetic", double(c.other_arithmetic) / n}}}};
+}
+
+Json json_of(const Sweep& sweep) {
+  Json json{{"engine", sweep.engine}, {"against", sweep.against}, {"what", sweep.what}};
+  for (const SweepPoint& point : sweep.points) {
+    Json row{{"at", point.at},
+             {"impacts", point.impacts},
+             {"half_cycles", point.half_cycles},
+             {"yardsticks_per_impact", point.cost()},
+             {"ledger_residual", point.residual}};
+    add(row, point.timing);
+    json["points"].push_back(row);
+  }
+  return json;
+}
+
+Json json_of(const FigureSet& set) {
+  Json json{{"scenes", set.scenes}, {"tables", set.tables}, {"bytes", set.bytes}};
+  add(json, set.timing);
+  for (const FigureSet::Part& part : set.parts) json["shares"][part.name] = part.share;
+  return json;
+}
+
+Json json_of(const Target& target) {
+  return {{"what", target.what},
+          {target.at_most ? "at_most" : "at_least", target.bound},
+          {"aim", json_of(target.aim)},
+          {"unit", target.unit},
+          {"measured", json_of(target.measured)},
+          {"met", target.met()},
+          {"note", target.note}};
+}
+
+}  // namespace
+
+std::string report_json(const Findings& found) {
+  const Provenance& made = provenance();
+  Json json{{"schema", "impact-damper/bench/1"},
+            {"machine", {{"processor", found.processor}, {"threads", std::thread::hardware_concurrency()}}},
+            {"provenance",
+             {{"version", made.version},
+              {"commit", made.commit},
+              {"compiler", made.compiler},
+              {"build_type", made.build_type},
+              {"flags", made.flags},
+              {"system", made.system}}},
+            {"clock", "CPU time of the process; for threads the clock on the wall"},
+            {"seconds_in_all", found.seconds},
+            {"yardstick",
+             {{"what", "one of a chain of dependent sincos calls of the C library"},
+              {"nanoseconds", json_of(found.yardstick, 1e9)}}},
+            {"missing_peers", found.missing_peers}};
+  for (const Target& target : targets_of(found)) json["targets"].push_back(json_of(target));
+  for (const Findings::Entrant& entrant : found.entrants) json["contenders"][entrant.name] = entrant.about;
+  for (const Reference& reference : found.references) json["references"].push_back(json_of(reference));
+  for (const Curve& curve : found.curves) json["curves"].push_back(json_of(curve));
+  for (const Counting& counting : found.counts) json["counts"].push_back(json_of(counting));
+  for (const Sweep& sweep : found.sweeps) json["sweeps"].push_back(json_of(sweep));
+  json["figures"] = json_of(found.figures);
+  for (const Allocations& counted : found.allocations) {
+    json["allocations"].push_back({{"engine", counted.engine},
+                                   {"impacts", counted.impacts},
+                                   {"nothing_recorded", counted.quiet},
+                                   {"half_cycles_recorded", counted.recorded}});
+  }
+  json["threads"] = {{"members", found.speedup.members},
+                     {"one_milliseconds", json_of(found.speedup.one, 1e3)},
+                     {"two_milliseconds", json_of(found.speedup.two, 1e3)},
+                     {"speedup", json_of(found.speedup.ratio)},
+                     {"repeats", found.speedup.repeats}};
+  return json.dump(1) + "\n";
+}
+
+}  // namespace impact_damper::bench

@@ -1,0 +1,226 @@
+#include <cmath>
+
+#include "impact_damper/files/provenance.hpp"
+#include "reference.hpp"
+#include "report.hpp"
+
+namespace impact_damper::bench {
+namespace {
+
+template <class... Numbers>
+std::string printed(const char* format, Numbers... numbers) {
+  char text[128];
+  std::snprintf(text, sizeof text, format, numbers...);
+  return text;
+}
+
+// Three digits, never an exponent where a person would not write one.
+std::string rounded(double number) {
+  const double size = std::abs(number);
+  if (size == 0) return "0";
+  if (size < 1e-3) return printed("%.1e", number);
+  if (size < 10) return printed("%.3g", number);
+  return printed(size < 100 ? "%.1f" : "%.0f", number);
+}
+
+using Cells = std::vector<std::string>;
+
+class PageTable {
+ public:
+  PageTable(std::string& page, const Cells& headings) : page_(page) {
+    row(headings);
+    page_ += "|";
+    for (std::size_t i = 0; i < headings.size(); ++i) page_ += i == 0 ? "---|" : "---:|";
+    page_ += "\n";
+  }
+  void row(const Cells& cells) {
+    page_ += "|";
+    for (const std::string& cell : cells) page_ += " " + cell + " |";
+    page_ += "\n";
+  }
+
+ private:
+  std::string& page_;
+};
+
+std::string with_unit(double number, const std::string& unit) {
+  return rounded(number) + (unit.empty() ? "" : " " + unit);
+}
+
+void add_targets(std::string& page, const Findings& found) {
+  page += "## What must come out\n\n";
+  PageTable table(page, {"", "bound", "aim", "measured", "met", "how"});
+  for (const Target& target : targets_of(found)) {
+    const std::string sign = target.at_most ? "≤ " : "≥ ";
+    std::string met = target.met() ? "yes" : "**no**";
+    if (target.aim && target.reaches(*target.aim)) met = "yes, the aim too";
+    table.row({target.what, sign + with_unit(target.bound, target.unit),
+               target.aim ? sign + with_unit(*target.aim, target.unit) : "",
+               target.measured ? with_unit(*target.measured, target.unit) : "—", met, target.note});
+  }
+}
+
+std::string time_cell(const Findings& found, const Curve& curve, double error) {
+  const auto time = time_at(curve, error);
+  if (!time) return "—";
+  return rounded(*time * found.yardstick.median * 1e3) + " ms (" + printed("%.0f", *time) + ")";
+}
+
+void add_times(std::string& page, const Findings& found) {
+  page +=
+      "\n## Run time for an error\n\n"
+      "![Run time against error, scene by scene](time_error.svg)\n\n"
+      "Milliseconds, in brackets yardsticks; —: the error is not reached. Interpolated between settings on "
+      "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
+      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor, the "
+      "median of nine releases, by the median of an ensemble of 63, less 1.\n";
+  for (const BenchScene& scene : found.scenes) {
+    page += "\n### " + scene.name + ": " + scene.what + "\n\n";
+    const double errors[] = {scene.chaotic ? 0.1 : 1e-6, scene.chaotic ? 0.03 : 1e-9};
+    PageTable table(page, {"", "for " + rounded(errors[0]), "for " + rounded(errors[1]), "smallest error",
+                           "in", "at", "repeats"});
+    for (const Curve& curve : found.curves) {
+      if (curve.scene != scene.name) continue;
+      const Point* best = nullptr;
+      for (const Point& point : curve.points) {
+        if (point.error && !(best && *best->error <= *point.error)) best = &point;
+      }
+      if (!best) {
+        table.row({curve.contender, "—", "—", "no run that can be compared", "", "", ""});
+        continue;
+      }
+      const Spread& time = best->timing.yardsticks;
+      table.row({curve.contender, time_cell(found, curve, errors[0]), time_cell(found, curve, errors[1]),
+                 rounded(*best->error),
+                 rounded(best->timing.seconds.median * 1e3) + " ms (" +
+                     printed("%.0f ± %.0f %%", time.median, 50 * (time.upper - time.lower) / time.median) +
+                     ")",
+                 curve.setting.empty() ? "" : curve.setting + " " + printed("%.1e", best->setting),
+                 std::to_string(best->timing.repeats)});
+    }
+  }
+}
+
+void add_entrants(std::string& page, const Findings& found) {
+  page += "\n## Who takes part\n\n";
+  PageTable table(page, {"", "how"});
+  for (const Findings::Entrant& entrant : found.entrants) table.row({entrant.name, entrant.about});
+}
+
+void add_references(std::string& page, const Findings& found) {
+  page += "\n## What the errors are measured from\n\n";
+  page += "The engine for the walls in question in " + std::string(reference_scalar()) +
+          "; Runge-Kutta-Fehlberg 78 of odeint in the same precision, tolerance 1e-20, as another "
+          "integrator.\n\n";
+  PageTable table(page,
+                  {"", "distance from long double", "from another integrator", "the ensemble's own scatter"});
+  const auto cell = [](const std::optional<double>& number) { return number ? rounded(*number) : "—"; };
+  for (const Reference& reference : found.references) {
+    table.row({reference.scene + (reference.walls == Walls::compliant ? ", compliant" : ", rigid"),
+               cell(reference.from_long_double), cell(reference.from_independent),
+               reference.loss_curve
+                   ? rounded(reference.loss_curve->scatter) + " (" + rounded(reference.loss_curve->lower) +
+                         " to " + rounded(reference.loss_curve->upper) + ")"
+                   : ""});
+  }
+}
+
+void add_counts(std::string& page, const Findings& found) {
+  page += "\n## What an impact takes\n\nCounted, not timed, by impact.\n\n";
+  PageTable table(page, {"", "impacts", "root searches", "evaluations", "steps", "sincos", "exp", "atan",
+                         "sqrt", "divisions", "+ − ×"});
+  for (const Counting& counting : found.counts) {
+    const Counts& c = counting.run.counts;
+    Cells cells{counting.scene + " " + counting.engine, std::to_string(counting.run.impacts)};
+    for (const std::int64_t count :
+         {c.searches, c.evaluations, c.steps, c.sincos, c.exponentials, c.arctangents, c.square_roots}) {
+      cells.push_back(printed("%.2f", double(count) / double(counting.run.impacts)));
+    }
+    for (const std::int64_t count : {c.divisions, c.other_arithmetic}) {
+      cells.push_back(printed("%.0f", double(count) / double(counting.run.impacts)));
+    }
+    table.row(cells);
+  }
+}
+
+void add_sweeps(std::string& page, const Findings& found) {
+  page +=
+      "\n## What an impact costs\n\n![Cost of an impact against number of impacts, stiffness and "
+      "restitution](cost.svg)\n\nYardsticks by impact, in brackets the ledger's residual.\n\n";
+  for (const char* against : {"impacts", "stiffness", "restitution"}) {
+    std::vector<const Sweep*> columns;
+    for (const Sweep& sweep : found.sweeps) {
+      if (sweep.against == against) columns.push_back(&sweep);
+    }
+    if (columns.empty()) continue;
+    Cells headings{columns[0]->what};
+    for (const Sweep* sweep : columns) {
+      headings.push_back(sweep->engine);
+      headings.push_back("impacts in a half cycle");
+    }
+    PageTable table(page, headings);
+    for (std::size_t i = 0; i < columns[0]->points.size(); ++i) {
+      Cells cells{printed("%g", columns[0]->points[i].at)};
+      for (const Sweep* sweep : columns) {
+        const SweepPoint& point = sweep->points[i];
+        cells.push_back(printed("%.1f (%.0e)", point.cost(), point.residual));
+        cells.push_back(printed("%.1f", double(point.impacts) / double(point.half_cycles)));
+      }
+      table.row(cells);
+    }
+    page += "\n";
+  }
+}
+
+void add_rest(std::string& page, const Findings& found) {
+  const FigureSet& set = found.figures;
+  page += "## The figures' scenes and tables\n\n" + std::to_string(set.scenes) + " scenes, " +
+          std::to_string(set.tables) + " tables, " + printed("%.1f", double(set.bytes) / 1e6) +
+          " MB of text: " + rounded(set.timing.seconds.median * 1e3) + " ms (" +
+          printed("%.0f", set.timing.yardsticks.median) + "). Where it goes:\n\n";
+  PageTable parts(page, {"", "share"});
+  for (const FigureSet::Part& part : set.parts) parts.row({part.name, printed("%.0f %%", 100 * part.share)});
+
+  page += "\n## Two threads\n\n" + std::to_string(found.speedup.members) +
+          " decays from 6 to 0.03: " + rounded(found.speedup.one.median * 1e3) + " ms on one thread, " +
+          rounded(found.speedup.two.median * 1e3) + " ms on two; " +
+          printed("%.2f (quartiles %.2f to %.2f)", found.speedup.ratio.median, found.speedup.ratio.lower,
+                  found.speedup.ratio.upper) +
+          " times as fast.\n";
+
+  std::string notes;
+  for (const std::string& peer : found.missing_peers) notes += "- not in this build: " + peer + "\n";
+  for (const Curve& curve : found.curves) {
+    for (const std::string& failure : curve.failures) {
+      notes += "- " + curve.scene + " " + curve.contender + " fails at " + failure + "\n";
+    }
+  }
+  if (!notes.empty()) page += "\n## Missing\n\n" + notes;
+}
+
+}  // namespace
+
+std::string report_page(const Findings& found) {
+  const Provenance& made = provenance();
+  std::string page =
+      "# Run time and error, as measured\n\nMade by `make bench`; every number is also in "
+      "[bench.json](bench.json).\n\n";
+  page += "| | |\n|---|---|\n| processor | " + found.processor + " |\n| compiler | " +
+          std::string(made.compiler) + ", " + std::string(made.build_type) +
+          (made.flags.empty() ? "" : ", " + std::string(made.flags)) + " |\n| commit | " +
+          std::string(made.commit) + " |\n| yardstick | one of a chain of dependent `sincos` calls: " +
+          printed("%.1f ns (quartiles %.1f to %.1f)", found.yardstick.median * 1e9,
+                  found.yardstick.lower * 1e9, found.yardstick.upper * 1e9) +
+          " |\n| times | CPU time, median of the repeats; for threads the clock on the wall |\n| in all | " +
+          printed("%.0f s", found.seconds) + " |\n\n";
+  add_targets(page, found);
+  add_times(page, found);
+  add_entrants(page, found);
+  add_references(page, found);
+  add_counts(page, found);
+  add_sweeps(page, found);
+  add_rest(page, found);
+  return page;
+}
+
+}  // namespace impact_damper::bench
