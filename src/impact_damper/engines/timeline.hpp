@@ -146,12 +146,16 @@ class Timeline {
       if (may_turn) find_peaks(motion, from, until, no_turn_before);
       if (!crossing) return duration;
       const Real zero = now() + *crossing;
-      observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
-      ++rows_;
-      const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
-      if (low || rows_ >= budget_.max_half_cycles) {
-        stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
-        return *crossing;
+      // A heavy mass may meet its wall just as x comes to zero, and throw it back: by rounding x was across.
+      if (row_best_ > last_best_ * (16 * std::numeric_limits<Real>::epsilon())) {
+        observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
+        ++rows_;
+        const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
+        if (low || rows_ >= budget_.max_half_cycles) {
+          stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
+          return *crossing;
+        }
+        last_best_ = row_best_;
       }
       side_ = -side_;
       row_begin_ = zero;
@@ -200,6 +204,7 @@ class Timeline {
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
   // its largest |x| so far.
   Real side_{0}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
+  Real last_best_{0};  // of the half cycle before
   Real viscous_{0}, forcing_{0}, turnover_{0};
 };
 
