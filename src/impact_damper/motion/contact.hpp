@@ -50,18 +50,19 @@ class ContactSystem {
     fast_ = (beta - alpha * p2) / resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
     split({0, 1, 0, -1}, drive_slow, drive_fast);
-    std::array<ContactParts<Real>, 3> touch;
-    split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
-    split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
-    split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    std::array<Touch<Real>, 3> touch;
+    touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
     if (!forcing)
-      rebound = Rebound<Real>(
-          slow, fast, touch, [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
+      rebound =
+          Rebound<Real>(slow, fast, share_, zeta, touch,
+                        [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
   }
 
-  // u = slow + fast.
-  void split(const ContactState<Real>& u, ContactState<Real>& slow_part,
-             ContactState<Real>& fast_part) const {
+  // u = slow + fast. Returns what the fast part moves the centre X by.
+  Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
+                     ContactState<Real>& fast_part) const {
     const auto& [p, b, p2, b2, dp, db, db2] = factors_;
     const Real dx = 2 * zeta * u.v + u.x;  // D x
     const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
@@ -78,10 +79,12 @@ class ContactSystem {
 
     const Real f = share_ * joined_ * (2 * zeta * u.w + u.q) + dp * X1 + db * X;  // Q1 X and its derivative
     const Real f1 = share_ * joined_ * (2 * zeta * q2 + u.w) + dp * X2 + db * X1;
-    fast_part.x = (alpha_ * f1 - fast_ * f) - share_ * fast_part.q;
-    fast_part.v = -(beta_ * f1 + alpha_ * b2 * f) - share_ * fast_part.w;
+    const Centre<Real> centre{alpha_ * f1 - fast_ * f, -(beta_ * f1 + alpha_ * b2 * f)};
+    fast_part.x = centre.x - share_ * fast_part.q;
+    fast_part.v = centre.v - share_ * fast_part.w;
     slow_part.x = u.x - fast_part.x;
     slow_part.v = u.v - fast_part.v;
+    return centre;
   }
 
   // Derivatives of x and q without forcing, from the equations themselves.
