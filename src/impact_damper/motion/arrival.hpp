@@ -79,10 +79,11 @@ template <class Real>
 Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
   const Real over = 1 / y[1], t = (level - y[0]) * over;
   const Real a = t * y[2] * over / 2, b = t * t * y[3] * over * reciprocals<Real>[6];
-  const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a, h_2 = h * h;
-  const Real tiny = std::numeric_limits<Real>::epsilon();
-  return {shift, a_2 * a_2 <= tiny && shift_2 * shift_2 <= tiny * (h_2 * h_2) &&
-                     fourth * (shift_2 * shift_2) <= 4 * tiny * absolute(y[1]) * h};
+  const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
+  const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
+  // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
+  return {shift, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+                     fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
 // u and u' a short time later.

@@ -114,32 +114,37 @@ class Flight {
       const auto x = swing_.template instant<8>(here.x, here.v, begin);
       const auto u = derivatives_of_u(here, x.derivatives());
       const Real fourth = x.bound(4, span);
-      const auto reached = [&](bool across, const Real& u1, const Real& h) -> std::optional<Arrival<Real>> {
+      const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
+                               const Real& u1) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
         if (!stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
-        // z has gone straight there.
-        const Real x_there = here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level));
         const bool left = across == (wall_ == 1);
         return Arrival<Real>{
-            begin + h,
-            left ? Wall::left : Wall::right,
-            {x_there, here.v + away_ * (here.u1 - u1), left ? Real(0) : Real(1), away_ * u1}};
+            begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
       const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
       Real h = guessed.time;
       if (!(h > 0)) return {};
-      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close)
-        return reached(guessed.across, u1, h + shift);
+      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close) {
+        // z = x + y has gone straight there.
+        const Real whole = h + shift, level = guessed.across ? 1 : 0;
+        return reached(guessed.across, whole,
+                       here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
+                       here.v + away_ * (here.u1 - u1), u1);
+      }
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto u_there =
-            derivatives_of_u(there, swing_.template derivatives<6>(there.x, there.v, begin + h));
+        const auto x_there = swing_.template derivatives<6>(there.x, there.v, begin + h);
+        const auto u_there = derivatives_of_u(there, x_there);
         const bool across = there.u > Real(0.5);
         const auto [shift, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
         if (!(absolute(shift) < h / 4) || correction == 3) break;
-        if (close) return reached(across, moved(u_there, shift).u1, h + shift);
+        if (close) {
+          const auto [x1, v1] = moved(x_there, shift);
+          return reached(across, h + shift, x1, v1, moved(u_there, shift).u1);
+        }
         h += shift;
       }
       if (!stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};

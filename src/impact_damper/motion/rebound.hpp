@@ -5,8 +5,8 @@
 // there; both are numbers of the scene. A contact then costs the sums
 //     q(T + s) = sum_n s^n (Q_n . (x, x', y'))
 // and that for x, and solving the first for s, which must be so short that a term more would be a rounding
-// error. A rounding error that is the same in every impact adds up: so what is tabulated for x is the change of
-// the masses' centre, which is small, and for y' what differs from -E y'.
+// error. A rounding error that is the same in every impact adds up: so what is tabulated for x is the change
+// of the masses' centre, which is small, and for y' what differs from -E y'.
 //
 // The proof that q has not been back at zero before T + s is that of arrival.hpp, for exp(a t) q, a the fast
 // motion's decay: the fast part of that is a plain sine, so that its fourth derivative does not outgrow what
