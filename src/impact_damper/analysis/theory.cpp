@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
@@ -61,9 +62,10 @@ BounceDown bounce_down(double restitution, double amplitude) {
   while (static_cast<int>(bounces.time.size()) < most_bounces) {
     bounces.time.push_back(t);
     bounces.speed.push_back(w);
-    const double u = e * w;
-    const double rest = accumulation_time(e, a * std::sin(t), u);
-    if (rest <= short_rest * std::min(1.0, pi - t)) {
+    const double u = e * w, left = pi - t;
+    const auto [sin_t, cos_t] = sin_cos(t);
+    const double rest = accumulation_time(e, a * sin_t, u);
+    if (rest <= short_rest * std::min(1.0, left)) {
       bounces.sticks = true;
       bounces.accumulation = t + rest;
       squares += square(w);
@@ -71,16 +73,29 @@ BounceDown bounce_down(double restitution, double amplitude) {
     }
     squares += (1 - e * e) * square(w);
     // Distance from the wall after s: u s + A (cos(t) (sin(s) - s) - sin(t) (1 - cos(s))), concave up to
-    // t + s = pi: at most one return, and Newton's steps from the far end fall onto it from above.
-    const auto speed_after = [&](double s) { return u - 2 * a * std::sin(t + s / 2) * std::sin(s / 2); };
-    const auto distance_after = [&](double s) {
-      return u * s + a * (std::cos(t) * (std::sin(s) - s) - 2 * std::sin(t) * square(std::sin(s / 2)));
+    // t + s = pi: at most one return, and Newton's steps from behind it fall onto it from above.
+    struct After {
+      double distance, speed;
     };
-    double s = pi - t;
-    if (!(distance_after(s) < 0)) break;
-    for (double next; (next = s - distance_after(s) / speed_after(s)) < s;) s = next;
-    w = -speed_after(s);  // which reads t
+    const auto after = [&](double s) {
+      const auto [sin, cos] = sin_cos(s / 2);
+      return After{u * s + a * (cos_t * (2 * sin * cos - s) - sin_t * 2 * square(sin)),
+                   u - 2 * a * sin * (sin_t * cos + cos_t * sin)};
+    };
+    // Behind the return is where an acceleration that falls evenly from A sin(t) to 0 would bring the mass
+    // back, as the sine lies above its chord: u = A sin(t) (s / 2 - s^2 / (6 left)). It does within `left` if
+    // r = u / (A sin(t)) is below a third of that.
+    const double r = u / (a * sin_t);
+    double s = left;
+    if (r < left / 3) {
+      s = 4 * r / (1 + std::sqrt(1 - 8 * r / (3 * left)));
+    } else if (!(after(left).distance < 0)) {
+      break;
+    }
+    After at = after(s);
+    for (double next; (next = s - at.distance / at.speed) < s; at = after(s)) s = next;
     t += s;
+    w = -at.speed;
   }
   bounces.loss = squares / (pi * square(a));
   return bounces;
