@@ -193,7 +193,7 @@ TEST_CASE("the closed forms in the tables meet their own landmarks") {
   const FigureRuns runs{{"decay", {"decay.json", run}}};
   const Table table = figure_table(loss_figure(LossOrdinate::specific), runs);
   const std::vector<double>& loss = block(table, "one-impact-1").columns[1].values;
-  // 120 points over the branch miss its maximum by less than a thousandth.
+  // A point each hundredth miss its maximum by less than a thousandth.
   CHECK(*std::ranges::max_element(loss) == doctest::Approx(16 / pi).epsilon(1e-3));  // (4/pi)(1+e)/(1-e)
   const TableBlock& bounced = block(table, "bounce-down-1");
   CHECK(bounced.columns[0].values.front() == bounce_down_end(0.6));

@@ -18,9 +18,9 @@ void check(const std::vector<double>& time, const std::vector<double>& amplitude
   }
 }
 
-// Value and slope at the middle of a parabola fitted by least squares. Its terms 1, p and p^2 - alpha p - beta,
-// p counted from the mean time, are orthogonal over the given times: each coefficient is a quotient of two
-// sums, and nothing is lost in a system of equations. Amplitudes are counted from the middle one.
+// Value and slope at the middle of a parabola fitted by least squares. Its terms 1, p and p^2 - alpha p -
+// beta, p counted from the mean time, are orthogonal over the given times: each coefficient is a quotient of
+// two sums, and nothing is lost in a system of equations. Amplitudes are counted from the middle one.
 struct Parabola {
   double value, slope;
 };
@@ -31,7 +31,8 @@ Parabola fitted_parabola(std::span<const double> time, std::span<const double> a
   double mean = 0;
   for (const double t : time) mean += t - middle_time;
   mean /= count;
-  double p2 = 0, p3 = 0, p4 = 0, a = 0, ap = 0, ap2 = 0;  // sums of the powers of p, and of amplitude times them
+  double p2 = 0, p3 = 0, p4 = 0, a = 0, ap = 0,
+         ap2 = 0;  // sums of the powers of p, and of amplitude times them
   for (std::size_t i = 0; i < points; ++i) {
     const double p = time[i] - middle_time - mean, square = p * p;
     const double above = amplitude[i] - middle_amplitude;
