@@ -295,6 +295,7 @@ TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
   const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
   const TableBlock &curve = block(table, "curve-1"), &band = block(table, "band-1");
   REQUIRE(band.columns[0].values.size() > 100);
+  CHECK(std::ranges::is_sorted(band.columns[0].values));
   double widest = 0;
   for (std::size_t i = 0; i < band.columns[0].values.size(); ++i) {
     const double amplitude = band.columns[0].values[i];
