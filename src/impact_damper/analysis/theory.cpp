@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
@@ -137,8 +138,10 @@ double bounce_down_end(double restitution) {
     low = high;
     high *= 2;
   }
-  for (double middle; (middle = low + (high - low) / 2) > low && middle < high;)
+  while (high - low > 1e-12 * high) {  // below that the rounding of the last bounces decides
+    const double middle = low + (high - low) / 2;
     (accumulates(restitution, middle) ? high : low) = middle;
+  }
   return high;
 }
 
