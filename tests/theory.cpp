@@ -169,6 +169,9 @@ TEST_CASE("bounces accumulate in time above the end of bounce-down and not below
   for (const auto& [e, expected] : ends) {
     const double end = bounce_down_end(e);
     CHECK(end == doctest::Approx(expected).epsilon(0.0025));  // half a unit of the third digit stated
+    // Bounces followed to the last agree with the bound that decides early.
+    CHECK(bounce_down(e, end * (1 + 1e-9)).sticks);
+    CHECK(!bounce_down(e, end * (1 - 1e-9)).sticks);
     // Independently: the fate of the bounces under the same acceleration, located by bisection in time.
     for (double factor : {0.999, 1.001}) {
       const double a = factor * end;

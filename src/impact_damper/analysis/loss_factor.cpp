@@ -1,15 +1,11 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 
-#include <Eigen/QR>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 namespace impact_damper {
 namespace {
-
-constexpr int most_points = 19;
-using Design = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, most_points, 3>;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_points, 1>;
 
 void check(const std::vector<double>& time, const std::vector<double>& amplitude, int half_cycles) {
   if (half_cycles < 10 || half_cycles > 18 || half_cycles % 2 != 0)
@@ -22,31 +18,54 @@ void check(const std::vector<double>& time, const std::vector<double>& amplitude
   }
 }
 
+// Value and slope at the middle of a parabola fitted by least squares. Its terms 1, p and p^2 - alpha p -
+// beta, p counted from the mean time, are orthogonal over the given times: each coefficient is a quotient of
+// two sums, and nothing is lost in a system of equations. Amplitudes are counted from the middle one.
+struct Parabola {
+  double value, slope;
+};
+Parabola fitted_parabola(std::span<const double> time, std::span<const double> amplitude) {
+  const std::size_t points = time.size();
+  const double count = static_cast<double>(points);
+  const double middle_time = time[points / 2], middle_amplitude = amplitude[points / 2];
+  double mean = 0;
+  for (const double t : time) mean += t - middle_time;
+  mean /= count;
+  double p2 = 0, p3 = 0, p4 = 0, a = 0, ap = 0,
+         ap2 = 0;  // sums of the powers of p, and of amplitude times them
+  for (std::size_t i = 0; i < points; ++i) {
+    const double p = time[i] - middle_time - mean, square = p * p;
+    const double above = amplitude[i] - middle_amplitude;
+    p2 += square;
+    p3 += square * p;
+    p4 += square * square;
+    a += above;
+    ap += above * p;
+    ap2 += above * square;
+  }
+  const double alpha = p3 / p2, beta = p2 / count;
+  const double linear = ap / p2;
+  const double quadratic = (ap2 - alpha * ap - beta * a) / (p4 - alpha * p3 - beta * p2);
+  return {middle_amplitude + a / count - linear * mean + quadratic * (mean * mean + alpha * mean - beta),
+          linear - quadratic * (2 * mean + alpha)};
+}
+
 }  // namespace
 
 LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
                                 const LossFactorOptions& options) {
   check(peak_time, amplitude, options.half_cycles);
-  const std::size_t arm = static_cast<std::size_t>(options.half_cycles) / 2;
-  const Eigen::Index points = options.half_cycles + 1;
+  const std::size_t points = static_cast<std::size_t>(options.half_cycles) + 1;
   LossFactor loss;
-  Design design(points, 3);
-  Column value(points);
-  for (std::size_t middle = arm; middle + arm < peak_time.size(); ++middle) {
-    // Time is counted from the middle peak in half spans: the columns are then of order one, and value and
-    // slope at the middle are the first two coefficients.
-    const double origin = peak_time[middle];
-    const double scale = (peak_time[middle + arm] - peak_time[middle - arm]) / 2;
-    for (Eigen::Index i = 0; i < points; ++i) {
-      const std::size_t at = middle - arm + static_cast<std::size_t>(i);
-      const double s = (peak_time[at] - origin) / scale;
-      design.row(i) << 1, s, s * s;
-      value[i] = amplitude[at];
-    }
-    const Eigen::Vector3d parabola = design.householderQr().solve(value);
-    loss.amplitude.push_back(parabola[0]);
-    loss.time.push_back(origin);
-    loss.eta.push_back(-2 * parabola[1] / (scale * parabola[0]));
+  if (peak_time.size() < points) return loss;
+  const std::size_t rows = peak_time.size() - points + 1;
+  for (auto* column : {&loss.amplitude, &loss.time, &loss.eta}) column->reserve(rows);
+  for (std::size_t first = 0; first < rows; ++first) {
+    const Parabola parabola = fitted_parabola(std::span(peak_time).subspan(first, points),
+                                              std::span(amplitude).subspan(first, points));
+    loss.amplitude.push_back(parabola.value);
+    loss.time.push_back(peak_time[first + points / 2]);
+    loss.eta.push_back(-2 * parabola.slope / parabola.value);
   }
   return loss;
 }

@@ -3,13 +3,70 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
 namespace {
 constexpr double pi = std::numbers::pi;
+constexpr int most_bounces = 1000;
 double square(double x) { return x * x; }
+
+// The secondary mass at the far wall, under the relative acceleration A sin(t).
+struct Bounce {
+  double time, speed;  // the relative speed at which it meets the wall
+};
+
+double time_to_accumulation(double e, double a, const Bounce& at) {
+  return accumulation_time(e, a * std::sin(at.time), e * at.speed);
+}
+
+// Absent if the mass is not back before t = pi.
+std::optional<Bounce> next_bounce(double e, double a, const Bounce& at) {
+  const double t = at.time, u = e * at.speed, left = pi - t;
+  const auto [sin_t, cos_t] = sin_cos(t);
+  // Distance from the wall after s: u s + A (cos(t) (sin(s) - s) - sin(t) (1 - cos(s))), concave up to
+  // t + s = pi: at most one return, and Newton's steps from behind it fall onto it from above.
+  struct After {
+    double distance, speed;
+  };
+  const auto after = [&](double s) {
+    const auto [sin, cos] = sin_cos(s / 2);
+    return After{u * s + a * (cos_t * (2 * sin * cos - s) - sin_t * 2 * square(sin)),
+                 u - 2 * a * sin * (sin_t * cos + cos_t * sin)};
+  };
+  // Behind the return is where an acceleration that falls evenly from A sin(t) to 0 would bring the mass
+  // back, as the sine lies above its chord: u = A sin(t) (s / 2 - s^2 / (6 left)). It does within `left` if
+  // r = u / (A sin(t)) is below a third of that.
+  const double r = u / (a * sin_t);
+  double s = left;
+  if (r < left / 3) {
+    s = 4 * r / (1 + std::sqrt(1 - 8 * r / (3 * left)));
+  } else if (!(after(left).distance < 0)) {
+    return std::nullopt;
+  }
+  After there = after(s);
+  for (double next; (next = s - there.distance / there.speed) < s; there = after(s)) s = next;
+  return Bounce{t + s, -there.speed};
+}
+
+Bounce first_bounce(double amplitude) {
+  const StuckRelease release = stuck_release(amplitude);
+  return {release.time, release.speed};
+}
+
+// Whether the bounces accumulate before t = pi. From t = pi/2 on the acceleration falls, so that each bounce
+// returns a speed below e times the last one's. If all flights end within half of the time left, the
+// acceleration is half of A sin(t) or more in them, and they take twice time_to_accumulation at most: they do
+// end there if that is a quarter of the time left.
+bool accumulates(double e, double a) {
+  std::optional<Bounce> at = first_bounce(a);
+  for (int n = 0; at && n < most_bounces; ++n, at = next_bounce(e, a, *at))
+    if (at->time >= pi / 2 && time_to_accumulation(e, a, *at) <= (pi - at->time) / 4) return true;
+  return false;
+}
 }  // namespace
 
 double asymmetry(double restitution) { return (1 - restitution) / (1 + restitution); }
@@ -52,35 +109,22 @@ StuckRelease stuck_release(double amplitude) {
 }
 
 BounceDown bounce_down(double restitution, double amplitude) {
-  constexpr int most_bounces = 1000;
   constexpr double short_rest = 1e-6;  // of the time left: the acceleration changes by as little in the rest
   const double e = restitution, a = amplitude;
   BounceDown bounces;
-  const StuckRelease release = stuck_release(amplitude);
-  double t = release.time, w = release.speed, squares = 0;
-  while (static_cast<int>(bounces.time.size()) < most_bounces) {
-    bounces.time.push_back(t);
-    bounces.speed.push_back(w);
-    const double u = e * w;
-    const double rest = accumulation_time(e, a * std::sin(t), u);
-    if (rest <= short_rest * std::min(1.0, pi - t)) {
+  double squares = 0;
+  std::optional<Bounce> at = first_bounce(a);
+  for (int n = 0; at && n < most_bounces; ++n, at = next_bounce(e, a, *at)) {
+    bounces.time.push_back(at->time);
+    bounces.speed.push_back(at->speed);
+    const double rest = time_to_accumulation(e, a, *at);
+    if (rest <= short_rest * std::min(1.0, pi - at->time)) {
       bounces.sticks = true;
-      bounces.accumulation = t + rest;
-      squares += square(w);
+      bounces.accumulation = at->time + rest;
+      squares += square(at->speed);
       break;
     }
-    squares += (1 - e * e) * square(w);
-    // Distance from the wall after s: u s + A (cos(t) (sin(s) - s) - sin(t) (1 - cos(s))), concave up to
-    // t + s = pi: at most one return, and Newton's steps from the far end fall onto it from above.
-    const auto speed_after = [&](double s) { return u - 2 * a * std::sin(t + s / 2) * std::sin(s / 2); };
-    const auto distance_after = [&](double s) {
-      return u * s + a * (std::cos(t) * (std::sin(s) - s) - 2 * std::sin(t) * square(std::sin(s / 2)));
-    };
-    double s = pi - t;
-    if (!(distance_after(s) < 0)) break;
-    for (double next; (next = s - distance_after(s) / speed_after(s)) < s;) s = next;
-    w = -speed_after(s);  // which reads t
-    t += s;
+    squares += (1 - e * e) * square(at->speed);
   }
   bounces.loss = squares / (pi * square(a));
   return bounces;
@@ -88,14 +132,16 @@ BounceDown bounce_down(double restitution, double amplitude) {
 
 double bounce_down_end(double restitution) {
   double low = 1 / pi;
-  if (bounce_down(restitution, low).sticks) return low;
+  if (accumulates(restitution, low)) return low;
   double high = 2 * low;
-  while (!bounce_down(restitution, high).sticks) {
+  while (!accumulates(restitution, high)) {
     low = high;
     high *= 2;
   }
-  for (double middle; (middle = low + (high - low) / 2) > low && middle < high;)
-    (bounce_down(restitution, middle).sticks ? high : low) = middle;
+  while (high - low > 1e-12 * high) {  // below that the rounding of the last bounces decides
+    const double middle = low + (high - low) / 2;
+    (accumulates(restitution, middle) ? high : low) = middle;
+  }
   return high;
 }
 

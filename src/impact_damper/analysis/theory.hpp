@@ -59,9 +59,10 @@ struct BounceDown {
   double accumulation = 0;    // where they do, if they do
   double loss = 0;            // eta/nu per radian of the losses listed (and of the rest, if they accumulate)
 };
-// Follows at most 1000 bounces; they count as accumulated once the rest would last less than 1e-10.
+// Follows at most 1000 bounces; they count as accumulated once the rest would last less than 1e-6, and less
+// than 1e-6 of the time left until x = 0.
 BounceDown bounce_down(double restitution, double amplitude);
-// The amplitude at which the bounces accumulate just as x returns to 0, by bisection to rounding:
+// The amplitude at which the bounces accumulate just as x returns to 0, by bisection to 1e-12 of it:
 // 2.05 for e = 0.4, 5.23 for 0.6, 21.6 for 0.8. e in [0, 0.95].
 double bounce_down_end(double restitution);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
@@ -9,6 +10,7 @@
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/paper/series_blocks.hpp"
+#include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
 namespace {
@@ -29,25 +31,19 @@ std::string meaning(LossOrdinate which) {
   return "";
 }
 
-// The ordinate that a specific loss eta/nu of the impacts alone amounts to at zeta = 0.
-double theory_ordinate(LossOrdinate which, double amplitude, double specific, const Scene& scene) {
-  return ordinate({.amplitude = {amplitude}, .time = {0}, .eta = {specific * scene.mass_ratio}}, scene,
-                  which)[0];
-}
-
-constexpr int theory_points = 120;
-
-// Equally spaced in the logarithm, both ends included.
-double amplitude_at(int i, double from, double to, int last = theory_points) {
+// i-th of last + 1 amplitudes, equally spaced in the logarithm, both ends included.
+double amplitude_at(int i, int last, double from, double to) {
   if (i == 0) return from;
   if (i == last) return to;
   return from * std::pow(to / from, static_cast<double>(i) / last);
 }
 
-TableBlock theory_block(const std::string& name, const std::string& legend, LossOrdinate which) {
-  return {.name = name,
-          .notes = {"closed form for nu -> 0, zeta = 0"},
-          .columns = {{"amplitude", "peak amplitude A, by epsilon", {}}, {legend, meaning(which), {}}}};
+// Amplitudes along a closed form: a hundredth apart at most, which no drawing tells from the curve.
+std::vector<double> theory_amplitudes(double from, double to) {
+  const int last = static_cast<int>(std::ceil(100 * std::log(to / from)));
+  std::vector<double> amplitudes;
+  for (int i = 0; i <= last; ++i) amplitudes.push_back(amplitude_at(i, last, from, to));
+  return amplitudes;
 }
 
 // How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
@@ -59,40 +55,33 @@ std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
   const double last =
       run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
   const auto behind = std::ranges::lower_bound(loss.time, last);
-  return std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin()));
+  return std::min(loss.eta.size(),
+                  std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin())));
 }
 
-// The ordinate where the amplitude first falls below `amplitude`, between the two rows beside it; absent
-// outside the first `kept` rows.
-std::optional<double> value_at(double amplitude, const LossFactor& loss, const std::vector<double>& values,
-                               std::size_t kept) {
-  for (std::size_t i = 1; i < kept; ++i) {
-    if (!(loss.amplitude[i] < amplitude)) continue;
-    if (!(loss.amplitude[i - 1] >= amplitude)) return std::nullopt;
-    const double part = (loss.amplitude[i - 1] - amplitude) / (loss.amplitude[i - 1] - loss.amplitude[i]);
-    return values[i - 1] + part * (values[i] - values[i - 1]);
-  }
-  return std::nullopt;
-}
+// The averaged loss factor of one run and what is drawn of it.
+struct LossCurve {
+  LossFactor loss;
+  std::vector<double> values;  // the figure's ordinate
+  std::size_t kept;            // rows before impact failure
 
-// The extremes over an ensemble of the run's scene, where all members have a value.
-TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
+  LossCurve(const Figure& figure, const FigureCurve& curve, const Run& run)
+      : loss(averaged_loss_factor(*run.half_cycles, curve.loss_factor)),
+        values(ordinate(loss, run.scene, *figure.ordinate)),
+        kept(before_failure(run, loss, curve.loss_factor.half_cycles)) {}
+};
+
+// The extremes over an ensemble of the run's scene, `own` being the run's, where all members have a value.
+TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run, const LossCurve& own,
                       const std::string& number, const Threads& threads) {
-  struct Member {
-    LossFactor loss;
-    std::vector<double> values;
-    std::size_t kept;
-  };
-  std::vector<Member> members;
-  const EnsembleOptions options{.members = curve.ensemble, .threads = threads};
-  for (const Run& each : simulate_ensemble(run.scene, run.engine, Record{}, options)) {
-    Member member{averaged_loss_factor(*each.half_cycles, curve.loss_factor), {}, 0};
-    member.values = ordinate(member.loss, each.scene, *figure.ordinate);
-    member.kept = before_failure(each, member.loss, curve.loss_factor.half_cycles);
-    members.push_back(std::move(member));
-  }
-  const auto own = members[0].loss.amplitude.begin();
-  const double least = *std::min_element(own, own + static_cast<std::ptrdiff_t>(members[0].kept));
+  EnsembleOptions options;
+  options.members = curve.ensemble;
+  const std::vector<Scene> scenes = ensemble_of(run.scene, options);
+  std::vector<LossCurve> members(scenes.size(), own);
+  for_each_index(curve.ensemble - 1, threads, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i) + 1;
+    members[n] = LossCurve(figure, curve, simulate(scenes[n], run.engine, Record{}));
+  });
   TableBlock block{.name = "band-" + number,
                    .notes = {std::to_string(curve.ensemble) + " releases of scene " + curve.scene +
                              ", x0 shifted by up to " + std::to_string(options.most_steps) + " times " +
@@ -100,20 +89,64 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
                    .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
                                {"least", "ordinate of the ensemble", {}},
                                {std::to_string(curve.ensemble) + " releases", "greatest ordinate", {}}}};
-  for (int k = 0; k <= 2 * theory_points; ++k) {
-    const double amplitude = amplitude_at(k, least, run.scene.x0, 2 * theory_points);
-    std::vector<double> values;
-    for (const Member& member : members) {
-      if (const auto value = value_at(amplitude, member.loss, member.values, member.kept))
-        values.push_back(*value);
+  const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
+  const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
+  // From the largest amplitude down: each member is then walked through once, its row being the first that
+  // lies below the amplitude.
+  constexpr int last = 240;
+  std::vector<std::size_t> row(members.size(), 0);
+  std::vector<double> values(members.size());
+  for (int k = last; k >= 0; --k) {
+    const double amplitude = amplitude_at(k, last, least, run.scene.x0);
+    bool all = true;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      const auto& [loss, ordinates, kept] = members[n];
+      std::size_t& i = row[n];
+      while (i < kept && !(loss.amplitude[i] < amplitude)) ++i;
+      if (i == 0 || i == kept) {
+        all = false;
+        continue;
+      }
+      const double part = (loss.amplitude[i - 1] - amplitude) / (loss.amplitude[i - 1] - loss.amplitude[i]);
+      values[n] = ordinates[i - 1] + part * (ordinates[i] - ordinates[i - 1]);
     }
-    if (values.size() < members.size()) continue;
+    if (!all) continue;
     const Spread spread = spread_of(values);
     block.columns[0].values.push_back(amplitude);
     block.columns[1].values.push_back(spread.low);
     block.columns[2].values.push_back(spread.high);
   }
+  for (TableColumn& column : block.columns) std::ranges::reverse(column.values);
   return block;
+}
+
+// The closed forms for zeta = 0, with eta / nu for eta. They depend on no more than the restitution and how
+// far up they are drawn, so one serves all curves that differ in something else.
+struct ClosedForms {
+  double restitution, largest;
+  LossFactor one_impact, bounce_down;
+
+  ClosedForms(double e, double largest_amplitude) : restitution(e), largest(largest_amplitude) {
+    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e))) {
+      const auto motion = single_impact(e, amplitude);
+      if (!motion) continue;  // the fold itself, by rounding
+      one_impact.amplitude.push_back(amplitude);
+      one_impact.eta.push_back(motion->loss);
+    }
+    if (e > 0.95 || !impact_damper::bounce_down(e, largest).sticks) return;
+    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest);
+    for (const double amplitude : bounce_down.amplitude)
+      bounce_down.eta.push_back(impact_damper::bounce_down(e, amplitude).loss);
+  }
+};
+
+TableBlock theory_block(const std::string& name, const std::string& legend, LossFactor form,
+                        const Scene& scene, LossOrdinate which) {
+  for (double& eta : form.eta) eta *= scene.mass_ratio;
+  return {.name = name,
+          .notes = {"closed form for nu -> 0, zeta = 0"},
+          .columns = {{"amplitude", "peak amplitude A, by epsilon", form.amplitude},
+                      {legend, meaning(which), ordinate(form, scene, which)}}};
 }
 
 }  // namespace
@@ -123,14 +156,13 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
                     Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
   const int span = curve.loss_factor.half_cycles;
-  const LossFactor loss = averaged_loss_factor(rows, curve.loss_factor);
+  const LossCurve own(figure, curve, source.run);
+  const auto& [loss, values, kept] = own;
   if (loss.eta.size() < 2) {
     throw unusable(figure, source.file,
                    "is too short: " + std::to_string(rows.amplitude.size()) +
                        " half cycles, the averaging needs at least " + std::to_string(span + 2));
   }
-  const std::vector<double> values = ordinate(loss, source.run.scene, *figure.ordinate);
-  const std::size_t kept = before_failure(source.run, loss, span);
   const auto part = [&](const std::vector<double>& column, std::size_t from, std::size_t to) {
     return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
                                column.begin() + static_cast<std::ptrdiff_t>(to));
@@ -147,7 +179,7 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   block("curve-" + number, "", 0, kept);
   if (kept < values.size())
     block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
-  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, number, threads));
+  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, own, number, threads));
 }
 
 void add_spread_block(const Figure& figure, Table& table) {
@@ -177,37 +209,19 @@ void add_spread_block(const Figure& figure, Table& table) {
 
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,
                             Table& table) {
-  const LossOrdinate which = *figure.ordinate;
+  std::optional<ClosedForms> forms;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Scene& scene = sources[i]->run.scene;
     // The closed forms are for zeta = 0 and for a rebound; below e = 1 only.
     if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
-    const std::string number = std::to_string(i + 1);
-    const double e = scene.restitution;
-
-    TableBlock one = theory_block("one-impact-" + number, "one impact per half cycle", which);
-    const double fold = fold_amplitude(e), unequal = equal_spacing_amplitude(e);
-    for (int k = 0; k <= theory_points; ++k) {
-      const double amplitude = amplitude_at(k, fold, unequal);
-      const auto motion = single_impact(e, amplitude);
-      if (!motion) continue;  // the fold itself, by rounding
-      one.columns[0].values.push_back(amplitude);
-      one.columns[1].values.push_back(theory_ordinate(which, amplitude, motion->loss, scene));
-    }
-    table.blocks.push_back(std::move(one));
-
-    const double largest = scene.x0;
-    if (e > 0.95) continue;
-    const double end = bounce_down_end(e);
-    if (!(end < largest)) continue;
-    TableBlock stuck = theory_block("bounce-down-" + number, "bounce-down", which);
-    for (int k = 0; k <= theory_points; ++k) {
-      const double amplitude = amplitude_at(k, end, largest);
-      stuck.columns[0].values.push_back(amplitude);
-      stuck.columns[1].values.push_back(
-          theory_ordinate(which, amplitude, bounce_down(e, amplitude).loss, scene));
-    }
-    table.blocks.push_back(std::move(stuck));
+    if (!forms || forms->restitution != scene.restitution || forms->largest != scene.x0)
+      forms.emplace(scene.restitution, scene.x0);
+    const auto add = [&](const std::string& name, const std::string& legend, const LossFactor& form) {
+      table.blocks.push_back(
+          theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));
+    };
+    add("one-impact", "one impact per half cycle", forms->one_impact);
+    if (!forms->bounce_down.eta.empty()) add("bounce-down", "bounce-down", forms->bounce_down);
   }
 }
 

@@ -1,4 +1,6 @@
 // Figure 15: where in the half cycle the impacts fall, the stuck regime, and the closed forms for both.
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 
 #include "impact_damper/analysis/regimes.hpp"
@@ -92,20 +94,18 @@ void add_theory(const Scene& scene, Table& table) {
   const double end = bounce_down_end(e), largest = scene.x0;
   if (!(end < largest)) return;
   constexpr std::size_t bounces = 4;  // further ones crowd before the accumulation
-  for (std::size_t n = 0; n <= bounces; ++n) {
-    TableBlock block = n < bounces ? theory_block("bounce-" + std::to_string(n + 1), "bounces")
-                                   : theory_block("accumulation", "bounces accumulate");
-    for (int k = 0; k <= theory_points; ++k) {
-      const double amplitude = end + (largest - end) * k / theory_points;
-      const BounceDown motion = bounce_down(e, amplitude);
-      if (n < bounces) {
-        if (n < motion.time.size()) add_row(block, amplitude, motion.time[n] * degrees);
-      } else if (motion.sticks) {
-        add_row(block, amplitude, motion.accumulation * degrees);
-      }
-    }
-    table.blocks.push_back(std::move(block));
+  std::vector<TableBlock> blocks;
+  for (std::size_t n = 0; n < bounces; ++n)
+    blocks.push_back(theory_block("bounce-" + std::to_string(n + 1), "bounces"));
+  blocks.push_back(theory_block("accumulation", "bounces accumulate"));
+  for (int k = 0; k <= theory_points; ++k) {
+    const double amplitude = end + (largest - end) * k / theory_points;
+    const BounceDown motion = bounce_down(e, amplitude);
+    for (std::size_t n = 0; n < std::min(bounces, motion.time.size()); ++n)
+      add_row(blocks[n], amplitude, motion.time[n] * degrees);
+    if (motion.sticks) add_row(blocks[bounces], amplitude, motion.accumulation * degrees);
   }
+  std::ranges::move(blocks, std::back_inserter(table.blocks));
 }
 
 }  // namespace
