@@ -54,6 +54,17 @@ std::optional<double> error_of_setting(const BenchScene& scene, const Contender&
   return std::isfinite(error) ? std::optional(error) : std::nullopt;
 }
 
+// On the straight line through the last two points, in both logarithms; never less than the last.
+double seconds_expected(const std::vector<Point>& points, double setting) {
+  const Point& last = points.back();
+  const double seconds = last.timing.seconds.median;
+  if (points.size() < 2) return seconds;
+  const Point& before = points[points.size() - 2];
+  const double growth =
+      std::log(seconds / before.timing.seconds.median) / std::log(last.setting / before.setting);
+  return std::max(seconds, seconds * std::pow(setting / last.setting, growth));
+}
+
 }  // namespace
 
 Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours,
@@ -64,14 +75,11 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
               .ours = ours,
               .setting = contender.setting};
   told.curve(scene.name + " " + contender.name);
-  std::vector<double> seconds;
   int within_luck = 0;
   for (const double setting : contender.settings(scene.scene)) {
-    // As much longer than the last as that was than the one before.
-    if (!seconds.empty()) {
-      const double before = seconds.size() > 1 ? seconds[seconds.size() - 2] : seconds.back();
+    if (!curve.points.empty()) {
       const double longest = scene.chaotic ? limits.longest_chaotic_run : limits.longest_run;
-      if (seconds.back() * std::max(1.0, seconds.back() / before) > longest) {
+      if (seconds_expected(curve.points, setting) > longest) {
         curve.cut = "a run would take too long";
         break;
       }
@@ -92,7 +100,6 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
       curve.failures.push_back(contender.setting + " " + std::to_string(setting) + ": " + error.what());
       continue;
     }
-    seconds.push_back(point.timing.seconds.median);
     curve.points.push_back(point);
     if (scene.chaotic && point.error && *point.error <= reference.loss_curve->luck()) ++within_luck;
     told.point(curve, point);
