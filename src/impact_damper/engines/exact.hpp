@@ -29,11 +29,13 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   Real losses{0};
 
   // A release at rest on a wall: in contact if pressed against it, which y'' tells, or y''' where that is
-  // zero. (With a velocity towards the wall it is an impact, which the flight meets at once.)
+  // zero or outdone in no time. (With a velocity towards the wall it is an impact, which the flight meets at
+  // once.)
+  const Real no_time = std::numeric_limits<Real>::epsilon() / walls.fast.rate();
   const auto pressed = [&](Real towards_cavity) {
     if (state.w != 0) return false;
     const auto lead = Flight<Real>(system, timeline.now(), state).lead_of_y();
-    return towards_cavity * (lead[2] != 0 ? lead[2] : lead[3]) < 0;
+    return towards_cavity * (lead[2] + no_time * lead[3]) < 0;
   };
   bool in_contact =
       state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));
@@ -58,7 +60,9 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
       if (left) state = left->state;
       const Works<Real> works =
           timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
-      if (observer.wants_contacts()) observer.contact(double(begin), double(timeline.now()), wall);
+      if (observer.wants_contacts())
+        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
+                         wall);
       if (observer.wants_energy()) {
         losses += works.wall;
         if (by_impact) {

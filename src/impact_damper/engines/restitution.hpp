@@ -70,7 +70,8 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
       if (released) state = stuck.at(*released);
       timeline.pass(stuck, released ? *released : timeline.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= timeline.now()) {
-        observer.contact(double(begin), double(timeline.now()), wall);
+        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
+                         wall);
       }
       if (timeline.stopped()) break;
     }

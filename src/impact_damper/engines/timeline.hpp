@@ -137,32 +137,38 @@ class Timeline {
     // What the ends already exclude is not searched for.
     const bool may_turn = !motion.keeps_course(row_best_, end, duration);
     bool may_cross = !motion.keeps_side(side_, end, duration);
+    Real no_turn_before = from;
     if (!may_turn && !may_cross) return duration;
     for (;;) {
       std::optional<Real> crossing;
       if (may_cross) crossing = motion.falls(0, side_, from, duration, span_);
       const Real until = crossing ? *crossing : duration;
-      if (may_turn) find_peaks(motion, from, until);
+      if (may_turn) find_peaks(motion, from, until, no_turn_before);
       if (!crossing) return duration;
       const Real zero = now() + *crossing;
-      observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
-      ++rows_;
-      const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
-      if (low || rows_ >= budget_.max_half_cycles) {
-        stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
-        return *crossing;
+      // A heavy mass may meet its wall just as x comes to zero, and throw it back: by rounding x was across.
+      if (row_best_ > last_best_ * (16 * std::numeric_limits<Real>::epsilon())) {
+        observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
+        ++rows_;
+        const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
+        if (low || rows_ >= budget_.max_half_cycles) {
+          stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
+          return *crossing;
+        }
+        last_best_ = row_best_;
       }
       side_ = -side_;
       row_begin_ = zero;
       row_best_ = 0;
       row_peak_time_ = zero;
       from = *crossing;
-      may_cross = !(duration - from < motion.one_zero_within());
+      may_cross = !(duration < from + motion.one_zero_within(from));
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
   template <class Motion>
-  void find_peaks(const Motion& motion, Real from, const Real& until) {
+  void find_peaks(const Motion& motion, Real from, const Real& until, Real& no_turn_before) {
+    if (until < no_turn_before) return;
     const Real v = side_ * motion.at(from).v;
     bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
     for (;;) {
@@ -170,7 +176,8 @@ class Timeline {
       const auto turn = motion.falls(1, sign, from, until, span_);
       if (!turn) return;
       if (rising) notice_peak(motion, *turn);
-      if (until - *turn < motion.one_zero_within()) return;
+      no_turn_before = *turn + motion.one_zero_within(*turn);
+      if (until < no_turn_before) return;
       rising = !rising;
       from = *turn;
     }
@@ -197,6 +204,7 @@ class Timeline {
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
   // its largest |x| so far.
   Real side_{0}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
+  Real last_best_{0};  // of the half cycle before
   Real viscous_{0}, forcing_{0}, turnover_{0};
 };
 

@@ -141,7 +141,7 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
 // between 0 and 1. slope0, slope1: its derivatives there; |its fourth| <= fourth.
 template <class Real>
-bool stays_between(const Derivatives<Real, 8>& from, const Real& u1, const Real& slope1, const Real& h,
+bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
                    const Real& fourth) {
   const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
   const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;

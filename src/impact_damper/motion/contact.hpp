@@ -50,20 +50,19 @@ class ContactSystem {
     fast_ = (beta - alpha * p2) / resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1.
     split({0, 1, 0, -1}, drive_slow, drive_fast);
-    if (fast.half_period() < std::numeric_limits<Real>::infinity())
-      left_by_quarter = exponential(Real(-fast.a() * fast.half_period() / 2));
-    std::array<ContactParts<Real>, 3> touch;
-    split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
-    split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
-    split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    std::array<Touch<Real>, 3> touch;
+    touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
     if (!forcing)
-      rebound = Rebound<Real>(
-          slow, fast, touch, [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
+      rebound =
+          Rebound<Real>(slow, fast, share_, zeta, touch,
+                        [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
   }
 
-  // u = slow + fast.
-  void split(const ContactState<Real>& u, ContactState<Real>& slow_part,
-             ContactState<Real>& fast_part) const {
+  // u = slow + fast. Returns what the fast part moves the centre X by.
+  Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
+                     ContactState<Real>& fast_part) const {
     const auto& [p, b, p2, b2, dp, db, db2] = factors_;
     const Real dx = 2 * zeta * u.v + u.x;  // D x
     const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
@@ -80,10 +79,12 @@ class ContactSystem {
 
     const Real f = share_ * joined_ * (2 * zeta * u.w + u.q) + dp * X1 + db * X;  // Q1 X and its derivative
     const Real f1 = share_ * joined_ * (2 * zeta * q2 + u.w) + dp * X2 + db * X1;
-    fast_part.x = (alpha_ * f1 - fast_ * f) - share_ * fast_part.q;
-    fast_part.v = -(beta_ * f1 + alpha_ * b2 * f) - share_ * fast_part.w;
+    const Centre<Real> centre{alpha_ * f1 - fast_ * f, -(beta_ * f1 + alpha_ * b2 * f)};
+    fast_part.x = centre.x - share_ * fast_part.q;
+    fast_part.v = centre.v - share_ * fast_part.w;
     slow_part.x = u.x - fast_part.x;
     slow_part.v = u.v - fast_part.v;
+    return centre;
   }
 
   // Derivatives of x and q without forcing, from the equations themselves.
@@ -100,19 +101,12 @@ class ContactSystem {
     }
   }
 
-  // The amplitude N of a fast motion that rings: q is the real part of N exp(lambda t + i phase).
-  Real ringing(const ContactState<Real>& fast_part) const {
-    const Real along = (fast_part.w + fast.a() * fast_part.q) * fast.half_period() / half_turn<Real>();
-    return square_root(Real(fast_part.q * fast_part.q + along * along));
-  }
-
   Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
   Forcing<Real> forcing;
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;
 
   Rebound<Real> rebound;
-  Real left_by_quarter{0};  // of the fast motion's ringing, by a quarter of its swing
 
  private:
   Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
@@ -182,13 +176,16 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  Real one_zero_within() const { return 0; }
+  Real one_zero_within(const Real& from) const {
+    const ContactSystem<Real>& c = system_;
+    if (c.forcing || !parts_) return 0;
+    const auto& [slow, fast] = *parts_;
+    const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
+    return c.fast.left(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
+  }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
-    if (order == 0) {
-      if (const auto fall = fall_of_slow_x(sign); fall && *fall > from)
-        return *fall < until ? fall : std::nullopt;
-    }
+    if (const auto fall = fall_of_slow_x(order, sign, from)) return *fall < until ? fall : std::nullopt;
     return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
                              until, span, resolution());
   }
@@ -229,66 +226,66 @@ class Contact {
            instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
   }
 
-  // When x, on one side of zero, falls to it in a contact that lasts: when the slow part of x does, if by
-  // half that time the ringing is below its rounding error, and was below the slow part all along.
-  std::optional<Real> fall_of_slow_x(const Real& side) const {
+  // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, where that is
+  // when the slow part's does: where what is left of the fast one is less than a rounding error, from `from`
+  // on or, in a contact's beginning, from halfway there on, and was smaller than the slow part before.
+  std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactSystem<Real>& c = system_;
-    const Real infinite = std::numeric_limits<Real>::infinity();
-    if (c.forcing || !(c.fast.half_period() < infinite) || !(c.slow.half_period() < infinite)) return {};
-    const auto& [slow, fast] = parts();
-    const Real x = side * slow.x;
-    if (!(x > 0)) return {};
-    const Real fall = c.slow.fall(x, Real(side * slow.v)), half = fall / 2;
-    const Real along = (fast.v + c.fast.a() * fast.x) * c.fast.half_period() / half_turn<Real>();
-    const Real ringing = square_root(Real(fast.x * fast.x + along * along)), late_x = side * slow_at(half).x;
-    const Real left = ringing * exponential(Real(-c.fast.a() * half));
-    if (!(ringing < x && ringing < late_x && left < std::numeric_limits<Real>::epsilon() / 4 * late_x))
-      return {};
-    return fall;
+    if (c.forcing || order > 1 || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
+    const auto slow = derivatives<3>(c.slow, parts().slow.x, parts().slow.v);
+    const auto fast = derivatives<3>(c.fast, parts().fast.x, parts().fast.v);
+    const Real u = sign * slow[order], f = fast[order], f1 = fast[order + 1];
+    const Real fall = c.slow.fall(u, Real(sign * slow[order + 1]), from),
+               quiet = from > 0 ? from : Real(fall / 2);
+    const ContactState<Real> then = slow_at(quiet);
+    const auto slow_then = derivatives<3>(c.slow, then.x, then.v);
+    const Real u_then = sign * slow_then[order];
+    const Real size = absolute(u_then) + absolute(slow_then[order + 1]) / c.slow.root_b();
+    if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 8 * size)) return {};
+    if (from > 0) return fall;
+    const Real most = c.fast.left(f, f1, Real(0));
+    return most < u && most < u_then ? std::optional(fall) : std::nullopt;
   }
 
-  // The end of a contact that lasts: the ringing dies away, and the mass leaves when the slow motion lets go.
+  // The end of a contact that lasts: the fast motion dies away, and the mass leaves when the slow one lets
+  // go.
   //
-  // The proof. The ringing is the real part of N exp(lambda t + i phase), so that its fourth derivative is at
-  // most N b^2 exp(-a t). (1) For a full swing of it, quarter by quarter, by that bound (arrival.hpp). (2)
-  // From there on the ringing stays below the slow motion's depth, which is nowhere lower than at the ends:
-  // where it has a minimum it is outside the wall. (3) At last, where both go to zero, by the bound again.
+  // The proof. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), until what is left of
+  // the fast motion can no more reach as far as the slow one is deep (or helps it, and cannot change sides).
+  // (2) From there on the depth is positive, as the slow motion's is, which is nowhere lower than at the
+  // ends: where that has a minimum it is outside the wall. (3) At last, where both go to zero, by the bound
+  // again.
   std::optional<typename Rebound<Real>::End> settle() const {
     const ContactSystem<Real>& c = system_;
-    const Real infinite = std::numeric_limits<Real>::infinity(), quarter = c.fast.half_period() / 2;
-    if (c.forcing || !(quarter < infinite) || !(c.slow.half_period() < infinite)) return {};
+    const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
+    if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
     Real h = c.slow.fall(depth, Real(inward_ * slow.w));
-    const Real late = h * Real(0.75);
-    if (!(late > 4 * quarter)) return {};
-
-    const Real b = c.fast.b(), a = c.fast.a();
-    Real ringing = c.ringing(fast);
-    const Real slow_fourth =
-        square_root(Real(slow.q * slow.q + slow.w * slow.w / c.slow.b())) * c.slow.b() * c.slow.b();
-    ContactState<Real> before{0, 0, 0, inward_ * start_.w}, slow_now;
-    for (int n = 1; n <= 4; ++n) {
-      slow_now = slow_at(Real(n) * quarter);
-      const ContactState<Real> fast_now = fast_at(Real(n) * quarter);
-      const ContactState<Real> now{0, 0, inward_ * (slow_now.q + fast_now.q),
-                                   inward_ * (slow_now.w + fast_now.w)};
-      if (!stays_open(before.q, before.w, now.q, now.w, quarter, Real(ringing * b * b + slow_fourth)))
-        return {};
-      ringing *= c.left_by_quarter;
-      before = now;
-    }
-    const Real early = h / 4;
+    const Real early = h / 4, late = h * Real(0.75), slow_fourth = fourth_of(c.slow, slow.q, slow.w);
     const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
     const Real early_depth = inward_ * slow_at(early).q, late_depth = inward_ * slow_late.q;
-    const auto ringing_at = [&](const Real& t) {
-      return t < 4 * quarter ? ringing : Real(ringing * exponential(Real(a * (4 * quarter - t))));
-    };
-    if (!(ringing < inward_ * slow_now.q && ringing < early_depth && ringing_at(early) < early_depth &&
-          ringing_at(early) < late_depth))
-      return {};
-    const Real faint = ringing_at(late) * b * b + slow_fourth;
+
+    const Real piece = c.fast.rings() ? Real(c.fast.half_period() / 2) : Real(1 / (2 * c.fast.rate()));
+    ContactState<Real> fast_before = fast, before{0, 0, 0, inward_ * start_.w};
+    for (int n = 1;; ++n) {
+      const Real t = Real(n) * piece;
+      if (n > 24 || !(t < early)) return {};
+      const ContactState<Real> slow_now = slow_at(t), fast_now = fast_at(t);
+      const ContactState<Real> now{0, 0, inward_ * (slow_now.q + fast_now.q),
+                                   inward_ * (slow_now.w + fast_now.w)};
+      const Real fourth = fourth_of(c.fast, fast_before.q, fast_before.w) + slow_fourth;
+      if (!stays_open(before.q, before.w, now.q, now.w, piece, fourth)) return {};
+      if (!swings && inward_ * fast_now.q >= 0) break;
+      if (c.fast.left(fast_now.q, fast_now.w, Real(0)) < early_depth &&
+          c.fast.left(fast_now.q, fast_now.w, Real(early - t)) < late_depth &&
+          c.fast.left(fast_now.q, fast_now.w, Real(0)) < inward_ * slow_now.q)
+        break;
+      fast_before = fast_now;
+      before = now;
+    }
+    const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth;
     for (int correction = 0; correction < 4; ++correction) {
       Derivatives<Real, 6> x, q;
       const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
@@ -307,6 +304,12 @@ class Contact {
       return typename Rebound<Real>::End{h, end_x, end_v, end_w};
     }
     return {};
+  }
+  // A bound on |u''''| from here on: its size, which no damping raises.
+  static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
+    const auto d = derivatives<6>(oscillator, u, u1);
+    const Real scaled = d[5] / oscillator.root_b();
+    return square_root(Real(d[4] * d[4] + scaled * scaled));
   }
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,

@@ -59,7 +59,7 @@ class Flight {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return swing_.keeps_course(end.v, t);
   }
-  Real one_zero_within() const { return swing_.one_zero_within(); }
+  Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     return swing_.falls(order, sign, from, until, span);
@@ -91,6 +91,20 @@ class Flight {
     for (std::size_t n = 2; n < N; ++n) u[n] = -away_ * x[n];
     return u;
   }
+  // By both ends of a time h, or by those of its halves, and so on.
+  template <std::size_t N>
+  bool stays_between_walls(const Derivatives<Real, N>& from, const Real& begin,
+                           const Derivatives<Real, 2>& to, const Real& h, const Real& fourth,
+                           int halvings) const {
+    if (stays_between<Real>({from[0], from[1], from[2], from[3]}, to[0], to[1], h, fourth)) return true;
+    if (halvings == 0) return false;
+    const Real half = h / 2;
+    const Place middle = from_wall(begin + half);
+    return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
+           stays_between_walls(
+               derivatives_of_u(middle, swing_.template derivatives<4>(middle.x, middle.v, begin + half)),
+               Real(begin + half), to, half, fourth, halvings - 1);
+  }
   // By guess and proof (arrival.hpp), in a few pieces; nothing where that does not come to an end.
   [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
     const Real rate = swing_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
@@ -102,7 +116,7 @@ class Flight {
       const Real fourth = x.bound(4, span);
       const auto reached = [&](bool across, const Real& u1, const Real& h) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
-        if (!stays_between(u, level, u1, h, fourth)) return {};
+        if (!stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         // z has gone straight there.
         const Real x_there = here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level));
         const bool left = across == (wall_ == 1);
@@ -128,7 +142,7 @@ class Flight {
         if (close) return reached(across, moved(u_there, shift).u1, h + shift);
         h += shift;
       }
-      if (!stays_between(u, there.u, there.u1, h, fourth)) return {};
+      if (!stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};
       begin += h;
       here = there;
     }

@@ -77,10 +77,20 @@ class Oscillator {
   // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
   const Real& half_period() const { return half_period_; }
 
-  // When a free motion that begins with u >= 0 and u' falls through zero for the first time, and every two
-  // half periods from there; only where underdamped. Its phase grows by omega t, up to half a turn.
-  Real fall(const Real& u, const Real& u1) const {
-    return half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
+  // When, from a time `from` on, a free motion that begins with u and u' falls through zero; only where
+  // underdamped. Its phase grows by omega t, and it falls after each half turn.
+  Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
+    const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
+    if (!(first < from)) return first;
+    const Real period = 2 * half_period_;
+    return first + Real(std::ceil(double((from - first) / period))) * period;
+  }
+  // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
+  // exp(-a t) (u C + (u' + a u) S) with the undamped C and S, and where overdamped S <= t exp(omega t).
+  Real left(const Real& u, const Real& u1, const Real& t) const {
+    const Real along = u1 + a_ * u;
+    if (underdamped_) return exponential(Real(-a_ * t)) * (absolute(u) + absolute(along) / omega_);
+    return exponential(Real(-slow_rate_ * t)) * (absolute(u) + absolute(along) * (t + 1 / slow_rate_));
   }
   // Whether its own motion swings before it has died away.
   bool rings() const { return underdamped_ && 2 * omega_ > a_; }

@@ -3,10 +3,10 @@
 //
 // From the wall, q = 0, the state at T is linear in (x, x', y') at the touch, and so is each derivative
 // there; both are numbers of the scene. A contact then costs the sums
-//     q(T + s) = sum_n s^n (Q_n . (x, x', y')),      x(T + s) = x + sum_n s^n (X_n . (x, x', y')),
-// and solving the first for s, which must be so short that a term more would be a rounding error. Where the
-// motion hardly changes in T it is the change that is tabulated, and of y' what differs from -E y': so that
-// no rounding error is the same in every impact.
+//     q(T + s) = sum_n s^n (Q_n . (x, x', y'))
+// and that for x, and solving the first for s, which must be so short that a term more would be a rounding
+// error. A rounding error that is the same in every impact adds up: so what is tabulated for x is the change of
+// the masses' centre, which is small, and for y' what differs from -E y'.
 //
 // The proof that q has not been back at zero before T + s is that of arrival.hpp, for exp(a t) q, a the fast
 // motion's decay: the fast part of that is a plain sine, so that its fourth derivative does not outgrow what
@@ -31,15 +31,28 @@ struct ContactParts {
   ContactState<Real> slow, fast;
 };
 
+// The masses' centre X = x + nu/(1+nu) q, which the wall does not move.
+template <class Real>
+struct Centre {
+  Real x, v;
+};
+
+template <class Real>
+struct Touch {
+  ContactState<Real> slow, fast;
+  Centre<Real> fast_centre;
+};
+
 template <class Real>
 class Rebound {
  public:
   Rebound() = default;
-  // `start`: what x, v and w at the touch, one each, are split into. `derive` extends (x, v, q, w) by the
-  // higher derivatives.
+  // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: what x, v and w at the touch, one each, are
+  // split into. `derive` extends (x, v, q, w) by the higher derivatives.
   template <class Derive>
-  Rebound(const Oscillator<Real>& slow, const Oscillator<Real>& fast,
-          const std::array<ContactParts<Real>, 3>& start, Derive&& derive) {
+  Rebound(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share, const Real& zeta,
+          const std::array<Touch<Real>, 3>& start, Derive&& derive)
+      : share_(share) {
     swing_ = fast.half_period();
     if (!(swing_ < std::numeric_limits<Real>::infinity())) return;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
@@ -62,26 +75,30 @@ class Rebound {
     };
     const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& [s, f] = start[i];
-      const Real b = slow.b();
-      const ContactState<Real> moved{p.c1 * s.x + p.s * s.v, (p.v - 1) * s.v - b * p.s * s.x,
-                                     p.c * s.q + p.s * s.w, p.v * s.w - b * p.s * s.q};
-      const Real gone = 1 + left_;
-      const ContactState<Real> by_T{moved.x - gone * f.x, moved.v - gone * f.v, moved.q - left_ * f.q,
-                                    i == 2 ? Real(moved.w + left_ * s.w) : Real(moved.w - left_ * f.w)};
-      const ContactState<Real> at_T{by_T.x + (i == 0 ? 1 : 0), by_T.v + (i == 1 ? 1 : 0), by_T.q,
-                                    by_T.w - (i == 2 ? left_ : Real(0))};
+      const auto& [s, f, fast_centre] = start[i];
+      const Real b = slow.b(), gone = 1 + left_;
+      const Real centre_x = i == 0 ? 1 : 0, centre_v = i == 1 ? Real(1) : i == 2 ? share : Real(0);
+      const Centre<Real> slow_centre{centre_x - fast_centre.x, centre_v - fast_centre.v};
+      // By how much the centre has changed after T.
+      const Centre<Real> change{
+          p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
+          (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v};
+      const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
+      const Real q_then = slow_q - left_ * f.q;
+      const Real w_then = i == 2 ? Real(slow_w + left_ * s.w) : Real(slow_w - left_ * f.w);  // but for -E w
+      const Real w_whole = i == 2 ? Real(w_then - left_) : w_then;
       std::array<Real, many> x, q;
-      derive(at_T, x, q);
+      derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
+             x, q);
+      q[1] = w_then;
       Real factorial{1};
       for (std::size_t n = 0; n < many; ++n) {
         if (n > 1) factorial *= Real(double(n));
-        x_[i][n] = x[n] / factorial;
         q_[i][n] = q[n] / factorial;
+        centre_[i][n] = n == 0   ? change.x
+                        : n == 1 ? change.v
+                                 : Real(-(1 - share) * (2 * zeta * x[n - 1] + x[n - 2]) / factorial);
       }
-      x_[i][0] = by_T.x;
-      x_[i][1] = by_T.v;
-      q_[i][1] = by_T.w;
       const Real along = (f.w + fast.a() * f.q) / omega;
       fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
       slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
@@ -166,8 +183,10 @@ class Rebound {
                           Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
     }
     if (!proved) return {};
-    const std::array<Real, terms> x_terms = combine<terms>(x_, start);
-    return End{time, x + (v * s + sum(x_terms, s)), v + sum(slopes(x_terms), s), left_w};
+    const std::array<Real, terms> centre = combine<terms>(centre_, start);
+    const Real centre_v = v + share_ * w;
+    return End{time, x + (centre_v * s + sum(centre, s)),
+               v + (share_ * (w - left_w) + sum(slopes(centre), s)), left_w};
   }
   static Real bound(const Start& row, const Start& start) {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
@@ -178,7 +197,8 @@ class Rebound {
   Real unweighted_{0};         // (b / omega^2)^2
   Real accurate_{0};           // a correction of s whose third power is nothing
   Reach few_, many_;
-  Table x_{}, q_{};
+  Real share_{0};
+  Table centre_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
 };
 

@@ -29,7 +29,7 @@ class Stuck {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return swing_.keeps_course(end.v, t);
   }
-  Real one_zero_within() const { return swing_.one_zero_within(); }
+  Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     return swing_.falls(order, sign, from, until, span);

@@ -106,7 +106,7 @@ class Swing {
     if (!(v0_ * v > 0)) return false;
     return forcing_ ? keeps_sign(v0_, v, beginning().bound(3, t), t) : t < one_zero_within();
   }
-  // A time in which x has one zero at most, and so has each of its derivatives.
+  // From any time on, a time in which x has one zero at most, and so has each of its derivatives.
   Real one_zero_within() const { return forcing_ ? Real(0) : oscillator_.half_period(); }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
@@ -118,9 +118,7 @@ class Swing {
     const Real u = sign * x[order], u1 = sign * x[order + 1];
     if (u == 0 && u1 == 0) return {};
     if (!(from > 0) && u <= 0 && u1 < 0) return from < until ? std::optional(from) : std::nullopt;
-    Real time = oscillator_.fall(u, u1);
-    const Real period = 2 * oscillator_.half_period();
-    if (time < from) time += Real(std::ceil(double((from - time) / period))) * period;
+    const Real time = oscillator_.fall(u, u1, from);
     return time < until ? std::optional(time) : std::nullopt;
   }
   // The `order`-th derivative of x, looked ahead from t.
