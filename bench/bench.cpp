@@ -1,15 +1,16 @@
 // The bench: run time beside error, scene by scene and contender by contender, and what an impact costs.
 //
-//   impact-damper-bench FOLDER [--quick]
+//   impact-damper-bench FOLDER [--quick] [--only SCENE]...
 //
-// writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. --quick is
-// for trying it out: short runs, few repeats.
+// writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. For trying
+// it out: --quick has short runs and few repeats, --only S3 nothing but that scene's contenders.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "findings.hpp"
 #include "impact_damper/files/file_output.hpp"
@@ -93,7 +94,32 @@ void print(const std::vector<Target>& targets) {
   }
 }
 
-int bench(const std::filesystem::path& folder, bool quick) {
+struct Arguments {
+  std::filesystem::path folder;
+  bool quick = false;
+  std::vector<std::string> only;  // names of scenes; empty: all, and all that is no scene
+};
+
+// Absent if they are not as they should be.
+std::optional<Arguments> read_arguments(const std::vector<std::string>& given) {
+  if (given.empty() || given[0].starts_with("--")) return std::nullopt;
+  Arguments arguments{.folder = given[0]};
+  const std::vector<BenchScene> scenes = bench_scenes();
+  for (std::size_t i = 1; i < given.size(); ++i) {
+    if (given[i] == "--quick") {
+      arguments.quick = true;
+    } else if (given[i] == "--only" && ++i < given.size() &&
+               std::ranges::find(scenes, given[i], &BenchScene::name) != scenes.end()) {
+      arguments.only.push_back(given[i]);
+    } else {
+      return std::nullopt;
+    }
+  }
+  return arguments;
+}
+
+int bench(const Arguments& arguments) {
+  const auto& [folder, quick, only] = arguments;
   std::filesystem::create_directories(folder);
   for (const char* name : {"bench.json", "results.md", "time_error.dat", "cost.dat"}) {
     require_writable(folder / name);
@@ -108,13 +134,19 @@ int bench(const std::filesystem::path& folder, bool quick) {
 
   Findings found{.processor = processor(), .scenes = bench_scenes(), .missing_peers = missing_peers()};
   for (const std::string& peer : found.missing_peers) tell("Not in this build: " + peer);
+  if (!only.empty()) {
+    std::erase_if(found.scenes,
+                  [&](const BenchScene& scene) { return std::ranges::find(only, scene.name) == only.end(); });
+  }
   measure_curves(limits, found);
-  found.sweeps = measure_sweeps(quick ? 1e4 : 1e7, tell);
-  tell("the figures' scenes and tables");
-  found.figures = measure_figure_set(IMPACT_DAMPER_SOURCE, quick ? 3 : 9);
-  found.allocations = count_allocations();
-  tell("two threads");
-  found.speedup = measure_speedup(quick ? 3 : 9);
+  if (only.empty()) {
+    found.sweeps = measure_sweeps(quick ? 1e4 : 1e7, tell);
+    tell("the figures' scenes and tables");
+    found.figures = measure_figure_set(IMPACT_DAMPER_SOURCE, quick ? 3 : 9);
+    found.allocations = count_allocations();
+    tell("two threads");
+    found.speedup = measure_speedup(quick ? 3 : 9);
+  }
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   write_file(folder / "bench.json", report_json(found));
@@ -129,13 +161,13 @@ int bench(const std::filesystem::path& folder, bool quick) {
 }  // namespace impact_damper::bench
 
 int main(int count, char** arguments) {
-  const bool quick = count == 3 && std::strcmp(arguments[2], "--quick") == 0;
-  if (count != 2 && !quick) {
-    std::fprintf(stderr, "usage: %s FOLDER [--quick]\n", arguments[0]);
+  const auto read = impact_damper::bench::read_arguments({arguments + 1, arguments + count});
+  if (!read) {
+    std::fprintf(stderr, "usage: %s FOLDER [--quick] [--only S1|S2|S3|S4|S5]...\n", arguments[0]);
     return 2;
   }
   try {
-    return impact_damper::bench::bench(arguments[1], quick);
+    return impact_damper::bench::bench(*read);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 5;

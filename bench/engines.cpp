@@ -1,7 +1,10 @@
 // This project's own engines as contenders: one call of simulate() each, everything included.
+#include <algorithm>
+#include <functional>
 #include <numbers>
 
 #include "contender.hpp"
+#include "impact_damper/engines/cem.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -26,9 +29,12 @@ Contender closed_form(const std::string& name, Walls walls, const Engine& engine
           about};
 }
 
-// From 2 steps in a contact of nominal length, near the limit of stability, to 4096.
+// From 2 steps in a contact of nominal length, near the limit of stability, to 4096, and the default of 100.
 std::vector<double> time_steps(const Scene& scene) {
-  return geometric(nominal_contact_time(scene) / 2, 0.5, 12);
+  std::vector<double> steps = geometric(nominal_contact_time(scene) / 2, 0.5, 12);
+  steps.push_back(*resolved(scene, Cem{}).time_step);
+  std::ranges::sort(steps, std::greater());
+  return steps;
 }
 
 // Between impacts four times as many steps in a radian as in contact: a flight lasts longer, and its errors
@@ -42,10 +48,11 @@ Contender stepping(const std::string& name, Cem options, bool two_rates, const s
           Walls::compliant,
           "time step",
           time_steps,
-          [options, two_rates](const Scene& scene, double step) mutable {
-            options.time_step = step;
-            if (two_rates) options.large_step = large_step(scene, step);
-            return rows_of(simulate(scene, options, {.half_cycles = true}));
+          [options, two_rates](const Scene& scene, double step) {
+            Cem chosen = options;
+            chosen.time_step = step;
+            if (two_rates) chosen.large_step = large_step(scene, step);
+            return rows_of(simulate(scene, chosen, {.half_cycles = true}));
           },
           about};
 }

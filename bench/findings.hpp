@@ -31,9 +31,9 @@ struct Findings {
   std::vector<Curve> curves;
   std::vector<Counting> counts;
   std::vector<Sweep> sweeps;
-  FigureSet figures;
+  std::optional<FigureSet> figures;
   std::vector<Allocations> allocations;
-  Speedup speedup;
+  std::optional<Speedup> speedup;
   std::vector<std::string> missing_peers;
   double seconds = 0;  // that it all took, by the clock on the wall
 

@@ -38,14 +38,12 @@ std::optional<std::vector<double>> loss_curve(const std::vector<double>& peak_ti
   return curve;
 }
 
-std::vector<double> median_curve(const std::vector<std::vector<double>>& curves) {
-  std::vector<double> median;
-  for (std::size_t i = 0; i < curves.at(0).size(); ++i) {
-    std::vector<double> values;
-    for (const std::vector<double>& curve : curves) values.push_back(curve[i]);
-    median.push_back(impact_damper::spread_of(values).median);
+std::vector<double> mean_curve(const std::vector<std::vector<double>>& curves) {
+  std::vector<double> mean(curves.at(0).size());
+  for (const std::vector<double>& curve : curves) {
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += curve[i] / double(curves.size());
   }
-  return median;
+  return mean;
 }
 
 EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine) {
@@ -57,10 +55,10 @@ EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine) {
     if (!curve) throw std::logic_error("the ensemble's decays must pass all amplitudes of the loss curve");
     curves.push_back(std::move(*curve));
   }
-  EnsembleCurve ensemble{.median = median_curve(curves)};
+  EnsembleCurve ensemble{.mean = mean_curve(curves)};
   std::vector<double> errors;
   for (auto group = curves.begin(); group != curves.end(); group += releases) {
-    errors.push_back(curve_error(ensemble, median_curve({group, group + releases})));
+    errors.push_back(curve_error(ensemble, mean_curve({group, group + releases})));
   }
   const Spread spread = spread_of(errors);
   ensemble.lower = spread.lower;
@@ -72,7 +70,7 @@ EnsembleCurve ensemble_curve(const Scene& scene, const Engine& engine) {
 double curve_error(const EnsembleCurve& ensemble, const std::vector<double>& curve) {
   double sum = 0;
   for (std::size_t i = 0; i < curve.size(); ++i) {
-    const double difference = curve[i] / ensemble.median[i] - 1;
+    const double difference = curve[i] / ensemble.mean[i] - 1;
     sum += difference * difference;
   }
   return std::sqrt(sum / double(curve.size()));

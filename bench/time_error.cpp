@@ -1,9 +1,11 @@
 #include "time_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/parallel.hpp"
 #include "reference.hpp"
 
 namespace impact_damper::bench {
@@ -32,20 +34,35 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
 
 namespace {
 
-// The error of a run whose rows are at hand; where the scene is chaotic, of a few more releases instead.
+// The error of a run whose rows are at hand; where the scene is chaotic, of many more releases instead.
 std::optional<double> error_of_setting(const BenchScene& scene, const Contender& contender, double setting,
                                        const Rows& own, const Reference& reference) {
   if (!scene.chaotic) return amplitude_error(own.amplitude, reference.amplitude);
-  std::vector<std::vector<double>> curves;
   // Not the releases that the reference is made of.
-  for (const Scene& release : ensemble_of(scene.scene, {.members = releases, .seed = 2})) {
-    const Rows rows = contender.run(release, setting);
-    auto curve = loss_curve(rows.peak_time, rows.amplitude);
+  const std::vector<Scene> ensemble = ensemble_of(scene.scene, {.members = releases, .seed = 2});
+  std::vector<std::optional<std::vector<double>>> found(ensemble.size());
+  for_each_index(std::int64_t(ensemble.size()), {}, [&](std::int64_t i) {
+    const Rows rows = contender.run(ensemble[std::size_t(i)], setting);
+    found[std::size_t(i)] = loss_curve(rows.peak_time, rows.amplitude);
+  });
+  std::vector<std::vector<double>> curves;
+  for (auto& curve : found) {
     if (!curve) return std::nullopt;
     curves.push_back(std::move(*curve));
   }
-  const double error = curve_error(*reference.loss_curve, median_curve(curves));
+  const double error = curve_error(*reference.loss_curve, mean_curve(curves));
   return std::isfinite(error) ? std::optional(error) : std::nullopt;
+}
+
+// On the straight line through the last two points, in both logarithms; never less than the last.
+double seconds_expected(const std::vector<Point>& points, double setting) {
+  const Point& last = points.back();
+  const double seconds = last.timing.seconds.median;
+  if (points.size() < 2) return seconds;
+  const Point& before = points[points.size() - 2];
+  const double growth =
+      std::log(seconds / before.timing.seconds.median) / std::log(last.setting / before.setting);
+  return std::max(seconds, seconds * std::pow(setting / last.setting, growth));
 }
 
 }  // namespace
@@ -58,16 +75,18 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
               .ours = ours,
               .setting = contender.setting};
   told.curve(scene.name + " " + contender.name);
-  std::vector<double> seconds;
+  int within_luck = 0;
   for (const double setting : contender.settings(scene.scene)) {
-    // As much longer than the last as that was than the one before.
-    if (!seconds.empty()) {
-      const double before = seconds.size() > 1 ? seconds[seconds.size() - 2] : seconds.back();
+    if (!curve.points.empty()) {
       const double longest = scene.chaotic ? limits.longest_chaotic_run : limits.longest_run;
-      if (seconds.back() * std::max(1.0, seconds.back() / before) > longest) {
-        curve.cut = true;
+      if (seconds_expected(curve.points, setting) > longest) {
+        curve.cut = "a run would take too long";
         break;
       }
+    }
+    if (within_luck == 2) {
+      curve.cut = "two errors within luck";
+      break;
     }
     Point point{.setting = setting};
     try {
@@ -81,40 +100,54 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
       curve.failures.push_back(contender.setting + " " + std::to_string(setting) + ": " + error.what());
       continue;
     }
-    seconds.push_back(point.timing.seconds.median);
     curve.points.push_back(point);
+    if (scene.chaotic && point.error && *point.error <= reference.loss_curve->luck()) ++within_luck;
     told.point(curve, point);
   }
   return curve;
 }
 
+namespace {
+
+// On the straight line from one point to the next, in both logarithms.
+double time_between(const Point* missing, const Point& meeting, double error) {
+  const double time = meeting.timing.yardsticks.median;
+  // An error of zero has no logarithm; nothing is coarser than the first.
+  if (!missing || !(*meeting.error > 0)) return time;
+  const double part = std::log(*missing->error / error) / std::log(*missing->error / *meeting.error);
+  const double coarser = missing->timing.yardsticks.median;
+  return coarser * std::pow(time / coarser, part);
+}
+
+}  // namespace
+
 std::optional<double> time_at(const Curve& curve, double error) {
-  const Point* before = nullptr;
+  const Point* missing = nullptr;
   for (const Point& point : curve.points) {
     if (!point.error) continue;
-    const double time = point.timing.yardsticks.median;
-    if (*point.error <= error) {
-      // An error of zero has no logarithm; nothing is coarser than the first.
-      if (!before || !(*point.error > 0)) return time;
-      const double part = std::log(*before->error / error) / std::log(*before->error / *point.error);
-      const double coarser = before->timing.yardsticks.median;
-      return coarser * std::pow(time / coarser, part);
-    }
-    before = &point;
+    if (*point.error <= error) return time_between(missing, point, error);
+    missing = &point;
   }
   return std::nullopt;
 }
 
-std::optional<double> least_error(const Curve& curve) {
-  std::optional<double> least;
+std::optional<double> time_for_good(const Curve& curve, double error) {
+  const Point* missing = nullptr;
+  std::optional<double> time;
   for (const Point& point : curve.points) {
-    if (point.error && !(least && *least <= *point.error)) least = point.error;
+    if (!point.error) continue;
+    if (!(*point.error <= error)) {
+      missing = &point;
+      time.reset();
+    } else if (!time) {
+      time = time_between(missing, point, error);
+    }
   }
-  return least;
+  return time;
 }
 
-std::optional<double> observed_order(const Curve& curve, double below) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+std::optional<Order> observed_order(const Curve& curve, double below) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   for (const Point& point : curve.points) {
     if (!point.error || !(*point.error > 0 && *point.error < below)) continue;
     const double a = std::log(point.setting), b = std::log(*point.error);
@@ -123,9 +156,13 @@ std::optional<double> observed_order(const Curve& curve, double below) {
     y += b;
     xx += a * a;
     xy += a * b;
+    yy += b * b;
   }
-  if (n < 2) return std::nullopt;
-  return (n * xy - x * y) / (n * xx - x * x);
+  if (n < 4) return std::nullopt;
+  const double spread_x = xx - x * x / n, spread_y = yy - y * y / n;
+  const double slope = (xy - x * y / n) / spread_x;
+  const double residual = std::max(0.0, spread_y - slope * slope * spread_x);
+  return Order{slope, std::sqrt(residual / (n - 2) / spread_x), int(n)};
 }
 
 }  // namespace impact_damper::bench

@@ -36,7 +36,7 @@ number_of(name) = int(system("i=0; for n in ".names."; do i=$((i+1)); if [ $n = 
 
 do for [scene in "S1 S2 S3 S4 S5"] {
   here = contenders(scene)
-  set xrange [(scene eq "S5" ? 1e-3 : 1e-16) : 1]
+  set xrange [(scene eq "S5" ? 5e-4 : 1e-16) : 1]
   if (scene eq "S5") { set xtics 1e-3,10,1 } else { set xtics 1e-16,1e4,1 }
   set title scene.": ".(scene eq "S1" ? "x_0 = 4.5 to t = 100" : scene eq "S2" ? "the same, rigid walls" : \
     scene eq "S3" ? "x_0 = 6 to t = 400: bounce-down" : scene eq "S4" ? "forced and damped" : "the whole decay, 6 to 0.03") font ",13"

@@ -38,14 +38,14 @@ struct Curve {
   std::string setting;        // see Contender
   std::vector<Point> points;  // coarsest first
   std::vector<std::string> failures;
-  bool cut = false;  // finer settings were left out: a run would have taken longer than Limits::longest_run
+  std::string cut = {};  // why finer settings were left out; empty: they were not
 
   const Point& finest() const { return points.back(); }
 };
 
 struct Limits {
-  double longest_run = 0.8;           // seconds; finer settings than that are left out
-  double longest_chaotic_run = 0.13;  // the same where finer settings bring nothing any more
+  double longest_run = 1.2;           // seconds; finer settings than that are left out
+  double longest_chaotic_run = 0.14;  // the same where an error takes many runs
   double repeated_fully = 0.4;        // seconds; longer runs are repeated `few` times
   int repeats = 7, few = 3;
 };
@@ -61,9 +61,16 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
 // Yardsticks that a curve takes for an error: on the straight line, in logarithms of both, from the last
 // setting that misses `error` to the first that meets it. Absent if none does.
 std::optional<double> time_at(const Curve& curve, double error);
-// The smallest error of a curve; absent if it has none.
-std::optional<double> least_error(const Curve& curve);
-// The slope of log error over log setting, by least squares over the points with an error below `below`.
-std::optional<double> observed_order(const Curve& curve, double below);
+// The same from the last setting that misses it: from there on the error stays below. Later than time_at
+// where a setting meets an error by luck.
+std::optional<double> time_for_good(const Curve& curve, double error);
+// The slope of log error over log setting, by least squares over the points with an error below `below`, and
+// its standard deviation as their residuals have it. Absent with fewer than four: a line through two or three
+// has its slope by luck.
+struct Order {
+  double slope = 0, uncertainty = 0;
+  int points = 0;
+};
+std::optional<Order> observed_order(const Curve& curve, double below);
 
 }  // namespace impact_damper::bench
