@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "impact_damper/engine.hpp"
+#include "impact_damper/motion/arrival.hpp"
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/first_root.hpp"
 #include "impact_damper/scene.hpp"
@@ -21,8 +22,9 @@
 namespace impact_damper::bench {
 
 struct Counts {
-  std::int64_t searches = 0;      // calls of first_root
-  std::int64_t evaluations = 0;   // of the functions it watches, all of a search at once
+  std::int64_t guesses = 0;       // of a flight's end (arrival.hpp)
+  std::int64_t searches = 0;      // calls of first_root, where no guess is proved
+  std::int64_t evaluations = 0;   // of a motion about a guess, and of the functions a search watches
   std::int64_t steps = 0;         // of the search, one for each function watched (certified_step)
   std::int64_t sincos = 0;        // sine and cosine of one angle count once
   std::int64_t exponentials = 0;  // exp and expm1
@@ -87,6 +89,18 @@ inline Counted square_root(const Counted& x) {
 // Once per scene: not counted.
 inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(double(x)); }
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
+
+template <std::same_as<Counted> Real>
+Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
+  ++counts.guesses;
+  return impact_damper::guess<Real>(u, short_time, most);
+}
+
+template <std::same_as<Counted> Real>
+Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
+  ++counts.evaluations;
+  return impact_damper::nearby<Real>(level, y, h, fourth);
+}
 
 template <std::same_as<Counted> Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
