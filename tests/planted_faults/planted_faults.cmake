@@ -29,13 +29,21 @@ function(verdicts wanted name)
   endif()
 endfunction()
 
-# plant(NAME FILE FROM TO): verify with FROM in FILE replaced by TO.
+# plant(NAME FILE FROM TO [FROM2 TO2]): verify with FROM in FILE replaced by TO.
+function(replaced text name file from to)
+  string(REPLACE "${from}" "${to}" result "${${text}}")
+  if(result STREQUAL "${${text}}")
+    message(FATAL_ERROR "${name}: ${file} no longer holds what is to be replaced:\n${from}")
+  endif()
+  set(${text} "${result}" PARENT_SCOPE)
+endfunction()
 function(plant name file from to)
   set(path ${FOLDER}/src/impact_damper/${file})
   file(READ ${path} sound)
-  string(REPLACE "${from}" "${to}" faulty "${sound}")
-  if(faulty STREQUAL sound)
-    message(FATAL_ERROR "${name}: ${file} no longer holds what is to be replaced:\n${from}")
+  set(faulty "${sound}")
+  replaced(faulty ${name} ${file} "${from}" "${to}")
+  if(ARGC GREATER 4)
+    replaced(faulty ${name} ${file} "${ARGV4}" "${ARGV5}")
   endif()
   file(WRITE ${path} "${faulty}")
   verdicts(1 ${name})
@@ -53,8 +61,12 @@ plant("restitution off by 0.05" motion/wall.hpp
       "-logarithm(Real(restitution - Real(0.05)))")
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes.
 plant("contact force clipped at zero" motion/contact.hpp
-      "    return {look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span)};"
+      "    if (start_.y == wall_) {
+      auto end ="
+      "    if (false) {
+      auto end ="
+      "    return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+                instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);"
       "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                r = instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t);
     const auto force = [&](std::size_t n) -> Real {
@@ -62,4 +74,4 @@ plant("contact force clipped at zero" motion/contact.hpp
     };
     const Real third = system_.stiffness * (q.bound(3, span) + r.bound(3, span)) +
                        system_.damping * (q.bound(4, span) + r.bound(4, span));
-    return {Outlook<Real>{{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()}};")
+    return {{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()};")
