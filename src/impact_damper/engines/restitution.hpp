@@ -1,7 +1,7 @@
 // The restitution engine: Brown and North's model. Rigid walls, impacts that take no time.
 //
 // An impact turns the relative velocity w into -e w and keeps (1+nu) v + nu w; it costs
-// nu (1 - e^2) w^2 / (2 (1+nu)). Between impacts the secondary mass flies free (motion.hpp).
+// nu (1 - e^2) w^2 / (2 (1+nu)). Between impacts the secondary mass flies free (flight.hpp).
 //
 // Bounce-down is an infinite sequence of impacts in finite time. Under a constant relative acceleration a
 // towards the wall and a first rebound speed w it is over after
