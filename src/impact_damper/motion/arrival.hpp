@@ -41,11 +41,6 @@ struct Arrival {
 template <class Real, std::size_t N>
 using Derivatives = std::array<Real, N>;
 
-template <class Real>
-struct Series {
-  Derivatives<Real, 6> x, y;
-};
-
 // c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
 // operations that wait for each other.
 template <class Real, std::size_t N>

@@ -117,7 +117,8 @@ class Flight {
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
                                const Real& u1) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
-        if (!stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
+        // A correction may lead beyond the span for which `fourth` holds.
+        if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         const bool left = across == (wall_ == 1);
         return Arrival<Real>{
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
@@ -147,7 +148,7 @@ class Flight {
         }
         h += shift;
       }
-      if (!stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};
+      if (!(h <= span) || !stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};
       begin += h;
       here = there;
     }

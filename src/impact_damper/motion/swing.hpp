@@ -5,12 +5,11 @@
 // x falls through zero.
 #pragma once
 
-#include <cmath>
-
 #include "impact_damper/motion/arrival.hpp"
 #include "impact_damper/motion/first_root.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 #include "impact_damper/run.hpp"
+
 namespace impact_damper {
 
 // The scene's numbers in the engine's scalar type.
