@@ -133,7 +133,9 @@ class Timeline {
         if (span_ < from) from = span_;
       }
     }
-    notice_peak(motion, from);
+    notice_peak(side_ * motion.at(from).x, from);
+    const Real v = side_ * motion.at(from).v;
+    bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
     // What the ends already exclude is not searched for.
     const bool may_turn = !motion.keeps_course(row_best_, end, duration);
     bool may_cross = !motion.keeps_side(side_, end, duration);
@@ -143,7 +145,7 @@ class Timeline {
       std::optional<Real> crossing;
       if (may_cross) crossing = motion.falls(0, side_, from, duration, span_);
       const Real until = crossing ? *crossing : duration;
-      if (may_turn) find_peaks(motion, from, until, no_turn_before);
+      if (may_turn && no_turn_before <= until) find_peaks(motion, from, until, rising, no_turn_before);
       if (!crossing) return duration;
       const Real zero = now() + *crossing;
       // A heavy mass may meet its wall just as x comes to zero, and throw it back: by rounding x was across.
@@ -162,29 +164,25 @@ class Timeline {
       row_best_ = 0;
       row_peak_time_ = zero;
       from = *crossing;
+      rising = true;
       may_cross = !(duration < from + motion.one_zero_within(from));
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
   template <class Motion>
-  void find_peaks(const Motion& motion, Real from, const Real& until, Real& no_turn_before) {
-    if (until < no_turn_before) return;
-    const Real v = side_ * motion.at(from).v;
-    bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
+  void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, Real& no_turn_before) {
     for (;;) {
       const Real sign = rising ? side_ : -side_;
       const auto turn = motion.falls(1, sign, from, until, span_);
       if (!turn) return;
-      if (rising) notice_peak(motion, *turn);
+      if (rising) notice_peak(motion.height(*turn), *turn);
       no_turn_before = *turn + motion.one_zero_within(*turn);
       if (until < no_turn_before) return;
       rising = !rising;
       from = *turn;
     }
   }
-  template <class Motion>
-  void notice_peak(const Motion& motion, const Real& t) {
-    const Real height = side_ * motion.at(t).x;
+  void notice_peak(const Real& height, const Real& t) {
     if (!(height > row_best_)) return;
     row_best_ = height;
     row_peak_time_ = now() + t;

@@ -67,7 +67,7 @@ std::array<Real, N> slopes(const std::array<Real, N>& c) {
 // than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
 template <class Real>
 struct Nearby {
-  Real shift;
+  Real shift, newton;  // and by the first order alone
   bool close;
 };
 template <class Real>
@@ -77,7 +77,7 @@ Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
   const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
   // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
-  return {shift, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+  return {shift, t, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
                      fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 

@@ -54,6 +54,9 @@ class ContactSystem {
     touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
     touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
     touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
+    slow_piece = slow.propagate(piece);
+    fast_piece = fast.propagate(piece);
     if (!forcing)
       rebound =
           Rebound<Real>(slow, fast, share_, zeta, touch,
@@ -107,6 +110,9 @@ class ContactSystem {
   ContactState<Real> drive_slow, drive_fast;
 
   Rebound<Real> rebound;
+  // Both parts' motion for a time in which the fast one goes not far: a quarter of its swing.
+  Real piece;
+  Propagator<Real> slow_piece, fast_piece;
 
  private:
   Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
@@ -133,7 +139,8 @@ class Contact {
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
   std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
     if (start_.y == wall_) {
-      auto end = system_.rebound(start_.x, start_.v, start_.w);
+      std::optional<typename Rebound<Real>::End> end;
+      if (system_.rebound) end = system_.rebound(start_.x, start_.v, start_.w);
       if (!end) end = settle();
       if (end && !(end->time < horizon)) return {};
       if (end) return Arrival<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
@@ -189,6 +196,7 @@ class Contact {
     return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
                              until, span, resolution());
   }
+  Real height(const Real& t) const { return absolute(at(t).x); }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
     return look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
@@ -228,82 +236,97 @@ class Contact {
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, where that is
   // when the slow part's does: where what is left of the fast one is less than a rounding error, from `from`
-  // on or, in a contact's beginning, from halfway there on, and was smaller than the slow part before.
+  // on or, in a contact's beginning, from halfway there on, and was smaller than the slow part before. That
+  // is exp(-a t) times the arc of a sine, above its chord: half of what it began with is left halfway.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactSystem<Real>& c = system_;
-    if (c.forcing || order > 1 || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
+    if (c.forcing || order > 1 || !c.slow.rings()) return {};
     const auto slow = derivatives<3>(c.slow, parts().slow.x, parts().slow.v);
     const auto fast = derivatives<3>(c.fast, parts().fast.x, parts().fast.v);
-    const Real u = sign * slow[order], f = fast[order], f1 = fast[order + 1];
-    const Real fall = c.slow.fall(u, Real(sign * slow[order + 1]), from),
-               quiet = from > 0 ? from : Real(fall / 2);
-    const ContactState<Real> then = slow_at(quiet);
-    const auto slow_then = derivatives<3>(c.slow, then.x, then.v);
-    const Real u_then = sign * slow_then[order];
-    const Real size = absolute(u_then) + absolute(slow_then[order + 1]) / c.slow.root_b();
-    if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 8 * size)) return {};
-    if (from > 0) return fall;
-    const Real most = c.fast.left(f, f1, Real(0));
-    return most < u && most < u_then ? std::optional(fall) : std::nullopt;
+    const Real u = sign * slow[order], u1 = sign * slow[order + 1], f = fast[order], f1 = fast[order + 1];
+    const Real fall = c.slow.fall(u, u1, from), quiet = from > 0 ? from : Real(fall / 2);
+    const Real kept = exponential(Real(-c.slow.a() * quiet));
+    const Real size = absolute(u) + absolute(u1) / c.slow.root_b();
+    if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 32 * kept * size)) return {};
+    return from > 0 || 2 * c.fast.left(f, f1, Real(0)) < kept * u ? std::optional(fall) : std::nullopt;
   }
 
-  // The end of a contact that lasts: the fast motion dies away, and the mass leaves when the slow one lets
-  // go.
+  // The end of a contact that lasts: the fast motion dies away, and the mass leaves at h, when the slow one
+  // lets go.
   //
-  // The proof. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), until what is left of
-  // the fast motion can no more reach as far as the slow one is deep (or helps it, and cannot change sides).
-  // (2) From there on the depth is positive, as the slow motion's is, which is nowhere lower than at the
-  // ends: where that has a minimum it is outside the wall. (3) At last, where both go to zero, by the bound
-  // again.
+  // The proof. The slow motion's depth is exp(-a t) times the arc of a sine that ends at h, and so above
+  // exp(-a h) times its chord. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), until
+  // what is left of the fast motion can never more reach as far as that chord (or helps it, and cannot change
+  // sides). (2) Where by h it is less than a rounding error, this is the end; else (3) the end is corrected,
+  // and proved by the bound again.
   std::optional<typename Rebound<Real>::End> settle() const {
     const ContactSystem<Real>& c = system_;
-    const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
-    Real h = c.slow.fall(depth, Real(inward_ * slow.w));
-    const Real early = h / 4, late = h * Real(0.75), slow_fourth = fourth_of(c.slow, slow.q, slow.w);
-    const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
-    const Real early_depth = inward_ * slow_at(early).q, late_depth = inward_ * slow_late.q;
+    const Real h = c.slow.fall(depth, Real(inward_ * slow.w)), early = h / 4, late = h * Real(0.75);
+    const Real chord = exponential(Real(-c.slow.a() * h)) * depth;
+    const Real slow_fourth = fourth_of(c.slow, slow.q, slow.w);
+    const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
 
-    const Real piece = c.fast.rings() ? Real(c.fast.half_period() / 2) : Real(1 / (2 * c.fast.rate()));
-    ContactState<Real> fast_before = fast, before{0, 0, 0, inward_ * start_.w};
+    Overlap slow_now{inward_ * slow.q, inward_ * slow.w}, fast_now{inward_ * fast.q, inward_ * fast.w};
+    Overlap before{0, inward_ * start_.w};
+    Real left_late;
     for (int n = 1;; ++n) {
-      const Real t = Real(n) * piece;
+      const Real t = Real(n) * c.piece;
       if (n > 24 || !(t < early)) return {};
-      const ContactState<Real> slow_now = slow_at(t), fast_now = fast_at(t);
-      const ContactState<Real> now{0, 0, inward_ * (slow_now.q + fast_now.q),
-                                   inward_ * (slow_now.w + fast_now.w)};
-      const Real fourth = fourth_of(c.fast, fast_before.q, fast_before.w) + slow_fourth;
-      if (!stays_open(before.q, before.w, now.q, now.w, piece, fourth)) return {};
-      if (!swings && inward_ * fast_now.q >= 0) break;
-      if (c.fast.left(fast_now.q, fast_now.w, Real(0)) < early_depth &&
-          c.fast.left(fast_now.q, fast_now.w, Real(early - t)) < late_depth &&
-          c.fast.left(fast_now.q, fast_now.w, Real(0)) < inward_ * slow_now.q)
+      const Real fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
+      slow_now = moved_by_piece(c.slow, c.slow_piece, slow_now);
+      fast_now = moved_by_piece(c.fast, c.fast_piece, fast_now);
+      const Overlap now{slow_now.q + fast_now.q, slow_now.w + fast_now.w};
+      if (!stays_open(before.q, before.w, now.q, now.w, c.piece, fourth)) return {};
+      left_late = c.fast.left(fast_now.q, fast_now.w, Real(late - t));
+      if (!swings && fast_now.q >= 0) break;
+      if (c.fast.left(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
+          c.fast.left(fast_now.q, fast_now.w, Real(early - t)) < chord / 4)
         break;
-      fast_before = fast_now;
       before = now;
     }
-    const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth;
+    const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
+    if (left_late * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
+      const ContactState<Real> end = slow_at(h);
+      return typename Rebound<Real>::End{h, end.x, end.v, end.w};
+    }
+    return settle_after(late, h, slow_fourth);
+  }
+  std::optional<typename Rebound<Real>::End> settle_after(const Real& late, Real h,
+                                                          const Real& slow_fourth) const {
+    const ContactSystem<Real>& c = system_;
+    const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
+    const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth, last = h;
     for (int correction = 0; correction < 4; ++correction) {
       Derivatives<Real, 6> x, q;
       const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
       c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
                 slow_end.w + fast_end.w},
                x, q);
-      const auto [shift, close] = nearby(Real(0), q, h, faint);
+      const auto [shift, newton, close] = nearby(Real(0), q, h, faint);
       h += shift;
-      if (!(absolute(h - late * 4 / 3) < late / 4)) return {};
+      if (!(absolute(h - last) < late / 4)) return {};
       if (!close) continue;
       const auto [end_x, end_v] = moved(x, shift);
       const Real end_w = moved(q, shift).u1;
-      if (!stays_open(Real(late_depth + inward_ * fast_late.q), Real(inward_ * (slow_late.w + fast_late.w)),
-                      Real(0), Real(inward_ * end_w), Real(h - late), faint))
+      if (!stays_open(Real(inward_ * (slow_late.q + fast_late.q)),
+                      Real(inward_ * (slow_late.w + fast_late.w)), Real(0), Real(inward_ * end_w),
+                      Real(h - late), faint))
         return {};
       return typename Rebound<Real>::End{h, end_x, end_v, end_w};
     }
     return {};
+  }
+  // q and q' of a part, and what they are a piece later.
+  struct Overlap {
+    Real q, w;
+  };
+  static Overlap moved_by_piece(const Oscillator<Real>& oscillator, const Propagator<Real>& p,
+                                const Overlap& now) {
+    return {p.c * now.q + p.s * now.w, p.v * now.w - oscillator.b() * p.s * now.q};
   }
   // A bound on |u''''| from here on: its size, which no damping raises.
   static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {

@@ -64,6 +64,7 @@ class Flight {
                             const Real& span) const {
     return swing_.falls(order, sign, from, until, span);
   }
+  Real height(const Real& t) const { return swing_.height(t); }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     return swing_.outlook_at(order, sign, t, span);
   }
@@ -140,13 +141,15 @@ class Flight {
         const auto x_there = swing_.template derivatives<6>(there.x, there.v, begin + h);
         const auto u_there = derivatives_of_u(there, x_there);
         const bool across = there.u > Real(0.5);
-        const auto [shift, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
-        if (!(absolute(shift) < h / 4) || correction == 3) break;
-        if (close) {
+        const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
+        if (close && absolute(shift) < h / 4) {
           const auto [x1, v1] = moved(x_there, shift);
           return reached(across, h + shift, x1, v1, moved(u_there, shift).u1);
         }
-        h += shift;
+        const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
+        if (correction == 5 || !(near || beyond)) break;
+        // Far beyond a wall, and so it was met: not further back than halfway at a time.
+        h += near ? shift : newton < 0 && newton > -h / 2 ? newton : Real(-h / 2);
       }
       if (!(h <= span) || !stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};
       begin += h;

@@ -85,6 +85,11 @@ class Oscillator {
     const Real period = 2 * half_period_;
     return first + Real(std::ceil(double((from - first) / period))) * period;
   }
+  // |u| at the turns of a free motion: after a time t at which u' is zero; only where underdamped.
+  Real height(const Real& u, const Real& u1, const Real& t) const {
+    const Real along = (u1 + a_ * u) / omega_, height = square_root(Real(u * u + along * along));
+    return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
+  }
   // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
   // exp(-a t) (u C + (u' + a u) S) with the undamped C and S, and where overdamped S <= t exp(omega t).
   Real left(const Real& u, const Real& u1, const Real& t) const {

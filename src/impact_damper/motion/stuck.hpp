@@ -34,6 +34,7 @@ class Stuck {
                             const Real& span) const {
     return swing_.falls(order, sign, from, until, span);
   }
+  Real height(const Real& t) const { return swing_.height(t); }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     return swing_.outlook_at(order, sign, t, span);
   }

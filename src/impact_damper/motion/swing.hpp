@@ -120,6 +120,12 @@ class Swing {
     const Real time = oscillator_.fall(u, u1, from);
     return time < until ? std::optional(time) : std::nullopt;
   }
+  // |x| where it turns.
+  Real height(const Real& t) const {
+    if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
+      return absolute(at(t).x);
+    return oscillator_.height(x0_, v0_, t);
+  }
   // The `order`-th derivative of x, looked ahead from t.
   Outlook<Real> outlook_at(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const Change now = at(t);
