@@ -60,6 +60,7 @@ class Rebound {
     const Propagator<Real> p = slow.propagate(swing_);
     const Real omega = half_turn<Real>() / swing_;
     few_ = reach_of(few, fast);
+    more_ = reach_of(more, fast);
     many_ = reach_of(many, fast);
     accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
@@ -116,8 +117,16 @@ class Rebound {
     Real time, x, v, w;
   };
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
-    if (const auto end = end_within<few>(x, v, w, few_)) return end;
-    return end_within<many>(x, v, w, many_);
+    const Start start{x, v, w};
+    std::array<Real, 4> q = combine<4>(q_, start);
+    q[1] -= left_ * w;
+    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
+    const Real s = t * (1 - a + (2 * a * a - b)), size = absolute(s);
+    if (size < few_.s)
+      if (const auto end = end_within<few>(start, s, few_)) return end;
+    if (size < more_.s)
+      if (const auto end = end_within<more>(start, s, more_)) return end;
+    return end_within<many>(start, s, many_);
   }
   // Bounds on the second and third derivative of x in it.
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {
@@ -126,7 +135,7 @@ class Rebound {
   Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
 
  private:
-  static constexpr std::size_t few = 10, many = 24;
+  static constexpr std::size_t few = 10, more = 14, many = 24;
   using Start = std::array<Real, 3>;  // by x, v and w at the touch
   using Table = std::array<std::array<Real, many>, 3>;
   template <std::size_t terms>
@@ -152,12 +161,11 @@ class Rebound {
   }
 
   template <std::size_t terms>
-  std::optional<End> end_within(const Real& x, const Real& v, const Real& w, const Reach& reach) const {
-    const Start start{x, v, w};
+  std::optional<End> end_within(const Start& start, Real s, const Reach& reach) const {
+    const auto& [x, v, w] = start;
     std::array<Real, terms> q = combine<terms>(q_, start);
     q[1] -= left_ * w;
-    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
-    Real s = t * (1 - a + (2 * a * a - b)), left_w;
+    Real left_w;
     const auto q1 = slopes(q), q2 = slopes(q1);
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
@@ -196,7 +204,7 @@ class Rebound {
   Real decay_{0}, growth_{0};  // a and exp(a T)
   Real unweighted_{0};         // (b / omega^2)^2
   Real accurate_{0};           // a correction of s whose third power is nothing
-  Reach few_, many_;
+  Reach few_, more_, many_;
   Real share_{0};
   Table centre_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
