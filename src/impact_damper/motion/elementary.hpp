@@ -1,53 +1,74 @@
 // The elementary functions of the result path, all in one place: whatever a run's numbers go through
-// besides + - * / and sqrt is called from here and nowhere else (but for the start values in
-// contact_factors.cpp, which are iterated away).
+// besides + - * / and sqrt is called from here and nowhere else. In double precision they are the project's
+// own, with the same bits everywhere (elementary_kernels.hpp); other numbers bring theirs.
 #pragma once
 
 #include <cmath>
 #include <type_traits>
 
+#include "impact_damper/motion/elementary_kernels.hpp"
+
 namespace impact_damper {
 
 template <class Real>
-struct SinCos {
-  Real sin, cos;
-};
-
-template <class Real>
 SinCos<Real> sin_cos(const Real& angle) {
-  using std::cos, std::sin;
-  return {sin(angle), cos(angle)};
+  if constexpr (std::is_same_v<Real, double>) {
+    return elementary::sin_cos(angle);
+  } else {
+    using std::cos, std::sin;
+    return {sin(angle), cos(angle)};
+  }
 }
 
 template <class Real>
 Real exponential(const Real& x) {
-  using std::exp;
-  return exp(x);
+  if constexpr (std::is_same_v<Real, double>) {
+    return elementary::exponential(x);
+  } else {
+    using std::exp;
+    return exp(x);
+  }
 }
 
 template <class Real>
 Real exponential_minus_1(const Real& x) {
-  using std::expm1;
-  return expm1(x);
+  if constexpr (std::is_same_v<Real, double>) {
+    return elementary::exponential_minus_1(x);
+  } else {
+    using std::expm1;
+    return expm1(x);
+  }
 }
 
 template <class Real>
 Real logarithm(const Real& x) {
-  using std::log;
-  return log(x);
+  if constexpr (std::is_same_v<Real, double>) {
+    return elementary::logarithm(x);
+  } else {
+    using std::log;
+    return log(x);
+  }
 }
 
-// The angle in (-pi, pi] of the point (x, y).
+// The angle in [-pi, pi] of the point (x, y).
 template <class Real>
 Real angle_of(const Real& y, const Real& x) {
-  using std::atan2;
-  return atan2(y, x);
+  if constexpr (std::is_same_v<Real, double>) {
+    return elementary::angle_of(y, x);
+  } else {
+    using std::atan2;
+    return atan2(y, x);
+  }
 }
 
 template <class Real>
 Real half_turn() {
-  using std::acos;
-  return acos(Real(-1));
+  if constexpr (std::is_same_v<Real, double>) {
+    return 2 * elementary::quarter_turn;
+  } else {
+    using std::acos;
+    return acos(Real(-1));
+  }
 }
 
 template <class Real>
