@@ -41,25 +41,25 @@ struct Arrival {
 template <class Real, std::size_t N>
 using Derivatives = std::array<Real, N>;
 
-// c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
-// operations that wait for each other.
+// c_0 + c_1 s + c_2 s^2 + ...: terms two by two, then those two by two, as few operations as can be waiting
+// for each other.
 template <class Real, std::size_t N>
 Real sum(const std::array<Real, N>& c, const Real& s) {
-  static_assert(N % 2 == 0);
-  const Real s_2 = s * s;
-  Real even = c[N - 2], odd = c[N - 1];
-  for (std::size_t n = N - 2; n > 0; n -= 2) {
-    even = c[n - 2] + s_2 * even;
-    odd = c[n - 1] + s_2 * odd;
+  if constexpr (N == 1) {
+    return c[0];
+  } else {
+    std::array<Real, (N + 1) / 2> pairs;
+    for (std::size_t n = 0; n < N / 2; ++n) pairs[n] = c[2 * n] + s * c[2 * n + 1];
+    if constexpr (N % 2 == 1) pairs[N / 2] = c[N - 1];
+    return sum(pairs, Real(s * s));
   }
-  return even + s * odd;
 }
-// The terms of its derivative.
-template <class Real, std::size_t N>
-std::array<Real, N> slopes(const std::array<Real, N>& c) {
-  std::array<Real, N> d;
-  for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
-  d[N - 1] = 0;
+// The first M terms of its derivative.
+template <std::size_t M, class Real, std::size_t N>
+std::array<Real, M> slopes(const std::array<Real, N>& c) {
+  static_assert(M < N);
+  std::array<Real, M> d;
+  for (std::size_t n = 0; n < M; ++n) d[n] = Real(double(n + 1)) * c[n + 1];
   return d;
 }
 
@@ -77,8 +77,9 @@ Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
   const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
   // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
-  return {shift, t, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
-                     fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
+  return {shift, t,
+          absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+              fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
 // u and u' a short time later.
@@ -93,45 +94,60 @@ Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
           d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
 }
 
+// How many terms the series of a flight has.
+inline constexpr std::size_t flight_terms = 12;
+
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series: roughly, but accurately within a
-// `short_time`. u is the distance from the wall it left.
+// parabola through its beginning, put right for the next two orders, then by Halley's method on the series.
+// Where that is as good as the motion itself, `whole`, u and its derivatives at that time are given, u as the
+// distance from the wall it meets.
 template <class Real>
 struct Guess {
   Real time;
-  bool across;     // at the other wall
-  Real u, u1, u2;  // of the series then: u from the wall it meets, and its first derivatives
+  bool across;  // at the other wall
+  bool whole;
+  Derivatives<Real, 6> u;
 };
+// |u''''| <= fourth, and |each higher derivative| <= rate |the one before|.
 template <class Real>
-Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
-  const auto& over = reciprocals<Real>;
+Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
+                  const Real& most) {
+  constexpr std::size_t terms = flight_terms;
+  const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
   const bool arrives = reach >= 0, across = arrives == rising;
-  Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
-           : u[0] == 0 ? Real(2 * speed / -push)
-                       : Real((speed + square_root(Real(reach - 2 * push))) / -push);
+  const Real end_speed = arrives     ? square_root(reach)
+                         : u[0] == 0 ? speed
+                                     : square_root(Real(reach - 2 * push));
+  Real t = arrives ? Real(2 * ahead / (speed + end_speed)) : Real((speed + end_speed) / -push);
+
+  std::array<Real, terms> c{across ? Real(u[0] - 1) : u[0], u[1]};
+  for (std::size_t n = 2; n < terms; ++n) c[n] = u[n] * inverse_factorials<Real>[n];
+  const Real right = t * t * t * (c[3] + t * c[4]) / (across ? Real(-end_speed) : end_speed);
+  if (absolute(right) < t / 4) t += right;
   if (!(t < most)) t = most;
-  Derivatives<Real, 8> c{across ? Real(u[0] - 1) : u[0], u[1]};
-  Real factor = over[2];
-  for (std::size_t n = 2; n < c.size(); ++n) {
-    c[n] = factor * u[n];
-    factor *= over[n + 1];
-  }
-  const auto c1 = slopes(c), c2 = slopes(c1);
-  Real g, g1, g2;
+  const auto c1 = slopes<terms - 1>(c);
+  const auto c2 = slopes<8>(c1);
+  const auto c3 = slopes<6>(c2);
+  const auto c4 = slopes<4>(c3);
   for (int i = 0;; ++i) {
-    g = sum(c, t);
-    g1 = sum(c1, t);
-    g2 = sum(c2, t);
+    const Real g = sum(c, t), g1 = sum(c1, t), g2 = sum(c2, t);
     const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
-    if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
+    if (!(t < most)) return {most, across, false, {}};
+    const Real tr = t * rate, tr_2 = tr * tr, tr_4 = tr_2 * tr_2;
+    if (tr < Real(0.125)) {
+      // What is left out: of u' |u^(12)| t^11/11!, of the inversion in nearby() the fourth power.
+      const bool whole =
+          fourth * (tr_4 * tr_4 * tr_2 * tr) <= 39916800 * tiny * absolute(g1) * (rate * rate * rate);
+      if (whole && size * 8192 < t) return {t, across, true, {g, g1, g2, sum(c3, t), sum(c4, t), 0}};
+    }
+    if (i == 4 || !(size < t / 2)) return {t, across, false, {}};
     t += step;
-    if (t > short_time && size * 64 < t) break;
+    if (!(tr < Real(0.125)) && size * 64 < t) return {t, across, false, {}};
   }
-  return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
@@ -156,23 +172,6 @@ bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& 
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
   return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
          (u0 + u1) / 2 + h * (slope0 - slope1) / 6 > off;
-}
-
-// A guess made good, where the series is so short a time the motion itself: u' at the wall.
-template <class Real>
-struct SeriesLanding {
-  Real shift, u1;
-  bool close;
-};
-template <class Real>
-SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
-  const auto& [h, across, g, g1, g2] = guess;
-  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
-  const Real hr = h * rate, hr_2 = hr * hr, tiny = std::numeric_limits<Real>::epsilon() / 16;
-  // What is left out: of u' |u^(8)| h^7/7!, of the shift its third power.
-  return {shift, g1 + shift * g2,
-          fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate) &&
-              absolute(shift) * 33554432 < h};
 }
 
 }  // namespace impact_damper

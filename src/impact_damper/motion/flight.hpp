@@ -112,7 +112,7 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto x = swing_.template instant<8>(here.x, here.v, begin);
+      const auto x = swing_.template instant<flight_terms>(here.x, here.v, begin);
       const auto u = derivatives_of_u(here, x.derivatives());
       const Real fourth = x.bound(4, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
@@ -125,15 +125,17 @@ class Flight {
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
+      const Guess<Real> guessed = guess(u, fourth, rate, most);
       Real h = guessed.time;
       if (!(h > 0)) return {};
-      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close) {
-        // z = x + y has gone straight there.
-        const Real whole = h + shift, level = guessed.across ? 1 : 0;
-        return reached(guessed.across, whole,
-                       here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
-                       here.v + away_ * (here.u1 - u1), u1);
+      if (guessed.whole) {
+        if (const auto [shift, newton, close] = nearby(Real(0), guessed.u, h, fourth); close) {
+          // z = x + y has gone straight there.
+          const Real whole = h + shift, level = guessed.across ? 1 : 0, u1 = moved(guessed.u, shift).u1;
+          return reached(guessed.across, whole,
+                         here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
+                         here.v + away_ * (here.u1 - u1), u1);
+        }
       }
       Place there;
       for (int correction = 0;; ++correction) {

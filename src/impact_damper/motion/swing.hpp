@@ -135,9 +135,10 @@ class Swing {
             std::numeric_limits<Real>::infinity()};
   }
 
-  // The fastest that anything happens in it.
+  // What bounds a derivative by the one before.
   Real rate() const {
-    return forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
+    const Real& rate = oscillator_.derived_rate();
+    return forcing_ && forcing_.frequency > rate ? forcing_.frequency : rate;
   }
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
