@@ -91,15 +91,15 @@ inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(dou
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
 template <std::same_as<Counted> Real>
-Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
+Real guess(const Derivatives<Real, 6>& u, const Real& most) {
   ++counts.guesses;
-  return impact_damper::guess<Real>(u, short_time, most);
+  return impact_damper::guess<Real>(u, most);
 }
 
 template <std::same_as<Counted> Real>
-Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
+Nearby<Real> nearby(const Real& level, const Derivatives<Real, 8>& y, const Real& h, const Real& rate) {
   ++counts.evaluations;
-  return impact_damper::nearby<Real>(level, y, h, fourth);
+  return impact_damper::nearby<Real>(level, y, h, rate);
 }
 
 template <std::same_as<Counted> Real, class Watch>

@@ -63,23 +63,31 @@ std::array<Real, M> slopes(const std::array<Real, N>& c) {
   return d;
 }
 
-// When y meets a level nearby: its third-order series turned round. `close` tells whether that leaves no more
-// than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
+// When y meets a level nearby: its fifth-order series turned round. `close` tells whether what that leaves,
+// and what moved() leaves, is no more than a rounding error of the time h that has led here and of a motion
+// of which each derivative is bounded by `rate` times the one before.
 template <class Real>
 struct Nearby {
   Real shift, newton;  // and by the first order alone
   bool close;
 };
 template <class Real>
-Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
-  const Real over = 1 / y[1], t = (level - y[0]) * over;
-  const Real a = t * y[2] * over / 2, b = t * t * y[3] * over * reciprocals<Real>[6];
-  const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
-  const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
-  // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
-  return {shift, t,
-          absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
-              fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
+Nearby<Real> nearby(const Real& level, const Derivatives<Real, 8>& y, const Real& h, const Real& rate) {
+  const auto& by = reciprocals<Real>;
+  const Real over = 1 / y[1], t = (level - y[0]) * over, t_2 = t * t, p = t * over;
+  // The orders' parts, y^(n) t^(n-1) / (n! y'), n from 2 on.
+  const Real a = p * y[2] / 2, b = (p * t) * (y[3] * by[6]), c = (p * t_2) * (y[4] * by[24]);
+  const Real d = (p * t_2) * (t * y[5] * (by[24] * by[5])), e = (p * t_2) * (t_2 * y[6] * (by[24] * by[30]));
+  const Real a_2 = a * a;
+  const Real fourth = 5 * a * (b - a_2) - c,
+             fifth = 7 * a_2 * (2 * a_2 - 3 * b) + (3 * (2 * a * c + b * b) - d);
+  const Real shift = t * ((1 - a) + ((2 * a_2 - b) + (fourth + fifth)));
+
+  const Real A = absolute(a), B = absolute(b), C = absolute(c), D = absolute(d), E = absolute(e);
+  const Real sixth = 14 * A * (3 * a_2 * (a_2 + 2 * B) + 2 * (A * C + B * B)) + 7 * (A * D + B * C) + E;
+  const Real enough = std::numeric_limits<Real>::epsilon() / 64;
+  const Real angle = shift * rate, angle_2 = angle * angle, angle_6 = angle_2 * angle_2 * angle_2;
+  return {shift, t, absolute(t) * sixth <= enough * h && absolute(angle * angle_6) <= 5040 * enough};
 }
 
 // u and u' a short time later.
@@ -88,66 +96,39 @@ struct Moved {
   Real u, u1;
 };
 template <class Real>
-Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
-  const Real half = t / 2, third = t * reciprocals<Real>[3], quarter = t / 4;
-  return {d[0] + t * (d[1] + half * (d[2] + third * (d[3] + quarter * d[4]))),
-          d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
+Moved<Real> moved(const Derivatives<Real, 8>& d, const Real& t) {
+  const auto& by = reciprocals<Real>;
+  const Real half = t / 2, third = t * by[3], quarter = t / 4, fifth = t * by[5], sixth = t * by[6];
+  const auto sum = [&](std::size_t n) {
+    return d[n] +
+           t * (d[n + 1] +
+                half * (d[n + 2] +
+                        third * (d[n + 3] + quarter * (d[n + 4] + fifth * (d[n + 5] + sixth * d[n + 6])))));
+  };
+  return {sum(0), sum(1)};
 }
 
-// How many terms the series of a flight has.
-inline constexpr std::size_t flight_terms = 12;
-
-// When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, put right for the next two orders, then by Halley's method on the series.
-// Where that is as good as the motion itself, `whole`, u and its derivatives at that time are given, u as the
-// distance from the wall it meets.
+// When a mass that has left one wall of a gap of 1 meets either, roughly, and after `most` at the latest: by
+// the parabola through its beginning, and one step of Halley's method on the next three orders. u is the
+// distance from the wall it left.
 template <class Real>
-struct Guess {
-  Real time;
-  bool across;  // at the other wall
-  bool whole;
-  Derivatives<Real, 6> u;
-};
-// |u''''| <= fourth, and |each higher derivative| <= rate |the one before|.
-template <class Real>
-Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
-                  const Real& most) {
-  constexpr std::size_t terms = flight_terms;
-  const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
+Real guess(const Derivatives<Real, 6>& u, const Real& most) {
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
-  const bool arrives = reach >= 0, across = arrives == rising;
+  const bool arrives = reach >= 0;
   const Real end_speed = arrives     ? square_root(reach)
                          : u[0] == 0 ? speed
                                      : square_root(Real(reach - 2 * push));
-  Real t = arrives ? Real(2 * ahead / (speed + end_speed)) : Real((speed + end_speed) / -push);
-
-  std::array<Real, terms> c{across ? Real(u[0] - 1) : u[0], u[1]};
-  for (std::size_t n = 2; n < terms; ++n) c[n] = u[n] * inverse_factorials<Real>[n];
-  const Real right = t * t * t * (c[3] + t * c[4]) / (across ? Real(-end_speed) : end_speed);
-  if (absolute(right) < t / 4) t += right;
-  if (!(t < most)) t = most;
-  const auto c1 = slopes<terms - 1>(c);
-  const auto c2 = slopes<8>(c1);
-  const auto c3 = slopes<6>(c2);
-  const auto c4 = slopes<4>(c3);
-  for (int i = 0;; ++i) {
-    const Real g = sum(c, t), g1 = sum(c1, t), g2 = sum(c2, t);
-    const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
-    if (!(t < most)) return {most, across, false, {}};
-    const Real tr = t * rate, tr_2 = tr * tr, tr_4 = tr_2 * tr_2;
-    if (tr < Real(0.125)) {
-      // What is left out: of u' |u^(12)| t^11/11!, of the inversion in nearby() the fourth power.
-      const bool whole =
-          fourth * (tr_4 * tr_4 * tr_2 * tr) <= 39916800 * tiny * absolute(g1) * (rate * rate * rate);
-      if (whole && size * 8192 < t) return {t, across, true, {g, g1, g2, sum(c3, t), sum(c4, t), 0}};
-    }
-    if (i == 4 || !(size < t / 2)) return {t, across, false, {}};
-    t += step;
-    if (!(tr < Real(0.125)) && size * 64 < t) return {t, across, false, {}};
-  }
+  const Real t = arrives ? Real(2 * ahead / (speed + end_speed)) : Real((speed + end_speed) / -push);
+  const auto& by = reciprocals<Real>;
+  const Real third = u[3] * by[6], fourth = u[4] * by[24] * t, fifth = u[5] * (by[24] * by[5]) * (t * t);
+  const Real g = t * t * t * (third + fourth + fifth), g1_more = t * t * (3 * third + 4 * fourth + 5 * fifth),
+             half_g2 = u[2] / 2 + t * (3 * third + 6 * fourth + 10 * fifth);
+  const Real g1 = (arrives == rising ? end_speed : Real(-end_speed)) + g1_more;
+  const Real step = g * g1 / (g1 * g1 - g * half_g2), better = absolute(step) < t / 2 ? Real(t - step) : t;
+  return better < most ? better : most;
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
