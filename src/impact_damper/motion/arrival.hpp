@@ -109,7 +109,7 @@ Moved<Real> moved(const Derivatives<Real, 8>& d, const Real& t) {
 }
 
 // When a mass that has left one wall of a gap of 1 meets either, roughly, and after `most` at the latest: by
-// the parabola through its beginning, and one step of Halley's method on the next three orders. u is the
+// the parabola through its beginning, then by Halley's method on the series to the fifth order. u is the
 // distance from the wall it left.
 template <class Real>
 Real guess(const Derivatives<Real, 6>& u, const Real& most) {
@@ -118,17 +118,24 @@ Real guess(const Derivatives<Real, 6>& u, const Real& most) {
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
   const bool arrives = reach >= 0;
-  const Real end_speed = arrives     ? square_root(reach)
-                         : u[0] == 0 ? speed
-                                     : square_root(Real(reach - 2 * push));
-  const Real t = arrives ? Real(2 * ahead / (speed + end_speed)) : Real((speed + end_speed) / -push);
+  Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
+           : u[0] == 0 ? Real(2 * speed / -push)
+                       : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   const auto& by = reciprocals<Real>;
-  const Real third = u[3] * by[6], fourth = u[4] * by[24] * t, fifth = u[5] * (by[24] * by[5]) * (t * t);
-  const Real g = t * t * t * (third + fourth + fifth), g1_more = t * t * (3 * third + 4 * fourth + 5 * fifth),
-             half_g2 = u[2] / 2 + t * (3 * third + 6 * fourth + 10 * fifth);
-  const Real g1 = (arrives == rising ? end_speed : Real(-end_speed)) + g1_more;
-  const Real step = g * g1 / (g1 * g1 - g * half_g2), better = absolute(step) < t / 2 ? Real(t - step) : t;
-  return better < most ? better : most;
+  const Real c0 = arrives == rising ? Real(u[0] - 1) : u[0], c2 = u[2] / 2, c3 = u[3] * by[6],
+             c4 = u[4] * by[24], c5 = u[5] * (by[24] * by[5]);
+  for (int i = 0; i < 4; ++i) {
+    if (!(t < most)) t = most;
+    const Real t_2 = t * t;
+    const Real g = (c0 + t * u[1]) + t_2 * ((c2 + t * c3) + t_2 * (c4 + t * c5));
+    const Real g1 = (u[1] + t * u[2]) + t_2 * ((3 * c3 + 4 * t * c4) + 5 * t_2 * c5);
+    const Real half_g2 = (c2 + 3 * t * c3) + t_2 * (6 * c4 + 10 * t * c5);
+    const Real step = g * g1 / (g * half_g2 - g1 * g1);
+    if (!(absolute(step) < t)) break;
+    t += step;
+    if (absolute(step) * 16 < t) break;
+  }
+  return t;
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
