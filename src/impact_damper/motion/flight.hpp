@@ -112,7 +112,7 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto x = swing_.template instant<6>(here.x, here.v, begin);
+      const auto x = swing_.template instant<8>(here.x, here.v, begin);
       const auto u = derivatives_of_u(here, x.derivatives());
       const Real fourth = x.bound(4, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
@@ -125,8 +125,18 @@ class Flight {
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      Real h = guess(u, most);
+      const Guess<Real> guessed = guess(u, fourth, rate, most);
+      Real h = guessed.time;
       if (!(h > 0)) return {};
+      if (guessed.whole) {
+        if (const auto [shift, newton, close] = nearby(Real(0), guessed.u, h, rate); close) {
+          // z = x + y has gone straight there.
+          const Real whole = h + shift, level = guessed.across ? 1 : 0, u1 = moved(guessed.u, shift).u1;
+          return reached(guessed.across, whole,
+                         here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
+                         here.v + away_ * (here.u1 - u1), u1);
+        }
+      }
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);

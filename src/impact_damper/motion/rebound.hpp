@@ -163,7 +163,7 @@ class Rebound {
     q[1] -= left_ * w;
     Real left_w;
     const auto q1 = slopes<terms - 1>(q);
-    const auto q2 = slopes<terms - 2>(q1);
+    const auto q2 = slopes<terms / 2 + 2>(q1);  // which corrects a correction: enough
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
       const Real g = sum(q, s), g1 = sum(q1, s), g2 = sum(q2, s), newton = -g / g1;
