@@ -108,10 +108,13 @@ Moved<Real> moved(const Derivatives<Real, 8>& d, const Real& t) {
   return {sum(0), sum(1)};
 }
 
+// How many terms of a flight's series a guess is made by.
+inline constexpr std::size_t flight_terms = 12;
+
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series, roughly to the fifth order. After so
-// short a time that eight terms are the motion itself, `whole`, u and its derivatives at that time are given
-// too, u as the distance from the wall it meets.
+// parabola through its beginning, then by Halley's method on the series. Where that is as good as the motion
+// itself, `whole`, u and its derivatives at that time are given too, u as the distance from the wall it
+// meets.
 template <class Real>
 struct Guess {
   Real time;
@@ -121,7 +124,8 @@ struct Guess {
 };
 // u is the distance from the wall it left, |u''''| <= fourth, and |each derivative| <= rate |the one before|.
 template <class Real>
-Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& fourth, const Real& rate, const Real& most) {
+Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
+                  const Real& most) {
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
@@ -130,29 +134,28 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& fourth, const Real&
   Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
-  const auto& by = reciprocals<Real>;
-  const Real c0 = across ? Real(u[0] - 1) : u[0], c2 = u[2] / 2, c3 = u[3] * by[6], c4 = u[4] * by[24],
-             c5 = u[5] * (by[24] * by[5]);
-  const bool brief = t * rate < Real(1.0 / 128);
-  const Real c6 = brief ? Real(u[6] * (by[24] * by[30])) : Real(0);
-  const Real c7 = brief ? Real(u[7] * (by[24] * by[30] * by[7])) : Real(0);
-  for (int i = 0; i < 4; ++i) {
-    if (!(t < most)) return {most};
-    const Real t_2 = t * t, t_4 = t_2 * t_2;
-    const Real g = (c0 + t * u[1]) + t_2 * (c2 + t * c3) + t_4 * ((c4 + t * c5) + t_2 * (c6 + t * c7));
-    const Real g1 =
-        (u[1] + t * u[2]) + t_2 * (3 * c3 + 4 * t * c4) + t_4 * ((5 * c5 + 6 * t * c6) + 7 * t_2 * c7);
-    const Real half_g2 = (c2 + 3 * t * c3) + t_2 * (6 * c4 + 10 * t * c5);
-    const Real step = g * g1 / (g * half_g2 - g1 * g1), size = absolute(step);
+  if (!(t < most)) t = most;
+  std::array<Real, flight_terms> c{across ? Real(u[0] - 1) : u[0], u[1]};
+  for (std::size_t n = 2; n < c.size(); ++n) c[n] = u[n] * inverse_factorials<Real>[n];
+  const auto c1 = slopes<flight_terms - 1>(c);
+  const auto c2 = slopes<8>(c1);
+  for (int i = 0; i < 5; ++i) {
+    const Real g = sum(c, t), g1 = sum(c1, t), g2 = sum(c2, t);
+    const Real step = g * g1 / (g * g2 / 2 - g1 * g1), size = absolute(step);
+    const Real tr = t * rate, tr_2 = tr * tr, tr_4 = tr_2 * tr_2;
+    const bool brief = tr < Real(0.125);
     if (brief && size * 8192 < t) {
-      // What is left out: of u' |u^(8)| t^7/7!.
-      const Real tr = t * rate, tr_2 = tr * tr, tiny = std::numeric_limits<Real>::epsilon() / 16;
+      const auto c3 = slopes<6>(c2);
+      const auto c4 = slopes<4>(c3);
+      // What is left out: of u' |u^(12)| t^11/11!.
+      const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
       const bool whole =
-          fourth * (tr_2 * tr_2 * tr_2 * tr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate);
-      return {t, across, whole, {g, g1, 2 * half_g2, u[3] + t * (u[4] + t * c5 * 60), u[4] + t * u[5], u[5]}};
+          fourth * (tr_4 * tr_4 * tr_2 * tr) <= 39916800 * tiny * absolute(g1) * (rate * rate * rate);
+      return {t, across, whole, {g, g1, g2, sum(c3, t), sum(c4, t), u[5]}};
     }
     if (!(size < t)) break;
     t += step;
+    if (!(t < most)) return {most};
     if (!brief && size * 16 < t) break;
   }
   return {t};

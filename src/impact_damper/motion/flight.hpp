@@ -112,7 +112,7 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto x = swing_.template instant<8>(here.x, here.v, begin);
+      const auto x = swing_.template instant<flight_terms>(here.x, here.v, begin);
       const auto u = derivatives_of_u(here, x.derivatives());
       const Real fourth = x.bound(4, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,

@@ -27,6 +27,14 @@ inline const std::array<Real, 64> reciprocals = [] {
 }();
 
 template <class Real>
+inline const std::array<Real, 16> inverse_factorials = [] {
+  std::array<Real, 16> all{Real(1)};
+  Real factorial{1};
+  for (int n = 1; n < 16; ++n) all[n] = 1 / (factorial *= n);
+  return all;
+}();
+
+template <class Real>
 struct Propagator {
   Real c{1}, s{0};    // C, S
   Real c1{0}, s1{0};  // C - 1, S - t
