@@ -10,10 +10,10 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <cstddef>
 #include <limits>
 
+#include "impact_damper/motion/complex.hpp"
 #include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
@@ -83,7 +83,7 @@ class Oscillator {
     const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
-    return first + Real(std::ceil(double((from - first) / period))) * period;
+    return first + Real(whole_above(double((from - first) / period))) * period;
   }
   // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
   // exp(-a t) (u C + (u' + a u) S) with the undamped C and S, and where overdamped S <= t exp(omega t).
@@ -153,7 +153,7 @@ class Oscillator {
   }
 
  private:
-  using Complex = std::complex<Real>;
+  using Complex = impact_damper::Complex<Real>;
   struct ComplexResponse {
     Complex z, z1;
   };
@@ -256,7 +256,7 @@ class Oscillator {
     };
     const Complex e1 = difference(omega_), e2 = difference(-omega_);
     const Complex lambda(-a_, omega_), twice_i_omega(0, 2 * omega_);
-    return {(e1 - e2) / twice_i_omega, (lambda * e1 - std::conj(lambda) * e2) / twice_i_omega};
+    return {(e1 - e2) / twice_i_omega, (lambda * e1 - conjugate(lambda) * e2) / twice_i_omega};
   }
 
   Real a_{0}, b_{1};
