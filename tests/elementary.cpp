@@ -66,7 +66,7 @@ template <class Draw, class Error>
 void expect_below(double bound, Draw&& draw, Error&& error) {
   double worst = 0;
   for (int i = 0; i < arguments; ++i) worst = std::fmax(worst, error(draw()));
-  MESSAGE("largest error ", worst, " ulp");
+  INFO("over ", arguments, " arguments");
   CHECK(worst < bound);
 }
 
@@ -102,20 +102,20 @@ void expect_angle_below(double bound, Draw&& draw) {
 
 }  // namespace
 
-TEST_CASE("Sine and cosine of moderate angles are exact to SINE_MODERATE ulp") {
-  expect_sine_and_cosine_below(0.62, [] { return between(-8, 8); });
-  expect_sine_and_cosine_below(0.62, [] { return between(-0.1, 0.1); });
+TEST_CASE("Sine and cosine of moderate angles err by less than 0.6 ulp") {
+  expect_sine_and_cosine_below(0.6, [] { return between(-8, 8); });
+  expect_sine_and_cosine_below(0.6, [] { return between(-0.1, 0.1); });
 }
-TEST_CASE("Sine and cosine next to multiples of a quarter turn are exact to SINE_NEAR ulp") {
+TEST_CASE("Sine and cosine next to multiples of a quarter turn err by less than 0.8 ulp") {
   expect_sine_and_cosine_below(0.8, [] { return near_axis(6, -12, -4); });
   expect_sine_and_cosine_below(0.8, [] { return near_axis(6, -60, -8); });
   expect_sine_and_cosine_below(0.8, [] { return near_axis(2.6e6, -40, -5); });
   expect_sine_and_cosine_below(0.8, [] { return near_axis(1e12, -40, -5); });
 }
-TEST_CASE("Sine and cosine of tiny angles are exact to SINE_TINY ulp") {
+TEST_CASE("Sine and cosine of tiny angles err by less than 0.6 ulp") {
   expect_sine_and_cosine_below(0.6, [] { return of_any_size(-1074, -2); });
 }
-TEST_CASE("Sine and cosine of large and of huge angles are exact to SINE_LARGE ulp") {
+TEST_CASE("Sine and cosine of large and of huge angles err by less than 0.65 ulp") {
   expect_sine_and_cosine_below(0.65, [] { return between(8, 1e3); });
   expect_sine_and_cosine_below(0.65, [] { return between(-5e6, 5e6); });
   expect_sine_and_cosine_below(0.65, [] { return between(-1e12, 1e12); });
@@ -130,7 +130,7 @@ TEST_CASE("The double nearest to a multiple of a quarter turn has a right cosine
 }
 
 double exponent(double x) { return exponential(x); }
-TEST_CASE("The exponential is exact to EXP ulp, to EXP_LIMIT where it leaves the range") {
+TEST_CASE("The exponential errs by less than 0.52 ulp, by less than 0.8 where it leaves the range") {
   expect_below(0.52, exponent, mpfr_exp, [] { return between(-1, 1); });
   expect_below(0.52, exponent, mpfr_exp, [] { return between(-40, 40); });
   expect_below(0.52, exponent, mpfr_exp, [] { return between(-640, 700); });
@@ -140,7 +140,7 @@ TEST_CASE("The exponential is exact to EXP ulp, to EXP_LIMIT where it leaves the
 }
 
 double exponent_minus_1(double x) { return exponential_minus_1(x); }
-TEST_CASE("The exponential minus 1 is exact to EXPM1 ulp") {
+TEST_CASE("The exponential minus 1 errs by less than 0.52 ulp") {
   expect_below(0.52, exponent_minus_1, mpfr_expm1, [] { return between(-1, 1); });
   expect_below(0.52, exponent_minus_1, mpfr_expm1, [] { return between(-0.02, 0.02); });
   expect_below(0.52, exponent_minus_1, mpfr_expm1, [] { return between(-50, 711); });
@@ -148,23 +148,23 @@ TEST_CASE("The exponential minus 1 is exact to EXPM1 ulp") {
 }
 
 double natural_logarithm(double x) { return logarithm(x); }
-TEST_CASE("The logarithm is exact to LOG ulp") {
+TEST_CASE("The logarithm errs by less than 0.53 ulp") {
   expect_below(0.53, natural_logarithm, mpfr_log, [] { return between(0, 4); });
   expect_below(0.53, natural_logarithm, mpfr_log, [] { return between(0.9, 1.1); });
   expect_below(0.53, natural_logarithm, mpfr_log, [] { return 1 + of_any_size(-52, -2); });
   expect_below(0.53, natural_logarithm, mpfr_log, [] { return std::fabs(of_any_size(-1074, 1024)); });
 }
 
-TEST_CASE("The angle of a point is exact to ANGLE ulp") {
+TEST_CASE("The angle of a point errs by less than 0.65 ulp") {
   expect_angle_below(0.65, [] { return Point{between(-1, 1), between(-1, 1)}; });
   expect_angle_below(0.65, [] { return Point{between(-0.1, 0.1), either_sign(1)}; });
   expect_angle_below(0.65, [] { return Point{of_any_size(-40, 0), either_sign(1)}; });
   expect_angle_below(0.65, [] { return Point{either_sign(1), of_any_size(-40, 0)}; });
 }
-TEST_CASE("The angle of a point in the diagonals' neighbourhood is exact to ANGLE ulp") {
+TEST_CASE("The angle of a point next to a diagonal errs by less than 0.65 ulp") {
   expect_angle_below(0.65, [] { return Point{1 + of_any_size(-52, -4), either_sign(1)}; });
 }
-TEST_CASE("The angle of points of any size is exact to ANGLE_ANY ulp") {
+TEST_CASE("The angle of points of any size errs by less than 0.65 ulp") {
   expect_angle_below(0.65, [] { return Point{any_double(), any_double()}; });
   expect_angle_below(0.65, [] { return Point{of_any_size(-1074, 1024), of_any_size(-1074, 1024)}; });
   expect_angle_below(0.65, [] { return Point{of_any_size(-1074, -1000), of_any_size(-1074, -1000)}; });
