@@ -1,6 +1,8 @@
 // The elementary functions held against MPFR. An error is in units of the last place (ulp) of the exact
-// result, for subnormal ones of the smallest number; half a unit is what rounding alone costs. Each bound is
-// a little above the largest error that a hundred times as many arguments showed, which stands beside it.
+// result, for subnormal ones of the smallest number; half a unit is what rounding alone costs. The largest
+// errors met in 100,000 arguments for each line: sine and cosine 0.58, next to a quarter turn's multiple
+// 0.77, tiny 0.53, large 0.57; exponential 0.51, in subnormal numbers 0.75; less 1 0.502; logarithm 0.51;
+// angle 0.61.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/motion/elementary.hpp"
 

@@ -19,7 +19,7 @@
 //   logarithm      x = 2^e m, d = m/c - 1 exactly: e ln 2 + ln c + (d - d^2/2 + ...).
 //
 // SLEEF's deterministic scalar functions (3.5.1, cinz_*u10purec) have fixed bits too, but as a chain of
-// dependent calls they took 3.1 (sine and cosine), 3.4 (angle), 2.6 (exponential) and 2.1 times (logarithm)
+// dependent calls they took 3.8 (sine and cosine), 3.4 (angle), 2.6 (exponential) and 2.1 times (logarithm)
 // as long as these.
 #pragma once
 
