@@ -12,7 +12,7 @@ $(error ENGINE must be exact, restitution or cem, got $(ENGINE))
 endif
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
-PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \
+PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev

@@ -146,6 +146,8 @@ int bench(const Arguments& arguments) {
     found.allocations = count_allocations();
     tell("two threads");
     found.speedup = measure_speedup(quick ? 3 : 9);
+    tell("elementary functions");
+    found.functions = measure_functions(quick ? 9 : 101);
   }
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 

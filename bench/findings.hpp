@@ -8,6 +8,7 @@
 #include "allocations.hpp"
 #include "counted.hpp"
 #include "figure_set.hpp"
+#include "functions.hpp"
 #include "sweeps.hpp"
 #include "threads.hpp"
 #include "time_error.hpp"
@@ -34,6 +35,7 @@ struct Findings {
   std::optional<FigureSet> figures;
   std::vector<Allocations> allocations;
   std::optional<Speedup> speedup;
+  std::vector<FunctionCost> functions;
   std::vector<std::string> missing_peers;
   double seconds = 0;  // that it all took, by the clock on the wall
 

@@ -149,6 +149,15 @@ std::string report_json(const Findings& found) {
                        {"speedup", json_of(found.speedup->ratio)},
                        {"repeats", found.speedup->repeats}};
   }
+  for (const FunctionCost& function : found.functions) {
+    json["functions"].push_back({{"name", function.name},
+                                 {"arguments", function.arguments},
+                                 {"nanoseconds", json_of(function.own, 1e9)},
+                                 {"library_nanoseconds", json_of(function.library, 1e9)},
+                                 {"ratio", json_of(function.ratio)},
+                                 {"error_ulp", function.own_error},
+                                 {"library_error_ulp", function.library_error}});
+  }
   return json.dump(1) + "\n";
 }
 

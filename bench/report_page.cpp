@@ -197,6 +197,23 @@ void add_rest(std::string& page, const Findings& found) {
                     speedup.ratio.upper) +
             " times as fast.\n";
   }
+  if (!found.functions.empty()) {
+    page +=
+        "\n## Elementary functions\n\n"
+        "One of a chain of dependent calls of the project's own and of the C library's, in nanoseconds, with "
+        "the "
+        "product and the sum that make it wait for the one before; largest errors in units of the last "
+        "place.\n\n";
+    PageTable table(page,
+                    {"", "arguments", "own", "the C library's", "ratio (quartiles)", "error", "its error"});
+    for (const FunctionCost& function : found.functions) {
+      table.row(
+          {function.name, function.arguments, printed("%.1f", function.own.median * 1e9),
+           printed("%.1f", function.library.median * 1e9),
+           printed("%.2f (%.2f to %.2f)", function.ratio.median, function.ratio.lower, function.ratio.upper),
+           printed("%.2f", function.own_error), printed("%.2f", function.library_error)});
+    }
+  }
 
   std::string notes;
   for (const std::string& peer : found.missing_peers) notes += "- not in this build: " + peer + "\n";

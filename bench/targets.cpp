@@ -228,6 +228,14 @@ std::vector<Target> targets_of(const Findings& found) {
     t.measured = found.speedup->ratio.median;
     t.note = std::to_string(found.speedup->members) + " decays, by the clock on the wall";
   });
+  for (const FunctionCost& function : found.functions) {
+    add(at_most(function.name + ", " + function.arguments + ": time by the C library's", 1.5, 1, "x"),
+        [&](Target& t) {
+          t.measured = function.ratio.median;
+          t.note = digits(function.own.median * 1e9) + " ns, error " + digits(function.own_error, "%.2f") +
+                   " ulp; there " + digits(function.library_error, "%.2f");
+        });
+  }
   return all;
 }
 

@@ -20,7 +20,7 @@ struct Bounce {
 };
 
 double time_to_accumulation(double e, double a, const Bounce& at) {
-  return accumulation_time(e, a * std::sin(at.time), e * at.speed);
+  return accumulation_time(e, a * sin_cos(at.time).sin, e * at.speed);
 }
 
 // Absent if the mass is not back before t = pi.
@@ -78,7 +78,7 @@ std::optional<SingleImpact> single_impact(double restitution, double amplitude) 
   if (!(discriminant >= 0)) return std::nullopt;
   SingleImpact motion;
   motion.speed = (pi + std::sqrt(discriminant)) / denominator;
-  motion.theta = std::atan2(b * motion.speed, (pi * motion.speed - 1) / 2);
+  motion.theta = angle_of(b * motion.speed, (pi * motion.speed - 1) / 2);
   motion.phase_deg = 90 + motion.theta * 180 / pi;
   motion.loss = 4 * b * square(motion.speed / a) / pi;
   return motion;
@@ -94,16 +94,20 @@ double peak_loss_amplitude(double restitution) { return asymmetry(restitution) /
 double peak_loss(double restitution) { return 4 / (pi * asymmetry(restitution)); }
 
 double equal_spacing_amplitude(double restitution) {
-  return std::hypot(2.0, asymmetry(restitution) * pi) / (square(pi) - 4);
+  return std::sqrt(4 + square(asymmetry(restitution) * pi)) / (square(pi) - 4);
 }
 
 StuckRelease stuck_release(double amplitude) {
   // t - sin t = 1/A: convex and rising on [0, pi], so Newton's steps from pi fall onto the root from above.
   StuckRelease release;
+  const auto newton = [&](double t) {
+    const auto [sin, cos] = sin_cos(t);
+    return t - (t - sin - 1 / amplitude) / (1 - cos);
+  };
   double t = pi;
-  for (double next; (next = t - (t - std::sin(t) - 1 / amplitude) / (1 - std::cos(t))) < t;) t = next;
+  for (double next; (next = newton(t)) < t;) t = next;
   release.time = t;
-  release.speed = 2 * amplitude * square(std::sin(t / 2));
+  release.speed = 2 * amplitude * square(sin_cos(t / 2).sin);
   release.loss = square(release.speed / amplitude) / pi;
   return release;
 }
@@ -154,10 +158,11 @@ ImpactOutcome impact(double mass_ratio, double restitution, double v, double w) 
   return {v + nu * (1 + e) * w / (1 + nu), -e * w, nu * (1 - e * e) * square(w) / (2 * (1 + nu))};
 }
 
-double restitution_by_displacement(double z) { return std::exp(-pi * z / std::sqrt((1 - z) * (1 + z))); }
+double restitution_by_displacement(double z) { return exponential(-pi * z / std::sqrt((1 - z) * (1 + z))); }
 
 double restitution_by_force(double z) {
-  return std::exp(-2 * z * std::acos(z) / std::sqrt((1 - z) * (1 + z)));
+  const double omega = std::sqrt((1 - z) * (1 + z));
+  return exponential(-2 * z * angle_of(omega, z) / omega);
 }
 
 double delivered_restitution(double restitution, double mass_ratio) {

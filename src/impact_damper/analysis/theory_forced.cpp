@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
 namespace {
@@ -21,11 +22,13 @@ using Departure = Eigen::Vector4d;
 // `flight_time` is a guess close enough for Newton.
 Departure next_departure(const Parameters& p, const Departure& from, double flight_time) {
   const double x0 = from[0], v0 = from[1], phase = from[2], u = from[3];
-  const double p0 = x0 - p.c * std::sin(phase), q0 = v0 - p.c * p.omega * std::cos(phase);
+  const auto departing = sin_cos(phase);
+  const double p0 = x0 - p.c * departing.sin, q0 = v0 - p.c * p.omega * departing.cos;
   double t = flight_time, x = 0, v = 0;
   for (int i = 0; i < 8; ++i) {
-    x = p.c * std::sin(p.omega * t + phase) + p0 * std::cos(t) + q0 * std::sin(t);
-    v = p.c * p.omega * std::cos(p.omega * t + phase) - p0 * std::sin(t) + q0 * std::cos(t);
+    const auto forced = sin_cos(p.omega * t + phase), free = sin_cos(t);
+    x = p.c * forced.sin + p0 * free.cos + q0 * free.sin;
+    v = p.c * p.omega * forced.cos - p0 * free.sin + q0 * free.cos;
     t -= (x0 + u * t - x - 1) / (u - v);
   }
   const ImpactOutcome after = impact(p.nu, p.e, v, u - v);
@@ -40,7 +43,7 @@ double largest_multiplier(const Parameters& p, const Departure& fixed, double fl
     jacobian.col(i) =
         (next_departure(p, fixed + d, flight_time) - next_departure(p, fixed - d, flight_time)) / (2 * step);
   }
-  return jacobian.eigenvalues().cwiseAbs().maxCoeff();
+  return std::sqrt(jacobian.eigenvalues().cwiseAbs2().maxCoeff());
 }
 
 }  // namespace
@@ -48,10 +51,11 @@ double largest_multiplier(const Parameters& p, const Departure& fixed, double fl
 std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitution, double force_amplitude,
                                                double force_frequency) {
   const double nu = mass_ratio, omega = force_frequency;
-  const double period_half = pi / omega, cosine = std::cos(period_half / 2);
+  const double period_half = pi / omega;
+  const auto [sine, cosine] = sin_cos(period_half / 2);
   const double c = force_amplitude / ((1 - omega) * (1 + omega));
   if (!std::isfinite(c) || c == 0 || std::abs(cosine) < 1e-12) return {};
-  const double a = period_half + 2 * nu * std::tan(period_half / 2);
+  const double a = period_half + 2 * nu * sine / cosine;
   const double q = asymmetry(restitution) * (1 + nu) / omega;
   const double denominator = a * a + 4 * q * q;
   const double discriminant = a * a - denominator * (1 - 4 * c * c);
@@ -63,14 +67,14 @@ std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitu
     const double speed = (a + sign * std::sqrt(discriminant)) / denominator;
     if (!(speed > 0)) continue;
     motion.speed = speed;
-    motion.tau = std::atan2((1 - a * speed) / (2 * c), q * speed / c);
+    motion.tau = angle_of((1 - a * speed) / (2 * c), q * speed / c);
 
     const double free = -nu * speed / cosine;
     const auto x = [&](double t) {
-      return c * std::sin(omega * t + motion.tau) + free * std::sin(t - period_half / 2);
+      return c * sin_cos(omega * t + motion.tau).sin + free * sin_cos(t - period_half / 2).sin;
     };
     const auto v = [&](double t) {
-      return c * omega * std::cos(omega * t + motion.tau) + free * std::cos(t - period_half / 2);
+      return c * omega * sin_cos(omega * t + motion.tau).cos + free * sin_cos(t - period_half / 2).cos;
     };
     const auto y = [&](double t) { return x(0) + speed * t - x(t); };
 

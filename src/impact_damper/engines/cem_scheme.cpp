@@ -1,13 +1,22 @@
 #include "impact_damper/engines/cem_scheme.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace impact_damper {
 
+namespace {
+double hypotenuse(double a, double b) {
+  const double larger = std::max(std::fabs(a), std::fabs(b)), smaller = std::min(std::fabs(a), std::fabs(b));
+  if (!(larger > 0 && larger < INFINITY)) return larger;
+  return larger * std::sqrt(1 + smaller / larger * (smaller / larger));
+}
+}  // namespace
+
 double fastest_contact_frequency(const Scene& scene) {
   const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;
   // (1 + K (1 + nu))^2 - 4 K as a sum of squares: no cancellation for heavy or light secondary masses.
-  const double difference = std::hypot(1 - k_by_nu * (1 - nu), 2 * k_by_nu * std::sqrt(nu));
+  const double difference = hypotenuse(1 - k_by_nu * (1 - nu), 2 * k_by_nu * std::sqrt(nu));
   return std::sqrt((1 + k_by_nu * (1 + nu) + difference) / 2);
 }
 

@@ -11,12 +11,15 @@ namespace {
 
 using Complex = std::complex<double>;
 
+// The roots are about 1. Not std::abs, whose last bit is the C library's.
+double size(const Complex& z) { return std::sqrt(z.real() * z.real() + z.imag() * z.imag()); }
+
 double separation(const std::array<Complex, 4>& roots, int first, int second) {
   double least = INFINITY;
   for (int i : {first, second}) {
     for (int j = 0; j < 4; ++j) {
       if (j == first || j == second) continue;
-      least = std::min(least, std::abs(roots[i] - roots[j]) / (std::abs(roots[i]) + std::abs(roots[j])));
+      least = std::min(least, size(roots[i] - roots[j]) / (size(roots[i]) + size(roots[j])));
     }
   }
   return least;

@@ -86,4 +86,11 @@ Real absolute(const Real& x) {
   }
 }
 
+// The least whole number not below x, without a call.
+inline double whole_above(double x) {
+  if (!(absolute(x) < 0x1p52)) return x;
+  const double whole = double(static_cast<long long>(x));
+  return whole < x ? whole + 1 : whole;
+}
+
 }  // namespace impact_damper

@@ -112,8 +112,7 @@ double exponential_beyond(double x) {
   // Scaled down or up before, so that the last product alone meets the limits of the range.
   const auto [power, scale, d, d_rest] = exponential_parts(x);
   const double value = from_bits(bits(power.value) + scale + (x > 0 ? -64 : 64) * exponent_unit);
-  return (value + (value * (d + power.rest) + value * (d * d) * exponential_second(d))) *
-         (x > 0 ? 0x1p64 : 0x1p-64);
+  return raised(value, d, power.rest) * (x > 0 ? 0x1p64 : 0x1p-64);
 }
 
 // 2^(n/128) - 1 + 2^(n/128) d may cancel: exactly, but for the smaller terms.
@@ -125,7 +124,8 @@ double exponential_minus_1(double x) {
   const double value = from_bits(bits(power.value) + scale), z = d * d;
   const Sum constant = exact_sum(value, -1), linear = exact_product(value, d);
   const Sum head = exact_sum(constant.value, linear.value);
-  const double second = z * (exponential_second(d) + z * z * (1.0 / 720));
+  const double second =
+      z * ((1.0 / 2 + d * (1.0 / 6)) + z * ((1.0 / 24 + d * (1.0 / 120)) + z * (1.0 / 720)));
   return head.value + ((head.rest + constant.rest + linear.rest + value * (d_rest + power.rest * (1 + d))) +
                        value * second);
 }

@@ -59,10 +59,14 @@ constexpr auto make_circle() {
   Fixed s = 0, c = one;
   for (int k = 0; k < 128; ++k) {
     Circle& at = all[k];
-    at = {head(s, 52), head(s, 25), 0, head(c, 52), head(c, 25), 0};
-    at.sin_rest = rest(s, at.sin);
-    at.cos_rest = rest(c, at.cos);
-    if (k > 0) all[256 - k] = {-at.sin, -at.sin_short, -at.sin_rest, at.cos, at.cos_short, at.cos_rest};
+    at.sin = head(s, 52), at.sin_rest = rest(s, at.sin);
+    at.sin_short = head(s, 25), at.sin_short_rest = rest(s, at.sin_short);
+    at.cos = head(c, 52), at.cos_rest = rest(c, at.cos);
+    at.cos_short = head(c, 25), at.cos_short_rest = rest(c, at.cos_short);
+    if (k > 0) {
+      all[256 - k] = {-at.sin, -at.sin_rest, -at.sin_short, -at.sin_short_rest,
+                      at.cos,  at.cos_rest,  at.cos_short,  at.cos_short_rest};
+    }
     const Fixed next = times(s, cos) + times(c, sin);
     c = times(c, cos) - times(s, sin);
     s = next;

@@ -12,9 +12,10 @@ namespace impact_damper::elementary {
 
 // Sine and cosine of k/16, |k| < 128, that of a negative k at 256 + k: the heads are multiples of 2^-52; the
 // shorter heads, of 2^-25, meet multiples of 2^-27 in products.
-struct Circle {
-  double sin, sin_short, sin_rest;
-  double cos, cos_short, cos_rest;
+// Each is a cache line.
+struct alignas(64) Circle {
+  double sin, sin_rest, sin_short, sin_short_rest;
+  double cos, cos_rest, cos_short, cos_short_rest;
 };
 extern const std::array<Circle, 256> circle;
 

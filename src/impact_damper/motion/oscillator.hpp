@@ -10,10 +10,10 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <cstddef>
 #include <limits>
 
+#include "impact_damper/motion/complex.hpp"
 #include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
@@ -95,7 +95,7 @@ class Oscillator {
     const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
-    return first + Real(std::ceil(double((from - first) / period))) * period;
+    return first + Real(whole_above(double((from - first) / period))) * period;
   }
   // |u| at the turns of a free motion: after a time t at which u' is zero; only where underdamped.
   Real height(const Real& u, const Real& u1, const Real& t) const {
@@ -170,7 +170,7 @@ class Oscillator {
   }
 
  private:
-  using Complex = std::complex<Real>;
+  using Complex = impact_damper::Complex<Real>;
   struct ComplexResponse {
     Complex z, z1;
   };
@@ -273,7 +273,7 @@ class Oscillator {
     };
     const Complex e1 = difference(omega_), e2 = difference(-omega_);
     const Complex lambda(-a_, omega_), twice_i_omega(0, 2 * omega_);
-    return {(e1 - e2) / twice_i_omega, (lambda * e1 - std::conj(lambda) * e2) / twice_i_omega};
+    return {(e1 - e2) / twice_i_omega, (lambda * e1 - conjugate(lambda) * e2) / twice_i_omega};
   }
 
   Real a_{0}, b_{1};

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "impact_damper/motion/elementary.hpp"
+
 namespace impact_damper {
 namespace {
 
@@ -12,9 +14,10 @@ namespace {
 double rebound_velocity(double zeta, int steps) {
   const double omega = std::sqrt((1 - zeta) * (1 + zeta));
   const double h = std::numbers::pi / omega / steps;
-  const double decay = std::exp(-zeta * h);
-  const double s = decay * std::sin(omega * h) / omega;
-  const double c = decay * std::cos(omega * h) + zeta * s;
+  const double decay = exponential(-zeta * h);
+  const auto [sin, cos] = sin_cos(omega * h);
+  const double s = decay * sin / omega;
+  const double c = decay * cos + zeta * s;
   double q = 0, w = -1;
   for (int i = 0; i < steps; ++i) {
     const double next = c * q + s * w;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/paper/measures.hpp"
 #include "impact_damper/paper/measures_parts.hpp"
@@ -101,7 +102,7 @@ Spread stuck_forcing(Runs&, const MeasureCall& call) {
   double products = 0, squares = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
     const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
-    const double force = run.scene.force_amplitude * std::sin(run.scene.force_frequency * h.time[i]);
+    const double force = run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
     products += force * (acceleration + h.x[i] / (1 + run.scene.mass_ratio));
     squares += force * force;
   });

@@ -5,6 +5,7 @@
 
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/paper/measures.hpp"
 #include "impact_damper/paper/measures_parts.hpp"
 
@@ -25,7 +26,7 @@ Curve loss_curve(const Run& run, LossOrdinate which, double from, double to, int
 double log_slope(const Curve& curve) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    const double x = std::log(curve.x[i]), y = std::log(curve.y[i]);
+    const double x = logarithm(curve.x[i]), y = logarithm(curve.y[i]);
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
@@ -35,11 +36,11 @@ double spread_percent(const std::vector<Curve>& curves, double from, double to) 
   // Twelve bins, equal in ln A: wide enough to hold several half cycles of every run, narrow enough to see
   // the structure of the curve.
   constexpr int bins = 12;
+  const double width = logarithm(to / from) / bins;
   double sum = 0;
   int used = 0;
   for (int bin = 0; bin < bins; ++bin) {
-    const double low = from * std::pow(to / from, double(bin) / bins);
-    const double high = from * std::pow(to / from, double(bin + 1) / bins);
+    const double low = from * exponential(width * bin), high = from * exponential(width * (bin + 1));
     double least = std::numeric_limits<double>::infinity(), most = -least, total = 0;
     bool all = true;
     for (const Curve& curve : curves) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/paper/measures.hpp"
 #include "impact_damper/paper/measures_parts.hpp"
@@ -128,7 +129,7 @@ Spread contact_frequency(Runs&, const MeasureCall& call) {
   const Contacts contacts = *simulate(scene, Exact{}, record).contacts;
   if (contacts.end.empty()) return once(std::nan(""));
   const double duration = contacts.end.front() - contacts.begin.front();
-  return once(std::acos(-1.0) / duration / std::sqrt(scene.wall_stiffness));
+  return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
 }
 
 Spread wall_overlap(Runs& runs, const MeasureCall& call) {
@@ -136,7 +137,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
     if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
     double fastest = 0;
     for (const double w : run.impacts->relative_velocity) fastest = std::max(fastest, std::abs(w));
-    return fastest * nominal_contact_time(run.scene) / std::acos(-1.0);
+    return fastest * nominal_contact_time(run.scene) / half_turn<double>();
   });
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/paper/measures.hpp"
 #include "impact_damper/paper/measures_parts.hpp"
 
@@ -243,7 +244,7 @@ Spread impact_speed_slope(Runs& runs, const MeasureCall& call) {
     for (const std::size_t row : rows_between(run, number(call, "from"), number(call, "to"))) {
       if (!(fastest[row] > 0)) continue;
       curve.x.push_back(amplitude[row]);
-      curve.y.push_back(fastest[row] / std::pow(amplitude[row], number(call, "power")));
+      curve.y.push_back(fastest[row] * exponential(-number(call, "power") * logarithm(amplitude[row])));
     }
     return log_slope(curve);
   });

@@ -9,6 +9,7 @@
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/number_text.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/paper/series_blocks.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -35,12 +36,12 @@ std::string meaning(LossOrdinate which) {
 double amplitude_at(int i, int last, double from, double to) {
   if (i == 0) return from;
   if (i == last) return to;
-  return from * std::pow(to / from, static_cast<double>(i) / last);
+  return from * exponential(logarithm(to / from) * i / last);
 }
 
 // Amplitudes along a closed form: a hundredth apart at most, which no drawing tells from the curve.
 std::vector<double> theory_amplitudes(double from, double to) {
-  const int last = static_cast<int>(std::ceil(100 * std::log(to / from)));
+  const int last = static_cast<int>(std::ceil(100 * logarithm(to / from)));
   std::vector<double> amplitudes;
   for (int i = 0; i <= last; ++i) amplitudes.push_back(amplitude_at(i, last, from, to));
   return amplitudes;
