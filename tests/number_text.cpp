@@ -34,6 +34,7 @@ TEST_CASE("the text is the standard library's shortest one") {
   };
   std::mt19937_64 random(1);
   const auto check = [&](double value) {
+    if (value == 0) return;
     CAPTURE(value);
     for (const double sign : {1.0, -1.0}) {
       for (const double next : {0.0, value, 1e300}) REQUIRE(same(sign * std::nextafter(value, next)));
