@@ -21,11 +21,14 @@ std::optional<Number> parse_whole(std::string_view text) {
 // The numbers that tables are full of, 2^-10 <= |value| < 2^52 with a fraction, in less time than
 // std::to_chars takes and to the same text.
 //
-// Let |value| = m 2^e, 2^52 < m < 2^53. What lies within 2^(e-1) of it reads back as it, at exactly that
-// distance if m is even. With 10^-q < 2^e < 10^(1-q) some multiples of 10^-q lie there, and at most one of
-// 10^(1-q): that one, if there is one, is the shortest text once its zeros are off; if not, the multiple of
-// 10^-q next to the value is. Times 10^q 2^shift, shift = 1 - e - q, all of these are integers, the value
-// below 2^99 and its distances from those multiples below 2^48.
+// Let |value| = m 2^e, 2^52 <= m < 2^53. What lies within 2^(e-1) of it reads back as it. With 10^-q < 2^e <
+// 10^(1-q) some multiples of 10^-q lie there, and at most one of 10^(1-q): that one, if there is one, is the
+// shortest text once its zeros are off; if not, the multiple of 10^-q next to the value is. None lies at
+// exactly 2^(e-1), which would take 1 - e decimals. (Below a power of two only half as much reads back as it,
+// but those among these numbers that have a fraction are multiples of 10^(1-q) themselves.)
+//
+// Times 10^q 2^shift, shift = 1 - e - q, all of these are integers, the value below 2^99 and its distances
+// from those multiples below 2^48.
 constexpr int least_exponent = -62, most_decimals = 19;
 
 constexpr auto powers_of(std::uint64_t base) {
@@ -42,21 +45,18 @@ struct Decimal {
 std::optional<Decimal> shortest_decimal(std::uint64_t bits) {
   __extension__ using Wide = unsigned __int128;
   constexpr std::uint64_t hidden_bit = std::uint64_t(1) << 52;
-  const std::uint64_t fraction = bits & (hidden_bit - 1);
   const int e = static_cast<int>(bits >> 52 & 0x7ff) - 1075;
-  if (fraction == 0 || e < least_exponent || e >= 0) return std::nullopt;
-  const std::uint64_t m = fraction | hidden_bit;
+  if (e < least_exponent || e >= 0) return std::nullopt;
+  const std::uint64_t m = (bits & (hidden_bit - 1)) | hidden_bit;
   int q = (-e * 1233 >> 12) + 1;  // 1233 / 4096 is log10(2), closely enough for 62 times it
   const int shift = 1 - e - q;
-  const std::uint64_t five = powers_of_5[static_cast<std::size_t>(q)];
-  const Wide value = Wide(2 * m) * five;
-  // An odd m's interval is open: its ends are one unit further in.
-  const std::uint64_t reach = five - (m & 1);
+  const std::uint64_t reach = powers_of_5[static_cast<std::size_t>(q)];
+  const Wide value = Wide(2 * m) * reach;
   const std::uint64_t one = std::uint64_t(1) << shift, units = static_cast<std::uint64_t>(value >> shift);
   const std::uint64_t tens = units / 10, rest = static_cast<std::uint64_t>(value) & (one - 1);
   const std::uint64_t from_ten = (units - 10 * tens) * one + rest;
   // Chosen without a branch, as either is as likely. Half way goes to the even number.
-  const bool takes_lower_ten = from_ten <= reach, takes_upper_ten = 10 * one - from_ten <= reach;
+  const bool takes_lower_ten = from_ten < reach, takes_upper_ten = 10 * one - from_ten < reach;
   const bool takes_ten = takes_lower_ten | takes_upper_ten;
   const bool takes_upper_unit = 2 * rest + (units & 1) > one;
   std::uint64_t digits = takes_ten ? tens + takes_upper_ten : units + takes_upper_unit;
