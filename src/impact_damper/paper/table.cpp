@@ -35,6 +35,8 @@ void append(std::string& text, const TableBlock& block) {
     text += (c ? " \"" : "\"") + block.columns[c].heading + "\"";
   }
   text += '\n';
+  constexpr std::size_t usual_length = 20;  // of a number and what stands behind it
+  text.reserve(text.size() + usual_length * block.columns.size() * block.columns[0].values.size());
   for (std::size_t row = 0; row < block.columns[0].values.size(); ++row) {
     if (std::ranges::binary_search(block.gaps, row)) text += '\n';
     for (std::size_t c = 0; c < block.columns.size(); ++c) {
