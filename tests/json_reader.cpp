@@ -95,7 +95,7 @@ TEST_CASE("all problems of a file are found in one reading") {
                      "f.json: /x: must be a number >= 0 and <= 1, got the string \"6\"",
                      "f.json: /n: must be a whole number >= 0, got -5",
                      "f.json: /m: must be a whole number, got 18446744073709551615",
-                     "f.json: /r: must be a whole number, got 3.0",
+                     "f.json: /r: must be a whole number, written without point or exponent, got 3.0",
                      "f.json: /missing: missing, a value must be given",
                      "f.json: /deep/a/1: must be a number, got null",
                      "f.json: /q~1~0: unknown key, admitted are: deep, m, missing, n, r, restitution, x",
@@ -217,6 +217,13 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(nearest("x1", known) == "x0");
   CHECK(!nearest("omega", known));
   CHECK(!nearest("q", {"x"}));
+}
+
+TEST_CASE("whatever stands in a file, a message is one line of UTF-8") {
+  CHECK(cut("a\nb\x1b\x7f") == "a?b??");
+  CHECK(cut("\xce\xbd\xe2\x82\xac", 1) == "\xce\xbd...");
+  CHECK(cut("\xce\xbd\xe2\x82\xac", 2) == "\xce\xbd\xe2\x82\xac");
+  CHECK(cut("caf\xe9, \x80\xff\xf0\x9f") == "caf?, ????");
 }
 
 TEST_CASE("a missing object is one problem, not one for each of its fields") {

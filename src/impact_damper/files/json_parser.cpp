@@ -24,6 +24,16 @@ std::string list(const std::vector<std::string_view>& words) {
   return text.empty() ? "none" : text;
 }
 
+// Line and column of the character before `position`, counted from 1.
+std::string place_in(const std::string& text, std::size_t position) {
+  const std::size_t end = std::min(position, text.size());
+  const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n') + 1;
+  const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  const std::size_t before = newline == std::string::npos ? 0 : newline + 1;
+  const std::size_t column = std::max<std::size_t>(1, end - std::min(end, before));
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
 // Builds the value from the parser's events, which is where a duplicate key and the depth can be seen.
 class Builder : public nlohmann::json_sax<Json> {
  public:
@@ -53,17 +63,11 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
   bool parse_error(std::size_t position, const std::string&, const Json::exception& error) override {
-    const std::size_t end = std::min(position, text_.size());
-    const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(end), '\n') + 1;
-    const std::size_t newline = end == 0 ? std::string::npos : text_.rfind('\n', end - 1);
-    const std::size_t before = newline == std::string::npos ? 0 : newline + 1;
-    const std::size_t column = std::max<std::size_t>(1, end - std::min(end, before));
     // "[json.exception.parse_error.101] parse error at line 1, column 2: what is wrong"
     std::string what = error.what();
     what.erase(0, what.find("] ") + 2);
     if (what.starts_with("parse error at ")) what.erase(0, what.find(": ") + 2);
-    problems_.add(
-        {}, "line " + std::to_string(line) + ", column " + std::to_string(column) + ": " + cut(what, 200));
+    problems_.add({}, place_in(text_, position) + ": " + cut(what, 200));
     return false;
   }
 
@@ -174,6 +178,11 @@ void JsonProblems::throw_if_any_or_unknown() const {
 }
 
 bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
+  // The parser takes it for the end of the text, whatever stands behind it.
+  if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
+    problems.add({}, place_in(text, nul + 1) + ": a NUL, admitted in no JSON text");
+    return false;
+  }
   Builder builder(text, root, problems);
   return Json::sax_parse(text, &builder);
 }

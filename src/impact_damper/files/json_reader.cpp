@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -87,6 +88,22 @@ bool read_into(bool& target, const Json& value) {
   target = value.get<bool>();
   return true;
 }
+
+// What is admitted, in words, by the type of the target.
+std::string wanted(const double&, const NumberRange& range, const Json&) {
+  return range.describe("a number");
+}
+std::string wanted(const std::optional<double>&, const NumberRange& range, const Json&) {
+  return range.describe("null or a number");
+}
+std::string wanted(const std::int64_t&, const NumberRange& range, const Json& given) {
+  std::string words = range.describe("a whole number");
+  if (!given.is_number_float()) return words;
+  const auto number = given.get<double>();  // 3.0 and 3e0 are whole, but not written so
+  const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63 && range.admits(number);
+  return is_whole ? words + ", written without point or exponent" : words;
+}
+std::string wanted(const std::string&, const TextRule& rule, const Json&) { return rule.describe(); }
 
 [[noreturn]] void refuse_length(const std::string& name, const FileKind& kind, const std::string& given) {
   throw InputError({name + ": too long, admitted are " + std::to_string(kind.most_bytes) + " bytes for a " +
@@ -222,17 +239,17 @@ bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const 
 
 bool ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
   const Json* const value = find(key);
-  return !value || read_into(target, *value, range) || wrong(key, range.describe("a number"), *value);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
 }
 
 bool ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
   const Json* const value = find(key);
-  return !value || read_into(target, *value, range) || wrong(key, range.describe("a whole number"), *value);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
 }
 
 bool ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
   const Json* const value = find(key);
-  return !value || read_into(target, *value, range) || wrong(key, range.describe("null or a number"), *value);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
 }
 
 bool ObjectReader::optional(std::string_view key, bool& target) {
@@ -242,7 +259,7 @@ bool ObjectReader::optional(std::string_view key, bool& target) {
 
 bool ObjectReader::optional(std::string_view key, std::string& target, TextRule rule) {
   const Json* const value = find(key);
-  return !value || read_into(target, *value, rule) || wrong(key, rule.describe(), *value);
+  return !value || read_into(target, *value, rule) || wrong(key, wanted(target, rule, *value), *value);
 }
 
 bool ObjectReader::too_long(std::string_view key, std::size_t most, const Json& array) {
@@ -252,8 +269,7 @@ bool ObjectReader::too_long(std::string_view key, std::size_t most, const Json& 
 }
 
 template <typename Element, typename Rule>
-bool ObjectReader::array(std::string_view key, std::vector<Element>& target,
-                         const std::string& wanted_element, const Rule& rule) {
+bool ObjectReader::array(std::string_view key, std::vector<Element>& target, const Rule& rule) {
   const Json* const value = find(key);
   if (!value) return true;
   if (!value->is_array()) return wrong(key, "an array", *value);
@@ -262,23 +278,23 @@ bool ObjectReader::array(std::string_view key, std::vector<Element>& target,
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (read_into(elements[i], (*value)[i], rule)) continue;
     all_read = false;
-    refuse(key, i, "must be " + wanted_element + ", got " + described((*value)[i]));
+    refuse(key, i, "must be " + wanted(elements[i], rule, (*value)[i]) + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
   return all_read;
 }
 
 bool ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
-  return array(key, target, range.describe("a number"), range);
+  return array(key, target, range);
 }
 
 bool ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
-  return array(key, target, range.describe("a whole number"), range);
+  return array(key, target, range);
 }
 
 bool ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
                             NumberRange range) {
-  return array(key, target, range.describe("null or a number"), range);
+  return array(key, target, range);
 }
 
 bool ObjectReader::optional(std::string_view key, std::vector<std::string>& target, TextRule rule,
@@ -286,7 +302,7 @@ bool ObjectReader::optional(std::string_view key, std::vector<std::string>& targ
   const Json* const value = find(key);
   if (value && value->is_array() && too_long(key, most, *value)) return false;
   std::vector<std::string> texts;
-  if (!array(key, texts, rule.describe(), rule)) return false;
+  if (!array(key, texts, rule)) return false;
   for (std::size_t i = 1; i < texts.size(); ++i) {
     const auto here = texts.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::find(texts.begin(), here, *here) == here) continue;

@@ -125,8 +125,7 @@ class ObjectReader {
   std::string pointer_to(std::string_view key) const;
   bool wrong(std::string_view key, const std::string& wanted, const nlohmann::json& given);
   template <typename Element, typename Rule>
-  bool array(std::string_view key, std::vector<Element>& target, const std::string& wanted_element,
-             const Rule& rule);
+  bool array(std::string_view key, std::vector<Element>& target, const Rule& rule);
   bool too_long(std::string_view key, std::size_t most, const nlohmann::json& array);
 
   JsonProblems* problems_;

@@ -52,8 +52,10 @@ MeasureCall read_measure(ObjectReader object) {
     if (rule.admits(value)) {
       call.numbers[std::string(number)] = value;
     } else {
-      object.refuse(number, "must be " + rule.range.describe(rule.whole ? "a whole number" : "a number") +
-                                ", got " + number_text(value));
+      const char* const kind = rule.multiple_of == 0   ? "a number"
+                               : rule.multiple_of == 1 ? "a whole number"
+                                                       : "an even number";
+      object.refuse(number, "must be " + rule.range.describe(kind) + ", got " + number_text(value));
     }
   }
   const auto from = call.numbers.find("from"), to = call.numbers.find("to");

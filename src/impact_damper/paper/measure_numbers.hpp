@@ -11,7 +11,7 @@ namespace impact_damper {
 struct MeasureNumber {
   std::string_view name;
   NumberRange range;
-  bool whole;  // 3 and 3.0 alike
+  int multiple_of;  // 1: a whole number, 3 and 3.0 alike; 2: an even one; 0: any
   std::string_view meaning;
 
   bool admits(double value) const;
