@@ -110,6 +110,8 @@ std::string wanted(const std::string&, const TextRule& rule, const Json&) { retu
                     std::string(kind.name) + ", got " + given});
 }
 
+constexpr std::size_t any_length = std::numeric_limits<std::size_t>::max();
+
 // Control characters break lines and tables; 0x7f is one too.
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 bool is_alphanumeric(char c) {
@@ -136,9 +138,7 @@ std::string TextRule::describe() const {
   return "a text of one line and " + (least > 0 ? std::to_string(least) + " to " : "up to ") + longest;
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  return read_text(file, {"file", std::numeric_limits<std::size_t>::max()});
-}
+std::string read_text(const std::filesystem::path& file) { return read_text(file, {"file", any_length}); }
 
 std::string read_text(const std::filesystem::path& file, const FileKind& kind) {
   const std::string name = file.string();
@@ -150,9 +150,11 @@ std::string read_text(const std::filesystem::path& file, const FileKind& kind) {
   if (stream) {
     const auto size = std::filesystem::file_size(file, unknown);
     if (!unknown && size > kind.most_bytes) refuse_length(name, kind, std::to_string(size));
-    if (!unknown) text.reserve(size);
-    // A pipe has no size, and a file may grow while it is read.
+    // A pipe has no size, and a file may grow while it is read. Growing by doubling would need three times as
+    // much memory; what is reserved and not written takes none.
     std::vector<char> part(1 << 16);
+    if (!unknown || kind.most_bytes < any_length)
+      text.reserve((unknown ? kind.most_bytes : size) + part.size());
     while (text.size() <= kind.most_bytes && stream) {
       stream.read(part.data(), static_cast<std::streamsize>(part.size()));
       text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
