@@ -7,6 +7,8 @@
 #include <string>
 
 #include "impact_damper/files/errors.hpp"
+#include "impact_damper/paper/measure_numbers.hpp"
+#include "impact_damper/paper/measures.hpp"
 
 using namespace impact_damper;
 
@@ -55,7 +57,8 @@ TEST_CASE("a claim is read as it is written") {
 
 TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("\"reason\": \"r\", ", "").find("f: /claims/0/reason") != std::string::npos);
-  CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must not be empty") != std::string::npos);
+  CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must be a text of one line and 1 to 4000") !=
+        std::string::npos);
   CHECK(complaint("step_limit", "step_limits").find("/claims/0/measure/name") != std::string::npos);
   CHECK(complaint("\"step_limit\"", "\"step_limit\", \"e\": 1").find("/claims/0/measure") !=
         std::string::npos);
@@ -63,17 +66,32 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
         std::string::npos);
   CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") !=
         std::string::npos);
-  CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]").find("either value or range") !=
-        std::string::npos);
+  CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]")
+            .find("/claims/0/value: either it or \"range\" must be given, got both") != std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [2, 1]").find("least <= most") != std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [null, null]").find("/claims/0/range") != std::string::npos);
   CHECK(complaint("0.01", "-0.01").find("/claims/0/tolerance") != std::string::npos);
   CHECK(complaint("\"verdict\": \"corrected\"", "\"verdict\": \"right\"").find("/claims/0/verdict") !=
         std::string::npos);
-  CHECK(complaint("\"corrected\": [1.9, 2.1], ", "").find("if and only if") != std::string::npos);
+  CHECK(complaint("\"corrected\": [1.9, 2.1], ", "")
+            .find("/claims/0/corrected: must be given if, and only if,") != std::string::npos);
   CHECK(complaint("\"explanation\": \"x\"", "\"explanation\": \"\"").find("/claims/0/explanation") !=
         std::string::npos);
   CHECK(complaint("claims/1", "claims/2").find("/schema") != std::string::npos);
+}
+
+TEST_CASE("a measure's numbers have ranges of their own") {
+  const auto with = [](const std::string& measure) { return complaint("\"step_limit\"", measure); };
+  CHECK(with(R"("zeta_error", "restitution": 1.5)")
+            .find("/measure/restitution: must be a number >= 0 and <= 1, got 1.5") != std::string::npos);
+  const std::string rows =
+      R"("rows_with_impacts", "scenes": ["a"], "amplitude": 1, "half_cycles": 1.5, "impacts": 1)";
+  CHECK(with(rows).find("/measure/half_cycles: must be a whole number >= 1 and <= 1000, got 1.5") !=
+        std::string::npos);
+  CHECK(with(R"("loss_slope", "scenes": ["a"], "from": 2, "to": 1)")
+            .find("/measure/to: must be above \"from\", 2, got 1") != std::string::npos);
+  for (const Measure& measure : measures())
+    for (const std::string_view number : measure.numbers) CHECK_NOTHROW(measure_number(number));
 }
 
 TEST_CASE("another engine may have another verdict recorded, with an explanation") {

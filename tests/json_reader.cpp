@@ -61,7 +61,7 @@ TEST_CASE("every type is read as it was written") {
   double x = 0;
   root.required_object("inner").required("x", x);
   CHECK(x == 1);
-  for (ObjectReader item : root.required_objects("list")) item.required("x", x, within(2, 3));
+  for (ObjectReader item : root.required_objects("list", 2)) item.required("x", x, within(2, 3));
   CHECK(x == 3);
   CHECK_NOTHROW(document.finish());
   CHECK(std::signbit(number));
@@ -95,7 +95,7 @@ TEST_CASE("all problems of a file are found in one reading") {
                      "f.json: /x: must be a number >= 0 and <= 1, got the string \"6\"",
                      "f.json: /n: must be a whole number >= 0, got -5",
                      "f.json: /m: must be a whole number, got 18446744073709551615",
-                     "f.json: /r: must be a whole number, got 3",
+                     "f.json: /r: must be a whole number, written without point or exponent, got 3.0",
                      "f.json: /missing: missing, a value must be given",
                      "f.json: /deep/a/1: must be a number, got null",
                      "f.json: /q~1~0: unknown key, admitted are: deep, m, missing, n, r, restitution, x",
@@ -109,6 +109,67 @@ TEST_CASE("a duplicate key is found wherever it is") {
   CHECK(problems(R"({"list": [0, {"a": {}, "a": 2}], "list": 0})") ==
         Lines{"f.json: /list/1/a: duplicate key, admitted is one value for each key",
               "f.json: /list: duplicate key, admitted is one value for each key"});
+}
+
+TEST_CASE("a duplicate key is one problem among the others") {
+  CHECK(problems(R"({"x": 1, "y": 2, "x": "6"})",
+                 [](ObjectReader& root) {
+                   double x = 0;
+                   root.required("x", x);
+                 }) == Lines{"f.json: /x: duplicate key, admitted is one value for each key",
+                             "f.json: /x: must be a number, got the string \"6\"",
+                             "f.json: /y: unknown key, admitted are: x"});
+}
+
+TEST_CASE("a text has one line and a length in characters, a name only what file names may hold") {
+  const auto read = [](const std::string& value, TextRule rule) {
+    return problems("{\"a\": \"" + value + "\"}", [&](ObjectReader& root) {
+      std::string a = "kept";
+      const bool is_read = root.required("a", a, rule);
+      CHECK(is_read == (a != "kept"));
+    });
+  };
+  CHECK(read("", {}).empty());
+  CHECK(read("", some_text) ==
+        Lines{"f.json: /a: must be a text of one line and 1 to 4000 characters, got the string \"\""});
+  CHECK(read("\xce\xbd\xce\xb6", {2, 2}).empty());
+  CHECK(read("abc", {0, 2}) ==
+        Lines{"f.json: /a: must be a text of one line and up to 2 characters, got the string \"abc\""});
+  CHECK(read("one\\ntwo", {}).size() == 1);
+  CHECK(read("a\\u0000b", {}).size() == 1);
+  CHECK(read("\\u007f", {}).size() == 1);
+  CHECK(read("nu2-e06_b.c", a_name).empty());
+  for (const char* name : {"", ".hidden", "-o", "a/b", "../a", "a b", "\xc3\xa9", "a\\n"}) {
+    CAPTURE(name);
+    CHECK(read(name, a_name).size() == 1);
+  }
+  CHECK(read(std::string(64, 'a'), a_name).empty());
+  CHECK(read(std::string(65, 'a'), a_name).size() == 1);
+}
+
+TEST_CASE("an array is no longer than admitted, its texts no two alike") {
+  const auto texts = [](const std::string& array) {
+    return problems("{\"a\": " + array + "}", [](ObjectReader& root) {
+      std::vector<std::string> a;
+      root.required("a", a, a_name, std::size_t{2});
+    });
+  };
+  CHECK(texts(R"(["b", "c"])").empty());
+  CHECK(texts(R"(["b", "c", "d"])") == Lines{"f.json: /a: must have at most 2 elements, got 3"});
+  CHECK(texts(R"(["b", "b"])") ==
+        Lines{"f.json: /a/1: must differ from those before it, got the string \"b\""});
+  CHECK(problems(R"({"a": [{}, {}, {}]})", [](ObjectReader& root) {
+          CHECK(root.required_objects("a", 2).empty());
+        }) == Lines{"f.json: /a: must have at most 2 elements, got 3"});
+}
+
+TEST_CASE("what takes far more memory than its text is refused while it is read") {
+  std::string objects = "{\"a\": [{}", values = "{\"a\": [0";
+  for (int i = 1; i < 100'000; ++i) objects += ",{}";
+  for (int i = 1; i < 10'000'000; ++i) values += ",0";
+  CHECK(problems(objects + "]}") ==
+        Lines{"f.json: too many objects, arrays, keys and texts, admitted are 100000"});
+  CHECK(problems(values + ",0]}") == Lines{"f.json: too many values, admitted are 10000000"});
 }
 
 TEST_CASE("what is not JSON is refused with line and column") {
@@ -158,6 +219,13 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(!nearest("q", {"x"}));
 }
 
+TEST_CASE("whatever stands in a file, a message is one line of UTF-8") {
+  CHECK(cut("a\nb\x1b\x7f") == "a?b??");
+  CHECK(cut("\xce\xbd\xe2\x82\xac", 1) == "\xce\xbd...");
+  CHECK(cut("\xce\xbd\xe2\x82\xac", 2) == "\xce\xbd\xe2\x82\xac");
+  CHECK(cut("caf\xe9, \x80\xff\xf0\x9f") == "caf?, ????");
+}
+
 TEST_CASE("a missing object is one problem, not one for each of its fields") {
   CHECK(
       problems("{\"a\": 3}", [](ObjectReader& root) {
@@ -168,7 +236,8 @@ TEST_CASE("a missing object is one problem, not one for each of its fields") {
 }
 
 TEST_CASE("what cannot be read is said to be so") {
-  CHECK_THROWS_AS(JsonDocument::read("no such file.json"), IoError);
-  CHECK_THROWS_WITH_AS(JsonDocument::read(std::filesystem::temp_directory_path()),
+  const FileKind kind{"thing", 10};
+  CHECK_THROWS_AS(JsonDocument::read("no such file.json", kind), IoError);
+  CHECK_THROWS_WITH_AS(JsonDocument::read(std::filesystem::temp_directory_path(), kind),
                        doctest::Contains("is a directory"), IoError);
 }

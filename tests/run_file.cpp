@@ -134,7 +134,7 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
   for (const Engine& engine :
-       {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(), Engine(Cem{})}) {
+       {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(), Engine(Cem{.time_step = 1e-5})}) {
     Run run = full_run(engine);
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
     CHECK(parse_run("r.json", run_text(run)).engine == engine);
@@ -196,7 +196,9 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
         "r.json: /engine/max_impacts: must be a whole number >= 0, got -5");
   CHECK(only("[3,0]", "[3]") ==
         "r.json: /half_cycles/impacts: must be as long as the section's first column, 2, got a length of 1");
-  CHECK(only("[3,0]", "[3,0.0]") == "r.json: /half_cycles/impacts/1: must be a whole number >= 0, got 0");
+  CHECK(only("[3,0]", "[3,0.0]") ==
+        "r.json: /half_cycles/impacts/1: must be a whole number >= 0, written without point or exponent, got "
+        "0.0");
   CHECK(only("[1,2,5]", "[1,2,1.5]") ==
         "r.json: /impacts/time/2: must not be below the one before it, 2, got 1.5");
   CHECK(only("[1,0,1]", "[1,0,2]") == "r.json: /impacts/wall/2: must be a whole number >= 0 and <= 1, got 2");

@@ -1,5 +1,7 @@
 #include "arguments.hpp"
 
+#include <algorithm>
+
 #include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper::cli {
@@ -20,6 +22,27 @@ std::optional<std::string> Arguments::file(const std::string& option) {
   if (!name || !name->empty()) return name;
   refuse(option, "must be a file name, got \"\"");
   return std::nullopt;
+}
+
+bool Arguments::flag(const std::string& option) {
+  const std::vector<std::string> values = texts(option);
+  if (values.size() > 1) refuse(option, "is given more than once");
+  if (values.size() == 1 && values[0] != "true")
+    refuse(option, "takes no value, got " + in_quotes(values[0]));
+  return !values.empty();
+}
+
+void Arguments::refuse_overwriting(const std::string& option, const std::optional<std::string>& output,
+                                   const std::vector<std::filesystem::path>& inputs) {
+  if (!output) return;
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code none;  // a file that does not exist is not the same as another
+    if (!std::filesystem::is_regular_file(input, none)) continue;
+    if (std::filesystem::equivalent(*output, input, none)) {
+      return refuse(option, "must not be one of the files that are read, which would be lost, got " +
+                                in_quotes(*output));
+    }
+  }
 }
 
 std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
@@ -59,6 +82,25 @@ void Arguments::refuse(const std::string& option, const std::string& what) {
 
 void Arguments::finish() const {
   if (!problems_.empty()) throw UsageError(problems_);
+}
+
+std::string swallowed_options(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  const auto is_option = [&](const std::string& value) {
+    const std::string name = value.substr(0, value.find('='));
+    return name.starts_with('-') &&
+           std::any_of(options.begin(), options.end(),
+                       [&](const CLI::Option* option) { return option->check_name(name); });
+  };
+  std::string lines;
+  for (const CLI::Option* option : options) {
+    for (const std::string& value : option->results()) {
+      if (!is_option(value)) continue;
+      if (!lines.empty()) lines += '\n';
+      lines += option->get_name() + ": needs a value, got the option " + cut(value);
+    }
+  }
+  return lines;
 }
 
 void add_threads_option(CLI::App& app) {

@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <stdexcept>
@@ -44,6 +45,10 @@ class Arguments {
     return index ? admitted.begin()[*index] : otherwise;
   }
   bool given(const std::string& option) const;
+  bool flag(const std::string& option);  // given, once and without a value
+  // Refuses an output that is one of these files, which would be lost with it.
+  void refuse_overwriting(const std::string& option, const std::optional<std::string>& output,
+                          const std::vector<std::filesystem::path>& inputs);
 
   // Notes a problem: "what is admitted, what was given".
   void refuse(const std::string& option, const std::string& what);
@@ -54,6 +59,9 @@ class Arguments {
   const CLI::App& app_;
   std::string problems_;
 };
+
+// Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
+std::string swallowed_options(const CLI::App& command);
 
 // --threads N, of every command that simulates more than one scene.
 void add_threads_option(CLI::App& app);

@@ -15,6 +15,7 @@ struct Command {
   std::function<int()> act;
 };
 
+Command check_command(CLI::App& program);
 Command figures_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command scenes_command(CLI::App& program);

@@ -36,7 +36,10 @@ Command figures_command(CLI::App& program) {
       "Example:\n"
       "  impact-damper figures");
   return {app, [app] {
-            return list_figures(Arguments(*app).text("CATALOGUE").value_or("figures/catalogue.json"));
+            Arguments arguments(*app);
+            const std::string file = arguments.file("CATALOGUE").value_or("figures/catalogue.json");
+            arguments.finish();
+            return list_figures(file);
           }};
 }
 

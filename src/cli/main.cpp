@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <new>
@@ -40,7 +41,8 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
   std::string lines;
   for (const std::string& argument : program.remaining(true)) {
     const std::string name = argument.substr(0, argument.find('='));
-    const auto meant = nearest(name, known);
+    const bool stands_behind = std::find(known.begin(), known.end(), name) != known.end();  // a bare "--"
+    const auto meant = stands_behind ? std::nullopt : nearest(name, known);
     lines += (lines.empty() ? "" : "\n") + std::string("unknown argument ") + in_quotes(argument) +
              (meant ? ", did you mean " + std::string(*meant) + "?" : "");
   }
@@ -65,7 +67,7 @@ int main(int argc, char** argv) {
 
   const std::array commands{
       cli::run_command(program),    cli::scenes_command(program),  cli::verify_command(program),
-      cli::series_command(program), cli::figures_command(program),
+      cli::series_command(program), cli::figures_command(program), cli::check_command(program),
   };
 
   const auto head = [&] {
@@ -79,6 +81,8 @@ int main(int argc, char** argv) {
 
   try {
     program.parse(argc, argv);
+    const std::string swallowed = cli::swallowed_options(command_of());
+    if (!swallowed.empty()) throw cli::UsageError(swallowed);
     for (const cli::Command& command : commands) {
       if (command.arguments->parsed()) return command.act();
     }
@@ -86,7 +90,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& asked_for_help_or_version) {
     return program.exit(asked_for_help_or_version);
   } catch (const CLI::ExtrasError&) {
-    return fail(usage, head(), unknown_arguments(program, command_of()));
+    const std::string swallowed = cli::swallowed_options(command_of());
+    return fail(usage, head(), swallowed.empty() ? unknown_arguments(program, command_of()) : swallowed);
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), option = text.substr(0, text.find(':'));
     const bool missing = text.find("missing") != std::string::npos;

@@ -1,6 +1,8 @@
 // `run`: one scene through one engine into one run file.
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
+#include <set>
 #include <sstream>
 
 #include "arguments.hpp"
@@ -108,9 +110,9 @@ Engine engine_of(Arguments& arguments) {
   Cem engine;
   engine.time_step = arguments.number("--time-step", above(0));
   engine.damper = arguments.choice("--damper", {Damper::centred, Damper::lagged}, Damper::centred);
-  engine.locate = arguments.given("--locate");
+  engine.locate = arguments.flag("--locate");
   engine.large_step = arguments.number("--large-step", above(0));
-  engine.unstable = arguments.given("--unstable");
+  engine.unstable = arguments.flag("--unstable");
   engine.calibration = calibration;
   if (const auto most = arguments.whole_number("--max-steps", at_least(1))) engine.max_steps = *most;
   engine.budget = budget;
@@ -122,7 +124,10 @@ void read_sections(Arguments& arguments, Record& record) {
   if (!list) return;
   record.half_cycles = false;
   std::istringstream words(*list + ',');
+  std::set<std::string> listed;
   for (std::string word; std::getline(words, word, ',');) {
+    if (!listed.insert(word).second)
+      arguments.refuse("--record", "must list each once, got " + in_quotes(*list));
     if (word == "half_cycles")
       record.half_cycles = true;
     else if (word == "impacts")
@@ -142,7 +147,7 @@ void read_sections(Arguments& arguments, Record& record) {
   }
 }
 
-Record record_of(Arguments& arguments) {
+Record record_of(Arguments& arguments, const Scene& scene) {
   Record record;
   read_sections(arguments, record);
   if (arguments.given("--history") && arguments.given("--history-below")) {
@@ -157,6 +162,10 @@ Record record_of(Arguments& arguments) {
                                         " <= T0 < T1 <= 1e12 and 2 to " + std::to_string(most_samples) +
                                         " samples, got " + in_quotes(text));
       continue;
+    }
+    if (scene.until_time && !(window->first <= *scene.until_time)) {
+      arguments.refuse("--history", "must begin before the end of the run, --until-time " +
+                                        number_text(*scene.until_time) + ", got " + in_quotes(text));
     }
     record.history.push_back({window->first, window->second, window->count});
     last = window->second;
@@ -194,22 +203,31 @@ Run simulate_as_asked(const Scene& scene, const Engine& engine, const Record& re
   }
 }
 
+// The end of a run may not be known before it: what was asked for behind it is not there.
+void warn_of_missing_samples(const Run& run, const Record& record) {
+  if (!run.history) return;
+  std::int64_t asked = 0;
+  for (const HistoryWindow& window : record.history) asked += window.count;
+  for (const AmplitudeWindow& window : record.history_below) asked += window.count;
+  const auto given = static_cast<std::int64_t>(run.history->time.size());
+  if (given == asked) return;
+  std::cerr << "impact-damper run: warning: the run ended at " << number_text(run.end_time) << " ("
+            << name_of(run.stop_reason) << "): history has " << given << " of the " << asked
+            << " samples asked for\n";
+}
+
 int run(const CLI::App& app) {
   Arguments arguments(app);
   const Scene scene = scene_of(arguments);
   const Engine engine = engine_of(arguments);
-  const Record record = record_of(arguments);
+  const Record record = record_of(arguments, scene);
   const std::optional<std::string> file = arguments.file("--output");
+  arguments.refuse_overwriting("--output", file, {arguments.text("--scene").value_or("")});
   arguments.finish();
-  if (file) {
-    const std::optional<std::string> scene_file = arguments.file("--scene");
-    std::error_code none;  // a file that does not exist is not the same as another
-    if (scene_file && std::filesystem::equivalent(*file, *scene_file, none)) {
-      throw UsageError("--output: is the scene's own file, which would be lost; name another");
-    }
-    require_writable(*file);
-  }
-  const std::string text = run_text(simulate_as_asked(scene, engine, record));
+  if (file) require_writable(*file);
+  const Run result = simulate_as_asked(scene, engine, record);
+  warn_of_missing_samples(result, record);
+  const std::string text = run_text(result);
   if (file) {
     write_file(*file, text);
   } else {

@@ -62,7 +62,12 @@ Command scenes_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper scenes\n"
       "  impact-damper scenes my/scenes");
-  return {app, [app] { return list_scenes(Arguments(*app).text("FOLDER").value_or("data/scenes")); }};
+  return {app, [app] {
+            Arguments arguments(*app);
+            const std::string folder = arguments.file("FOLDER").value_or("data/scenes");
+            arguments.finish();
+            return list_scenes(folder);
+          }};
 }
 
 }  // namespace impact_damper::cli

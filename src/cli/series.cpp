@@ -61,18 +61,23 @@ void load(const Figure& figure, const fs::path& folder, FigureRuns& runs) {
 }
 
 int make_tables(Arguments arguments) {
-  const fs::path runs_folder = arguments.text("--runs").value_or("");
+  const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
-  const auto output = arguments.text("--output");
+  const auto output = arguments.file("--output");
   const Threads threads = threads_of(arguments);
-  const Catalogue catalogue =
-      read_catalogue(arguments.text("--catalogue").value_or("figures/catalogue.json"));
+  const std::string catalogue_file = arguments.file("--catalogue").value_or("figures/catalogue.json");
+  const Catalogue catalogue = read_catalogue(catalogue_file);
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
   const bool into_folder = output && fs::is_directory(*output);
   if (!into_folder && figures.size() != 1) {
-    arguments.refuse("--output", "must be an existing folder if more than one table is made");
+    arguments.refuse("--output", "must be an existing folder if more than one table is made, got " +
+                                     (output ? in_quotes(*output) : "none"));
   }
+  std::vector<fs::path> inputs{catalogue_file};
+  for (const CatalogueScene& scene : catalogue.scenes) inputs.push_back(runs_folder / (scene.name + ".json"));
+  arguments.refuse_overwriting("--output", output, inputs);
   arguments.finish();
+  if (output && !into_folder) require_writable(*output);
 
   FigureRuns runs;
   for (const Figure* figure : figures) {

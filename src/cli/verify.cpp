@@ -19,6 +19,8 @@
 namespace impact_damper::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Verified {
   const Claim* claim;
   Spread ours;
@@ -144,23 +146,46 @@ std::string verdicts_text(const std::vector<Verified>& all) {
 }
 
 // The figures may rest on no claim that does not exist.
-void check_catalogue(const std::filesystem::path& file, const std::vector<Claim>& claims) {
+void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
   std::set<std::string> ids;
   for (const Claim& claim : claims) ids.insert(claim.id);
   std::vector<std::string> problems;
-  for (const Figure& figure : read_catalogue(file).figures)
-    for (const std::string& id : figure.claims)
-      if (!ids.contains(id))
-        problems.push_back(file.string() + ": figure " + figure.number + ": claims: no claim is called " +
-                           id);
+  const std::vector<Figure> figures = read_catalogue(file).figures;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const std::vector<std::string>& rests_on = figures[i].claims;
+    for (std::size_t j = 0; j < rests_on.size(); ++j) {
+      if (ids.contains(rests_on[j])) continue;
+      problems.push_back(file.string() + ": /figures/" + std::to_string(i) + "/claims/" + std::to_string(j) +
+                         ": must be the id of a claim, got the string " + in_quotes(rests_on[j]));
+    }
+  }
   if (!problems.empty()) throw InputError(problems);
 }
 
-int verify(const std::filesystem::path& claims_file, const std::filesystem::path& runs_folder,
-           const std::optional<std::string>& catalogue, const EnsembleOptions& ensemble,
-           const std::optional<std::string>& verdicts_file, const std::optional<std::string>& markdown_file) {
+int verify(Arguments arguments) {
+  EnsembleOptions ensemble;
+  ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+  ensemble.threads = threads_of(arguments);
+  const fs::path claims_file = arguments.file("--claims").value_or("data/claims.json"),
+                 runs_folder = arguments.file("--runs").value_or("build/runs/exact");
+  const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
+             markdown_file = arguments.file("--markdown");
+  const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
+  if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
+    arguments.refuse("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
+  arguments.finish();
+
   const std::vector<Claim> claims = read_claims(claims_file);
   if (catalogue) check_catalogue(*catalogue, claims);
+  std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
+  for (const Claim& claim : claims)
+    for (const std::string& scene : claim.measure.scenes) inputs.push_back(runs_folder / (scene + ".json"));
+  arguments.refuse_overwriting("--output", verdicts_file, inputs);
+  arguments.refuse_overwriting("--markdown", markdown_file, inputs);
+  arguments.finish();
+  for (const auto& file : {verdicts_file, markdown_file})
+    if (file) require_writable(*file);
+
   Runs runs(runs_folder, ensemble);
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
@@ -209,17 +234,7 @@ Command verify_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
-  return {
-      app, [app] {
-        Arguments arguments(*app);
-        EnsembleOptions ensemble;
-        ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
-        ensemble.threads = threads_of(arguments);
-        arguments.finish();
-        return verify(arguments.text("--claims").value_or("data/claims.json"),
-                      arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
-                      ensemble, arguments.text("--output"), arguments.text("--markdown"));
-      }};
+  return {app, [app] { return verify(Arguments(*app)); }};
 }
 
 }  // namespace impact_damper::cli

@@ -1,11 +1,12 @@
 # Runs one command line and holds it against what command_lines.txt expects of it.
-# PROGRAM, ARGUMENTS (as typed), CODE, TEXT, FILES (folder of input files), FOLDER (to run in, made anew).
+# PROGRAM, ARGUMENTS (as typed), CODE, WARNED (exit code 0, but something on stderr), TEXT,
+# FILES (folder of input files), FOLDER (to run in, made anew).
 file(REMOVE_RECURSE ${FOLDER})
 file(COPY ${FILES}/ DESTINATION ${FOLDER})
 file(GLOB_RECURSE before RELATIVE ${FOLDER} ${FOLDER}/*)
 
-separate_arguments(arguments UNIX_COMMAND "${ARGUMENTS}")
-execute_process(COMMAND ${PROGRAM} ${arguments} WORKING_DIRECTORY ${FOLDER} TIMEOUT 60
+# By a shell that leaves [] and * as they are: CMake's own lists lose empty arguments.
+execute_process(COMMAND sh -fc "exec \"$0\" ${ARGUMENTS}" ${PROGRAM} WORKING_DIRECTORY ${FOLDER} TIMEOUT 60
                 RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
 # Dot files too: that is what temporary files are called.
 file(GLOB_RECURSE after RELATIVE ${FOLDER} ${FOLDER}/* ${FOLDER}/.*)
@@ -16,7 +17,10 @@ set(faults "")
 if(NOT code STREQUAL CODE)
   string(APPEND faults "exit code ${code} instead of ${CODE}\n")
 endif()
-if(CODE EQUAL 0)
+if(WARNED)
+  set(place "${err}")
+  set(expected "")
+elseif(CODE EQUAL 0)
   set(expected "")
   if(ARGUMENTS MATCHES "-o ([a-z.]+)")
     set(expected ${CMAKE_MATCH_1})

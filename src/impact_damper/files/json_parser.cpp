@@ -13,13 +13,25 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t deepest = 64;        // nesting; our own files need 5
-constexpr std::size_t most_problems = 50;  // a column of a million wrong numbers need not be listed
+constexpr std::size_t deepest = 64;  // nesting; our own files need 5
+constexpr std::size_t most_values = 10'000'000;
+constexpr std::size_t most_parts = 100'000;  // that are no numbers
+constexpr std::size_t most_problems = 50;    // a column of a million wrong numbers need not be listed
 
 std::string list(const std::vector<std::string_view>& words) {
   std::string text;
   for (const std::string_view word : words) text += (text.empty() ? "" : ", ") + std::string(word);
   return text.empty() ? "none" : text;
+}
+
+// Line and column of the character before `position`, counted from 1.
+std::string place_in(const std::string& text, std::size_t position) {
+  const std::size_t end = std::min(position, text.size());
+  const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n') + 1;
+  const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  const std::size_t before = newline == std::string::npos ? 0 : newline + 1;
+  const std::size_t column = std::max<std::size_t>(1, end - std::min(end, before));
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
 // Builds the value from the parser's events, which is where a duplicate key and the depth can be seen.
@@ -33,7 +45,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool number_integer(std::int64_t value) override { return put(value); }
   bool number_unsigned(std::uint64_t value) override { return put(value); }
   bool number_float(double value, const std::string&) override { return put(value); }
-  bool string(std::string& value) override { return put(std::move(value)); }
+  bool string(std::string& value) override { return count_part() && put(std::move(value)); }
   bool binary(Json::binary_t&) override { return false; }
   bool start_object(std::size_t) override { return open(Json::object()); }
   bool end_object() override { return close(); }
@@ -41,6 +53,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool end_array() override { return close(); }
 
   bool key(std::string& name) override {
+    if (!count_part()) return false;
     Level& level = stack_.back();
     level.key = name;
     const auto [place, added] = level.value->get_ref<Json::object_t&>().try_emplace(name);
@@ -50,17 +63,11 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
   bool parse_error(std::size_t position, const std::string&, const Json::exception& error) override {
-    const std::size_t end = std::min(position, text_.size());
-    const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(end), '\n') + 1;
-    const std::size_t newline = end == 0 ? std::string::npos : text_.rfind('\n', end - 1);
-    const std::size_t before = newline == std::string::npos ? 0 : newline + 1;
-    const std::size_t column = std::max<std::size_t>(1, end - std::min(end, before));
     // "[json.exception.parse_error.101] parse error at line 1, column 2: what is wrong"
     std::string what = error.what();
     what.erase(0, what.find("] ") + 2);
     if (what.starts_with("parse error at ")) what.erase(0, what.find(": ") + 2);
-    problems_.add(
-        {}, "line " + std::to_string(line) + ", column " + std::to_string(column) + ": " + cut(what, 200));
+    problems_.add({}, place_in(text_, position) + ": " + cut(what, 200));
     return false;
   }
 
@@ -71,8 +78,17 @@ class Builder : public nlohmann::json_sax<Json> {
     std::string key;
   };
 
+  bool too_many(const std::string& what, std::size_t admitted) {
+    problems_.add({}, "too many " + what + ", admitted are " + std::to_string(admitted));
+    return false;
+  }
+  bool count_part() {
+    return ++parts_ <= most_parts || too_many("objects, arrays, keys and texts", most_parts);
+  }
+
   template <typename Value>
   bool put(Value&& value) {
+    if (++values_ > most_values) return too_many("values", most_values);
     place() = std::forward<Value>(value);
     return true;
   }
@@ -88,6 +104,7 @@ class Builder : public nlohmann::json_sax<Json> {
       problems_.add({}, "nested too deeply, admitted are " + std::to_string(deepest) + " levels");
       return false;
     }
+    if (!count_part()) return false;
     Json& value = place();
     value = std::move(empty);
     stack_.push_back({&value, nullptr, {}});
@@ -112,6 +129,7 @@ class Builder : public nlohmann::json_sax<Json> {
   Json& root_;
   JsonProblems& problems_;
   std::vector<Level> stack_;
+  std::size_t values_ = 0, parts_ = 0;
 };
 
 }  // namespace
@@ -122,7 +140,7 @@ std::string json_token(std::string_view key) {
   return cut(token);
 }
 
-JsonProblems::JsonProblems(std::string file) : file_(std::move(file)) {}
+JsonProblems::JsonProblems(std::string file) : file_(cut(file, 1000)) {}
 
 void JsonProblems::add(const std::string& pointer, std::string_view what) {
   if (++count_ > most_problems) return;
@@ -159,9 +177,14 @@ void JsonProblems::throw_if_any_or_unknown() const {
   all.throw_if_any();
 }
 
-void parse_json(const std::string& text, Json& root, JsonProblems& problems) {
+bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
+  // The parser takes it for the end of the text, whatever stands behind it.
+  if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
+    problems.add({}, place_in(text, nul + 1) + ": a NUL, admitted in no JSON text");
+    return false;
+  }
   Builder builder(text, root, problems);
-  Json::sax_parse(text, &builder);
+  return Json::sax_parse(text, &builder);
 }
 
 }  // namespace impact_damper

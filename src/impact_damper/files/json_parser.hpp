@@ -45,8 +45,10 @@ class JsonProblems {
 // A key as a part of a JSON pointer.
 std::string json_token(std::string_view key);
 
-// Parses `text` into `root`. Whatever is not JSON, duplicate keys and nesting deeper than 64 go to
-// `problems`; then `root` may hold a part only.
-void parse_json(const std::string& text, nlohmann::json& root, JsonProblems& problems);
+// Parses `text` into `root`. To `problems` go duplicate keys, of which the last one counts, and what ends the
+// reading, so that `root` holds a part only and false is returned: what is not JSON, nesting deeper than 64,
+// more than ten million values or a hundred thousand objects, arrays, keys and texts, which take far more
+// memory than they are long.
+bool parse_json(const std::string& text, nlohmann::json& root, JsonProblems& problems);
 
 }  // namespace impact_damper

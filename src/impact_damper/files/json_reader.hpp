@@ -10,6 +10,9 @@
 //   }
 //   document.finish();  // throws InputError with all that was wrong, unknown keys included
 //
+// What is too long is refused before it takes memory: the file by its kind, a text and an array by the rule
+// they are read with, all of a file together by the parser (json_parser.hpp).
+//
 // A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
 // do not act on what was read before finish() has returned.
 #pragma once
@@ -29,8 +32,27 @@
 
 namespace impact_damper {
 
-// The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot).
+// A kind of file, and how long the longest admitted is.
+struct FileKind {
+  std::string_view name;  // "scene"
+  std::size_t most_bytes;
+};
+
+// The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and InputError
+// if it is longer than its kind admits: before reading it where its size is known, else on reading so much.
 std::string read_text(const std::filesystem::path& file);
+std::string read_text(const std::filesystem::path& file, const FileKind& kind);
+
+// Which texts are admitted: all are of one line, without control characters. Lengths are in characters.
+struct TextRule {
+  std::size_t least = 0, most = 4000;
+  bool is_name = false;  // ASCII letters, digits, '-', '_' and '.', the first of them a letter or digit
+
+  bool admits(std::string_view text) const;
+  std::string describe() const;
+};
+inline constexpr TextRule some_text{1};
+inline constexpr TextRule a_name{1, 64, true};  // of a scene, a claim, a file
 
 class JsonProblems;  // what a document collects while it is read
 
@@ -46,11 +68,12 @@ class ObjectReader {
   bool optional(std::string_view key, std::int64_t& target, NumberRange range = {});
   bool optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
   bool optional(std::string_view key, bool& target);
-  bool optional(std::string_view key, std::string& target);
+  bool optional(std::string_view key, std::string& target, TextRule rule = {});
   bool optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
   bool optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
   bool optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
-  bool optional(std::string_view key, std::vector<std::string>& target);
+  // At most `most` texts, no two of them equal.
+  bool optional(std::string_view key, std::vector<std::string>& target, TextRule rule, std::size_t most);
 
   // The same for each of these types, a missing key being a problem (and false).
   template <typename Target, typename... Range>
@@ -77,11 +100,11 @@ class ObjectReader {
   // Objects within. An optional one that is missing (or null) is absent.
   ObjectReader required_object(std::string_view key);
   std::optional<ObjectReader> optional_object(std::string_view key);
-  // The elements of an array of objects.
-  std::vector<ObjectReader> required_objects(std::string_view key) {
-    return require(key) ? optional_objects(key) : std::vector<ObjectReader>{};
+  // The elements of an array of at most `most` objects.
+  std::vector<ObjectReader> required_objects(std::string_view key, std::size_t most) {
+    return require(key) ? optional_objects(key, most) : std::vector<ObjectReader>{};
   }
-  std::vector<ObjectReader> optional_objects(std::string_view key);
+  std::vector<ObjectReader> optional_objects(std::string_view key, std::size_t most);
 
   // Every key that is there, sorted, and known from now on: for objects whose keys are data.
   std::vector<std::string> keys();
@@ -101,9 +124,9 @@ class ObjectReader {
   const nlohmann::json* find(std::string_view key);
   std::string pointer_to(std::string_view key) const;
   bool wrong(std::string_view key, const std::string& wanted, const nlohmann::json& given);
-  template <typename Element, typename... Range>
-  bool array(std::string_view key, std::vector<Element>& target, const std::string& wanted_element,
-             const Range&... range);
+  template <typename Element, typename Rule>
+  bool array(std::string_view key, std::vector<Element>& target, const Rule& rule);
+  bool too_long(std::string_view key, std::size_t most, const nlohmann::json& array);
 
   JsonProblems* problems_;
   std::string pointer_;
@@ -113,9 +136,10 @@ class ObjectReader {
 
 class JsonDocument {
  public:
-  // Reads and parses `file`. Throws IoError if it cannot be read, InputError for what is not JSON (with
-  // line and column), duplicate keys, nesting deeper than 64, text behind the value.
-  static JsonDocument read(const std::filesystem::path& file);
+  // Reads and parses `file`. Throws IoError if it cannot be read, InputError for what cannot be gone on with:
+  // a file longer than its kind admits, what is not JSON (with line and column), text behind the value, too
+  // much of it. A duplicate key is a problem among the others.
+  static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
   // The same for a text in memory; `name` stands for the file in messages.
   static JsonDocument parse(std::string name, const std::string& text);
 

@@ -9,11 +9,16 @@
 #include <string>
 #include <string_view>
 
+#include "impact_damper/files/json_reader.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
 
 inline constexpr std::string_view run_schema = "impact-damper/run/1";
+
+// Columns are written as they are, but read into memory, several times their length of it: a million and a
+// half impacts or samples of the history fit, or half cycles for a week of decays.
+inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
 // The run as the text of its file. Throws NumericalError naming the column that holds a number which is
 // not finite: JSON has none, and no result has one.

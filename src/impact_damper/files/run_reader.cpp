@@ -2,6 +2,7 @@
 #include <array>
 #include <numeric>
 
+#include "impact_damper/engines/cem.hpp"
 #include "impact_damper/files/json_reader.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/run_file.hpp"
@@ -64,17 +65,18 @@ Restitution read_options(ObjectReader& object, Restitution engine) {
 }
 
 Cem read_options(ObjectReader& object, Cem engine) {
-  object.required("time_step", engine.time_step, above(0));
+  if (double step = 0; object.required("time_step", step, above(0))) engine.time_step = step;
   object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
   object.required("locate", engine.locate);
-  object.optional("large_step", engine.large_step, above(0));
+  if (double step = 0; object.has("large_step") && object.optional("large_step", step, above(0)))
+    engine.large_step = step;
   object.required("unstable", engine.unstable);
   engine.calibration = read_calibration(object);
   object.required("max_steps", engine.max_steps, at_least(1));
   return engine;
 }
 
-Engine read_engine(ObjectReader object) {
+Engine read_engine(ObjectReader& object) {
   constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
   if (!object.require("name")) return {};
   const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
@@ -178,19 +180,33 @@ History read_history(ObjectReader object) {
 }
 
 // Every field of a run file's scene is there, absent stops as null.
-Scene read_full_scene(ObjectReader object) {
+Scene read_full_scene(ObjectReader& object) {
   for (const SceneField& field : scene_fields) object.require(field.name);
   object.require("until_time");
   object.require("until_amplitude");
   return read_scene_fields(object);
 }
 
+// What the engine would refuse of the scene: a run of it cannot have been.
+void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
+  if (!problems_of(run.scene).empty()) return;
+  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).admits(run.scene.y0)) {
+    scene.refuse("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
+                           number_text(run.scene.y0));
+  }
+  if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && cem->time_step) {
+    for (const Problem& problem : problems_of(run.scene, *cem)) engine.refuse(problem.field, problem.message);
+  }
+}
+
 Run read_whole(JsonDocument document) {
   Run run;
   ObjectReader object = document.root();
   if (object.require("schema")) object.word("schema", {run_schema});
-  run.scene = read_full_scene(object.required_object("scene"));
-  run.engine = read_engine(object.required_object("engine"));
+  ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
+  run.scene = read_full_scene(scene);
+  run.engine = read_engine(engine);
+  check_together(scene, engine, run);
   object.required("stop_reason", run.stop_reason,
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
                    StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
@@ -201,14 +217,22 @@ Run read_whole(JsonDocument document) {
   if (const auto section = object.optional_object("contacts")) run.contacts = read_contacts(*section);
   if (const auto section = object.optional_object("energy")) run.energy = read_ledger(*section);
   if (const auto section = object.optional_object("history")) run.history = read_history(*section);
-  object.required_object("provenance").keys();  // says who made the file, not what is in it
+  if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
+    object.refuse("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
+                                " impacts, got " + std::to_string(run.energy->impact_loss.size()));
+  }
+  ObjectReader made_by = object.required_object("provenance");  // who made the file, not what is in it
+  for (const std::string& key : made_by.keys()) {
+    std::string any;
+    made_by.optional(key, any);
+  }
   document.finish();
   return run;
 }
 
 }  // namespace
 
-Run read_run(const std::filesystem::path& file) { return read_whole(JsonDocument::read(file)); }
+Run read_run(const std::filesystem::path& file) { return read_whole(JsonDocument::read(file, run_kind)); }
 
 Run parse_run(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text));

@@ -29,7 +29,9 @@ Scene read_scene_fields(ObjectReader& object) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file) { return read_whole(JsonDocument::read(file)); }
+Scene read_scene(const std::filesystem::path& file) {
+  return read_whole(JsonDocument::read(file, scene_kind));
+}
 
 Scene parse_scene(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text));

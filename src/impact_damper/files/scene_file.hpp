@@ -14,6 +14,8 @@
 
 namespace impact_damper {
 
+inline constexpr FileKind scene_kind{"scene", 1 << 16};
+
 // Throws IoError if `file` cannot be read, InputError naming everything in it that is not admitted.
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);

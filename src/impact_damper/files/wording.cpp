@@ -23,6 +23,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// How many bytes the UTF-8 character at the front of `text` has; 0 if none stands there. Overlong forms and
+// surrogates, which are none either, print as they are.
+std::size_t character_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
+  }
+  return length;
+}
+
 }  // namespace
 
 bool NumberRange::admits(double value) const {
@@ -40,11 +57,15 @@ std::string NumberRange::describe(std::string_view kind) const {
 }
 
 std::string cut(std::string_view text, std::size_t most) {
-  std::string line(text.substr(0, most));
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  std::string line;
+  std::size_t at = 0;
+  for (std::size_t characters = 0; at < text.size() && characters < most; ++characters) {
+    const std::size_t length = character_length(text.substr(at));
+    const bool is_control = static_cast<unsigned char>(text[at]) < 0x20 || text[at] == 0x7f;
+    line += length == 0 || is_control ? "?" : text.substr(at, length);
+    at += std::max<std::size_t>(length, 1);
   }
-  return text.size() > most ? line + "..." : line;
+  return at < text.size() ? line + "..." : line;
 }
 
 std::string in_quotes(std::string_view text) { return '"' + cut(text) + '"'; }

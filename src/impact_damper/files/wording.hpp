@@ -22,7 +22,8 @@ inline NumberRange within(double least, double most) { return {least, most}; }
 inline NumberRange at_least(double least) { return {least}; }
 inline NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
-// `text` on one line, shortened to `most` characters.
+// `text` on one line of UTF-8, shortened to `most` characters; a question mark for each that is no character
+// or a control character.
 std::string cut(std::string_view text, std::size_t most = 60);
 std::string in_quotes(std::string_view text);  // cut, between double quotes
 

@@ -2,19 +2,25 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper {
 namespace {
+
+constexpr TextRule a_number{1, 8, true};           // of a figure: its files are called after it
+constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
 
 Record read_record(ObjectReader& scene) {
   Record record;
   record.half_cycles = false;
   bool history = false;
   std::vector<std::string> words;
-  scene.required("record", words);
-  for (const std::string& word : words) {
+  scene.required("record", words, TextRule{}, std::size_t{5});
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
     if (word == "half_cycles") {
       record.half_cycles = true;
     } else if (word == "impacts") {
@@ -26,18 +32,22 @@ Record read_record(ObjectReader& scene) {
     } else if (word == "history") {
       history = true;
     } else {
-      scene.refuse("record",
-                   "must list half_cycles, impacts, contacts, energy or history, got \"" + word + "\"");
+      scene.refuse("record", i,
+                   "must be one of half_cycles, impacts, contacts, energy, history, got the string " +
+                       in_quotes(word));
     }
   }
-  for (ObjectReader item : scene.optional_objects("history_below")) {
+  double before = std::numeric_limits<double>::infinity();
+  for (ObjectReader item : scene.optional_objects("history_below", 100)) {
     AmplitudeWindow window;
-    item.required("amplitude", window.amplitude, above(0));
-    item.required("length", window.length, above(0));
+    const bool is_read = item.required("amplitude", window.amplitude, amplitudes);
+    item.required("length", window.length, amplitudes);
     item.required("count", window.count, within(2, 1e6));
-    if (!record.history_below.empty() && !(window.amplitude < record.history_below.back().amplitude)) {
-      item.refuse("amplitude", "must be below that of the window before");
+    if (is_read && !(window.amplitude < before)) {
+      item.refuse("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
+                                   number_text(window.amplitude));
     }
+    if (is_read) before = window.amplitude;
     record.history_below.push_back(window);
   }
   if (history == record.history_below.empty()) {
@@ -48,14 +58,16 @@ Record read_record(ObjectReader& scene) {
 
 std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   std::vector<FigureCurve> curves;
-  for (ObjectReader item : figure.optional_objects("curves")) {
+  for (ObjectReader item : figure.optional_objects("curves", 100)) {
     FigureCurve curve;
-    item.required("scene", curve.scene);
+    item.required("scene", curve.scene, a_name);
     if (table == TableKind::loss_factor) {
       std::int64_t half_cycles = curve.loss_factor.half_cycles;
       item.optional("half_cycles", half_cycles, within(10, 18));
-      if (half_cycles % 2 != 0)
-        item.refuse("half_cycles", "must be even, so that one peak is the middle one");
+      if (half_cycles % 2 != 0) {
+        item.refuse("half_cycles",
+                    "must be even, so that one peak is the middle one, got " + std::to_string(half_cycles));
+      }
       curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
       item.optional("ensemble", curve.ensemble, within(0, 1000));
     }
@@ -86,37 +98,54 @@ const char* missing_record(TableKind table, const Record& record) {
 void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& catalogue) {
   const std::size_t count = figure.curves.size();
   const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase;
-  if (single && count != 1) item.refuse("curves", "must be one curve for this kind of table");
-  if (figure.table == TableKind::drawing && count != 0) item.refuse("curves", "must be empty for a drawing");
-  if (figure.table != TableKind::drawing && count == 0) item.refuse("curves", "must be at least one curve");
-  if ((count > 1) != figure.varied.has_value()) {
-    item.refuse("varied", "must be given if, and only if, there are several curves");
+  const bool drawn_only = figure.table == TableKind::drawing;
+  if (single ? count != 1 : drawn_only ? count != 0 : count == 0) {
+    item.refuse("curves", "must be " +
+                              std::string(single       ? "one curve"
+                                          : drawn_only ? "empty"
+                                                       : "at least one curve") +
+                              " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
+                              std::to_string(count));
   }
-  for (const FigureCurve& curve : figure.curves) {
-    const CatalogueScene* scene = find_scene(catalogue, curve.scene);
+  if ((count > 1) != item.has("varied")) {
+    item.refuse("varied", "must be given if, and only if, there are several curves, got " +
+                              std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& name = figure.curves[i].scene;
+    const CatalogueScene* scene = find_scene(catalogue, name);
     if (!scene) {
-      item.refuse("curves", "must draw scenes of this catalogue, got \"" + curve.scene + "\"");
+      if (!name.empty())
+        item.refuse("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
       continue;
     }
     if (const char* missing = missing_record(figure.table, scene->record)) {
-      item.refuse("curves", "needs \"" + std::string(missing) + "\" recorded of scene " + curve.scene);
+      item.refuse("curves", i,
+                  "needs \"" + std::string(missing) + "\" in the scene's record, which " + name + " lacks");
     }
     const auto opens_window = [&](const AmplitudeWindow& window) {
       return window.amplitude == figure.window;
     };
     if (figure.window && std::ranges::none_of(scene->record.history_below, opens_window)) {
-      item.refuse("window", "must be the amplitude of a history window of scene " + curve.scene);
+      item.refuse("window", "must be the amplitude of a history window of scene " + name + ", got " +
+                                number_text(*figure.window));
     }
   }
 }
 
 Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   Figure figure;
-  item.required("figure", figure.number);
-  item.required("title", figure.title);
-  item.required(
-      "table", figure.table,
-      {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase, TableKind::drawing});
+  if (item.required("figure", figure.number, a_number) && find_figure(catalogue, figure.number))
+    item.refuse("figure", "must be given once, got the string " + in_quotes(figure.number));
+  item.required("title", figure.title, some_text);
+  item.required("script", figure.script, a_name);
+  item.optional("claims", figure.claims, a_name, 100);
+  if (!item.required("table", figure.table,
+                     {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
+                      TableKind::drawing})) {
+    item.keys();  // which others are known depends on the table
+    return figure;
+  }
   if (item.has("varied")) {
     figure.varied = Varied::mass_ratio;
     item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
@@ -127,20 +156,48 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     item.required("ordinate", *figure.ordinate,
                   {LossOrdinate::eta, LossOrdinate::specific, LossOrdinate::specific_secondary,
                    LossOrdinate::amplitude_times, LossOrdinate::by_restitution});
-    item.optional("range", figure.range, above(0));
-    if (!figure.range.empty() && !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
-      item.refuse("range", "must be two amplitudes, the lower first");
+    if (item.has("range") && item.optional("range", figure.range, amplitudes) &&
+        !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
+      item.refuse("range", "must be two amplitudes, the lower first, got " +
+                               (figure.range.size() == 2
+                                    ? number_text(figure.range[0]) + " and " + number_text(figure.range[1])
+                                    : std::to_string(figure.range.size())));
     }
   }
-  if (figure.table == TableKind::motion) item.required("window", figure.window, above(0));
+  if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
   if (figure.table != TableKind::motion && figure.table != TableKind::drawing) {
-    item.required("down_to", figure.down_to, above(0));
+    item.required("down_to", figure.down_to.emplace(), amplitudes);
   }
-  item.required("script", figure.script);
-  item.optional("claims", figure.claims);
-  if (find_figure(catalogue, figure.number)) item.refuse("figure", "must be given once");
   check_curves(item, figure, catalogue);
   return figure;
+}
+
+Catalogue read_whole(JsonDocument document) {
+  ObjectReader root = document.root();
+  root.word("schema", {"impact-damper/catalogue/1"});
+  root.require("schema");
+
+  Catalogue catalogue;
+  for (ObjectReader item : root.required_objects("scenes", 1000)) {
+    CatalogueScene scene;
+    if (item.required("scene", scene.name, a_name) && find_scene(catalogue, scene.name))
+      item.refuse("scene", "must be given once, got the string " + in_quotes(scene.name));
+    scene.record = read_record(item);
+    catalogue.scenes.push_back(scene);
+  }
+  for (ObjectReader item : root.required_objects("figures", 1000)) {
+    catalogue.figures.push_back(read_figure(item, catalogue));
+  }
+  for (std::size_t i = 0; i < catalogue.scenes.size(); ++i) {
+    const std::string& name = catalogue.scenes[i].name;
+    const auto draws = [&](const Figure& figure) {
+      return std::ranges::count(figure.curves, name, &FigureCurve::scene) > 0;
+    };
+    if (!name.empty() && std::ranges::none_of(catalogue.figures, draws))
+      root.refuse("scenes", i, "must be drawn by some figure, got a scene that is not: " + name);
+  }
+  document.finish();
+  return catalogue;
 }
 
 }  // namespace
@@ -190,32 +247,10 @@ std::string_view name_of(Varied varied) {
 }
 
 Catalogue read_catalogue(const std::filesystem::path& file) {
-  JsonDocument document = JsonDocument::read(file);
-  ObjectReader root = document.root();
-  root.word("schema", {"impact-damper/catalogue/1"});
-  root.require("schema");
-
-  Catalogue catalogue;
-  for (ObjectReader item : root.required_objects("scenes")) {
-    CatalogueScene scene;
-    item.required("scene", scene.name);
-    if (find_scene(catalogue, scene.name)) item.refuse("scene", "must be given once");
-    scene.record = read_record(item);
-    catalogue.scenes.push_back(scene);
-  }
-  for (ObjectReader item : root.required_objects("figures")) {
-    catalogue.figures.push_back(read_figure(item, catalogue));
-  }
-  for (const CatalogueScene& scene : catalogue.scenes) {
-    const auto draws = [&](const Figure& figure) {
-      return std::ranges::count(figure.curves, scene.name, &FigureCurve::scene) > 0;
-    };
-    if (std::ranges::none_of(catalogue.figures, draws)) {
-      root.refuse("scenes", "must all be drawn by some figure, but " + scene.name + " is not");
-    }
-  }
-  document.finish();
-  return catalogue;
+  return read_whole(JsonDocument::read(file, catalogue_kind));
+}
+Catalogue parse_catalogue(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text));
 }
 
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name) {

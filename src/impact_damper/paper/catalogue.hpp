@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/files/json_reader.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -70,7 +71,9 @@ struct Catalogue {
 
 // Reads a catalogue and holds it together: every scene known, drawn by some figure and recording what its
 // figures draw, every number given once. Throws IoError or InputError.
+inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
 Catalogue read_catalogue(const std::filesystem::path& file);
+Catalogue parse_catalogue(const std::string& name, const std::string& text);
 
 // The scene or figure of that name; a null pointer if there is none.
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);

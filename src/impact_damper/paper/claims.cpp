@@ -4,6 +4,8 @@
 
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/paper/measure_numbers.hpp"
 #include "impact_damper/paper/measures.hpp"
 
 namespace impact_damper {
@@ -11,15 +13,14 @@ namespace {
 
 constexpr std::string_view schema = "impact-damper/claims/1";
 
-void require_text(ObjectReader& object, std::string_view key, std::string& target) {
-  if (object.required(key, target) && target.empty()) object.refuse(key, "must not be empty");
-}
-
 Interval read_interval(ObjectReader& object, std::string_view key) {
   std::vector<std::optional<double>> ends;
   if (!object.optional(key, ends)) return {};
   if (ends.size() != 2 || (!ends[0] && !ends[1]) || (ends[0] && ends[1] && !(*ends[0] <= *ends[1]))) {
-    object.refuse(key, "must be [least, most], at least one of them a number, least <= most");
+    std::string given;
+    for (const auto& end : ends) given += (given.empty() ? "" : ", ") + (end ? number_text(*end) : "null");
+    object.refuse(
+        key, "must be [least, most], at least one of them a number, least <= most, got [" + cut(given) + "]");
     return {};
   }
   return {ends[0], ends[1]};
@@ -37,16 +38,30 @@ MeasureCall read_measure(ObjectReader object) {
   const Measure& measure = measures()[*index];
   call.name = measure.name;
   if (measure.most_scenes > 0) {
-    object.required("scenes", call.scenes);
+    const bool is_read = object.required("scenes", call.scenes, a_name, measure.most_scenes);
     const std::size_t count = call.scenes.size();
-    if (count < measure.least_scenes || count > measure.most_scenes)
+    if (is_read && count < measure.least_scenes)
       object.refuse("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
                                   std::to_string(measure.most_scenes) + " scenes, got " +
                                   std::to_string(count));
   }
   for (const std::string_view number : measure.numbers) {
     double value = 0;
-    if (object.required(number, value)) call.numbers[std::string(number)] = value;
+    if (!object.required(number, value)) continue;
+    const MeasureNumber& rule = measure_number(number);
+    if (rule.admits(value)) {
+      call.numbers[std::string(number)] = value;
+    } else {
+      const char* const kind = rule.multiple_of == 0   ? "a number"
+                               : rule.multiple_of == 1 ? "a whole number"
+                                                       : "an even number";
+      object.refuse(number, "must be " + rule.range.describe(kind) + ", got " + number_text(value));
+    }
+  }
+  const auto from = call.numbers.find("from"), to = call.numbers.find("to");
+  if (from != call.numbers.end() && to != call.numbers.end() && !(from->second < to->second)) {
+    object.refuse(
+        "to", "must be above \"from\", " + number_text(from->second) + ", got " + number_text(to->second));
   }
   return call;
 }
@@ -55,12 +70,14 @@ constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict
 
 Claim read_claim(ObjectReader& object) {
   Claim claim;
-  require_text(object, "id", claim.id);
-  require_text(object, "section", claim.section);
-  require_text(object, "statement", claim.statement);
-  require_text(object, "printed", claim.printed);
-  if (object.has("value") == object.has("range"))
-    object.refuse("value", "either value or range must be given");
+  object.required("id", claim.id, a_name);
+  object.required("section", claim.section, some_text);
+  object.required("statement", claim.statement, some_text);
+  object.required("printed", claim.printed, some_text);
+  if (object.has("value") == object.has("range")) {
+    object.refuse("value", "either it or \"range\" must be given, got " +
+                               std::string(object.has("value") ? "both" : "none"));
+  }
   if (object.has("value")) {
     double value = 0;
     object.optional("value", value);
@@ -69,25 +86,33 @@ Claim read_claim(ObjectReader& object) {
     claim.admitted = read_interval(object, "range");
   }
   object.required("tolerance", claim.tolerance, at_least(0));
-  require_text(object, "reason", claim.reason);
+  object.required("reason", claim.reason, some_text);
   claim.measure = read_measure(object.required_object("measure"));
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
-  object.required("verdict", claim.recorded, verdicts);
+  const bool recorded = object.required("verdict", claim.recorded, verdicts);
   if (auto engines = object.optional_object("with_engine")) {
     for (const std::string_view engine : {Exact::name, Restitution::name, Cem::name}) {
       auto otherwise = engines->optional_object(engine);
       if (!otherwise) continue;
       Claim::Otherwise& read = claim.with_engine[std::string(engine)];
       otherwise->required("verdict", read.recorded, verdicts);
-      require_text(*otherwise, "explanation", read.explanation);
+      otherwise->required("explanation", read.explanation, some_text);
     }
   }
-  if (claim.recorded != Verdict::reproduced) {
-    require_text(object, "explanation", claim.explanation);
-    require_text(object, "evidence", claim.evidence);
+  if (!recorded) {
+    for (const std::string_view key : {"corrected", "explanation", "evidence"}) object.has(key);
+    return claim;  // which of them belong there depends on the verdict
   }
-  if ((claim.recorded == Verdict::corrected) != claim.corrected.has_value())
-    object.refuse("corrected", "must be given if and only if the verdict is \"corrected\"");
+  if (claim.recorded != Verdict::reproduced) {
+    object.required("explanation", claim.explanation, some_text);
+    object.required("evidence", claim.evidence, some_text);
+  }
+  const bool corrected = object.has("corrected");
+  if ((claim.recorded == Verdict::corrected) != corrected) {
+    object.refuse("corrected", "must be given if, and only if, the verdict is \"corrected\", got " +
+                                   std::string(corrected ? "it" : "none") + " with " +
+                                   in_quotes(name_of(claim.recorded)));
+  }
   return claim;
 }
 
@@ -97,10 +122,11 @@ std::vector<Claim> read_document(JsonDocument document) {
   root.require("schema");
   std::vector<Claim> claims;
   std::set<std::string> ids;
-  for (ObjectReader object : root.required_objects("claims")) {
+  for (ObjectReader object : root.required_objects("claims", 10000)) {
     claims.push_back(read_claim(object));
-    if (!ids.insert(claims.back().id).second)
-      object.refuse("id", "must be given once, got " + claims.back().id);
+    const std::string& id = claims.back().id;
+    if (!id.empty() && !ids.insert(id).second)
+      object.refuse("id", "must be given once, got the string " + in_quotes(id));
   }
   document.finish();
   return claims;
@@ -121,7 +147,7 @@ std::string_view name_of(Verdict verdict) {
 }
 
 std::vector<Claim> read_claims(const std::filesystem::path& file) {
-  return read_document(JsonDocument::read(file));
+  return read_document(JsonDocument::read(file, claims_kind));
 }
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));

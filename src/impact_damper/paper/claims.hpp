@@ -24,6 +24,8 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/files/json_reader.hpp"
+
 namespace impact_damper {
 
 struct Interval {  // both ends included; absent: none
@@ -61,6 +63,7 @@ Verdict recorded_for(const Claim& claim, std::string_view engine);
 
 // Throws IoError if the file cannot be read, InputError naming everything that is not admitted: unknown
 // measures and measure parameters and duplicate ids among it.
+inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 

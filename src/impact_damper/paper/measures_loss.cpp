@@ -135,7 +135,7 @@ Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
 Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"),
-                              static_cast<int>(number(call, "half_cycles"))))
+                              static_cast<int>(number(call, "averaged_over"))))
         .first;
   });
 }
@@ -230,9 +230,9 @@ std::vector<Measure> loss_measures() {
       {"product_peak_amplitude",
        1,
        1,
-       {"from", "to", "half_cycles"},
+       {"from", "to", "averaged_over"},
        product_peak_amplitude,
-       "amplitude of the largest A eta_s / nu, A in [from, to], averaged over half_cycles"},
+       "amplitude of the largest A eta_s / nu, A in [from, to], averaged over so many half cycles"},
       {"loss_near_span",
        1,
        1,

@@ -1,0 +1,79 @@
+// `check`: files read strictly, and nothing else done with them.
+#include <array>
+#include <functional>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/paper/catalogue.hpp"
+#include "impact_damper/paper/claims.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+struct Reader {
+  std::string_view kind;
+  std::function<void(const std::string&)> read;
+};
+const std::array<Reader, 4> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
+                                     {"run", [](const std::string& file) { read_run(file); }},
+                                     {"catalogue", [](const std::string& file) { read_catalogue(file); }},
+                                     {"claims", [](const std::string& file) { read_claims(file); }}}};
+
+// Not an option with many values: that would take "[]" for a list of none.
+std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
+  std::vector<std::string> files;
+  if (const auto first = arguments.file("FILE")) files.push_back(*first);
+  for (const std::string& more : app.remaining()) {
+    if (more.starts_with('-')) throw UsageError("unknown argument " + in_quotes(more));
+    files.push_back(more);
+  }
+  return files;
+}
+
+int check(const CLI::App& app) {
+  Arguments arguments(app);
+  const std::vector<std::string> files = files_of(app, arguments);
+  std::vector<std::string_view> kinds;
+  for (const Reader& reader : readers) kinds.push_back(reader.kind);
+  if (!arguments.given("KIND")) arguments.refuse("KIND", "must be given: scene, run, catalogue or claims");
+  const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
+  if (arguments.given("KIND") && !arguments.given("FILE"))
+    arguments.refuse("FILE", "must be given, one or several");
+  arguments.finish();
+
+  std::string admitted;
+  std::vector<std::string> problems;
+  for (const std::string& file : files) {
+    try {
+      readers[*kind].read(file);
+      admitted += file + ": admitted\n";
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+  write_standard_output(admitted);
+  return 0;
+}
+
+}  // namespace
+
+Command check_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("check", "Read files strictly and say all that is wrong with them.");
+  app->add_option("KIND", "what they are: scene, run, catalogue or claims")->type_name("");
+  app->add_option("FILE", "one or several")->type_name("");
+  app->allow_extras();
+  app->footer(
+      "The same is checked whenever a file is read. data/schema/ holds JSON Schemas of all four kinds.\n\n"
+      "Examples:\n"
+      "  impact-damper check scene data/scenes/*.json\n"
+      "  impact-damper check run mine.json");
+  return {app, [app] { return check(*app); }};
+}
+
+}  // namespace impact_damper::cli

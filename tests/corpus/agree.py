@@ -1,0 +1,202 @@
+"""The schemas of data/schema/ and the program admit the same files, but for what manifest.txt says no schema can
+express: the corpus, the project's own files, a fresh run of each engine, and whatever becomes of the admitted ones
+of the corpus if one value after the other is changed, left out or doubled.
+
+    agree.py PROGRAM SOURCE FOLDER      FOLDER is for the changed files
+"""
+import copy
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+try:
+    from jsonschema import Draft7Validator, RefResolver
+except ImportError:
+    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
+    sys.exit(77)
+
+program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+KINDS = ("scene", "run", "catalogue", "claims")
+
+
+def validator(kind):
+    path = source / "data/schema" / f"{kind}.schema.json"
+    schema = json.loads(path.read_text(encoding="utf-8"))
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
+
+
+VALIDATORS = {kind: validator(kind) for kind in KINDS}
+
+
+def refuse_constant(word):
+    raise ValueError(word)
+
+
+def schema_admits(kind, file):
+    try:
+        value = json.loads(file.read_bytes().decode("utf-8-sig"), parse_constant=refuse_constant)
+        json.dumps(value, ensure_ascii=False).encode()  # half a surrogate is no character
+    except (ValueError, RecursionError):
+        return False
+    return VALIDATORS[kind].is_valid(value)
+
+
+def complaints(kind, files):
+    """What the program says of each file, all files in one call."""
+    done = subprocess.run([program, "check", kind, *map(str, files)], capture_output=True, text=True)
+    if done.returncode not in (0, 3):
+        sys.exit(f"check {kind}: exit code {done.returncode}: {done.stderr}")
+    said = {str(file): [] for file in files}
+    for line in done.stderr.splitlines():
+        said[line.split(": ", 1)[0]].append(line)
+    return said
+
+
+def manifest():
+    inexpressible, files = [], []
+    for line in (source / "tests/corpus/manifest.txt").read_text(encoding="utf-8").splitlines():
+        if line.startswith("~ "):
+            inexpressible.append(re.compile(line[2:].rsplit(" | ", 1)[0]))
+        elif line and not line.startswith("#"):
+            name, _, text = line.partition(" |")
+            files.append((source / "tests/corpus" / name, text.strip()))
+    return inexpressible, files
+
+
+def places(value, path=()):
+    """The path to each part of a document, the document itself first; of columns only to the first and last numbers."""
+    yield path
+    items = list(value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ())
+    is_column = isinstance(value, list) and not any(isinstance(part, (dict, str)) for part in value)
+    for key, part in items[:1] + items[-1:] if is_column and len(items) > 1 else items:
+        yield from places(part, path + (key,))
+
+
+def neighbours(bound):
+    return [bound, math.nextafter(bound, -math.inf), math.nextafter(bound, math.inf)]
+
+
+# Around every limit that a schema states, and what is a number like no other.
+BOUNDS = [0.0, 1e-3, 0.5, 1.0, 2.0, -10.0, 10.0, 18.0, 180.0, 1e3, 1e4, 1e6, -1e12, 1e12, 1e15]
+NUMBERS = [near for bound in BOUNDS for near in neighbours(bound)] + [
+    0, -0.0, 1, -1, 2, 3, 8, 9, 17, 19, 1001, 10**6, 10**6 + 1, 2**63 - 1, 2**63, 2**64, 1.5, 1e300, sys.float_info.max]
+TEXTS = ["", "a", ".a", "a/b", "a b", "a\n", "a\u0000", "\u007f", "\u00e9", "a" * 8, "a" * 9, "a" * 64, "a" * 65, "\u03bd" * 4000,
+         "\u03bd" * 4001, "exact", "cem", "time", "motion", "drawing", "history", "corrected", "reproduced", "step_limit"]
+OTHERS = [None, True, [], {}, [0], "1", 1]
+
+
+def changes(value, paths=None):
+    """Documents that differ from this one in one place."""
+    for path in paths or places(value):
+        holder = None
+
+        def changed(new):
+            if not path:
+                return new
+            nonlocal holder
+            whole = copy.deepcopy(value)
+            holder = whole
+            for key in path[:-1]:
+                holder = holder[key]
+            holder[path[-1]] = new
+            return whole
+
+        here = value
+        for key in path:
+            here = here[key]
+        for other in OTHERS:
+            yield changed(other)
+        if isinstance(here, bool) or here is None or isinstance(here, (int, float)):
+            for number in NUMBERS:
+                yield changed(number)
+        elif isinstance(here, str):
+            for text in TEXTS:
+                yield changed(text)
+        elif isinstance(here, list):
+            for new in (here + here[:1], here[:1], here[::-1], here + [here[-1]] if here else here, here + ["x"], here * 120):
+                yield changed(new)
+        else:
+            yield changed({**here, "surplus": 1})
+        if path:
+            whole = changed(None)
+            del holder[path[-1]]
+            yield whole
+
+
+def documents(file):
+    document = json.loads(file.read_bytes().decode("utf-8-sig"))
+    if file.stem != "every_measure":
+        yield from changes(document)
+        return
+    # Each measure alone, each of its numbers in the first measure that has it: one name means the same in all.
+    known = set()
+    for claim in document["claims"]:
+        measure = ("claims", 0, "measure")
+        new = [measure] + [measure + (key,) for key in claim["measure"] if key not in known]
+        known |= set(claim["measure"]) - {"scenes"}
+        yield from changes({**document, "claims": [claim]}, new)
+
+
+def main():
+    inexpressible, corpus = manifest()
+    if folder.exists():
+        shutil.rmtree(folder)
+    (folder / "fresh").mkdir(parents=True)
+
+    files = {kind: [] for kind in KINDS}
+    for file, text in corpus:
+        files[file.parent.name].append(file)
+    unlisted = sorted(set(source.glob("tests/corpus/*/*.json")) - {file for file, text in corpus})
+    if unlisted:
+        sys.exit(f"not in manifest.txt: {unlisted}")
+
+    own = {"scene": sorted((source / "data/scenes").glob("*.json")), "run": [], "catalogue": [source / "figures/catalogue.json"],
+           "claims": [source / "data/claims.json"]}
+    for engine in ("exact", "restitution", "cem"):
+        fresh = folder / "fresh" / f"{engine}.json"
+        subprocess.run([program, "run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
+                        "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh], check=True)
+        own["run"].append(fresh)
+
+    changed = 0
+    for file, text in corpus:
+        if text or file.stat().st_size > 20_000:
+            continue
+        for document in documents(file):
+            new = folder / file.parent.name / f"{file.stem}-{changed}.json"
+            new.parent.mkdir(exist_ok=True)
+            new.write_text(json.dumps(document), encoding="utf-8")
+            files[file.parent.name].append(new)
+            changed += 1
+    print(f"{len(corpus)} files of the corpus, {changed} changed ones", flush=True)
+
+    faults, exceptions = [], 0
+    for kind in KINDS:
+        for file in own[kind]:
+            if not schema_admits(kind, file):
+                faults.append(f"{file}: refused by the {kind} schema")
+        said = complaints(kind, files[kind] + own[kind])
+        faults += [f"refused: {line}" for file in own[kind] for line in said[str(file)]]
+        for count, file in enumerate(files[kind]):
+            if count % 2000 == 1999:
+                print(f"{kind}: {count + 1} of {len(files[kind])}", file=sys.stderr, flush=True)
+            lines = said[str(file)]
+            beyond_schemas = all(any(each.search(line) for each in inexpressible) for line in lines)
+            exceptions += bool(lines) and beyond_schemas
+            admitted = schema_admits(kind, file)
+            if admitted != beyond_schemas:
+                faults.append(f"the {kind} schema {'admits' if admitted else 'refuses'} {file}, of which the program says: {lines}")
+    print(f"{exceptions} refused for what no schema can express, {len(faults)} faults")
+    for fault in faults[:20]:
+        print(fault[:600])
+    if not faults:
+        shutil.rmtree(folder)
+    sys.exit(bool(faults))
+
+
+main()

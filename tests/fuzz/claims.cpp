@@ -1,0 +1,21 @@
+// What is read as claims can be judged, each by a measure that is known.
+#include "impact_damper/paper/claims.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "fuzz.hpp"
+#include "impact_damper/paper/measures.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace impact_damper;
+  const auto claims =
+      fuzz::read([&](const std::string& text) { return parse_claims("f", text); }, data, size);
+  if (!claims) return 0;
+  for (const Claim& claim : *claims) {
+    fuzz::require(std::ranges::count(measures(), claim.measure.name, &Measure::name) == 1);
+    fuzz::require(judge(claim, std::numeric_limits<double>::quiet_NaN()) == Verdict::not_reproduced);
+    if (claim.admitted.least) fuzz::require(judge(claim, *claim.admitted.least) == Verdict::reproduced);
+  }
+  return 0;
+}
