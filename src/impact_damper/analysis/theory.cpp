@@ -26,7 +26,8 @@ double time_to_accumulation(double e, double a, const Bounce& at) {
 // Absent if the mass is not back before t = pi.
 std::optional<Bounce> next_bounce(double e, double a, const Bounce& at) {
   const double t = at.time, u = e * at.speed, left = pi - t;
-  const auto [sin_t, cos_t] = sin_cos(t);
+  const SinCos<double> turn = sin_cos(t);
+  const double sin_t = turn.sin, cos_t = turn.cos;
   // Distance from the wall after s: u s + A (cos(t) (sin(s) - s) - sin(t) (1 - cos(s))), concave up to
   // t + s = pi: at most one return, and Newton's steps from behind it fall onto it from above.
   struct After {

@@ -35,7 +35,7 @@ struct Outlook {
 // Needs jet.g >= 0.
 template <class Real>
 Real certified_step(const Jet<Real>& jet, const Real& most) {
-  const auto& [g, g1, g2, third] = jet;
+  const Real &g = jet.g, &g1 = jet.g1, &g2 = jet.g2, &third = jet.third;
   const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
   const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
   const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };

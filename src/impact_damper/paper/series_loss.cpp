@@ -167,8 +167,9 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
     return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
                                column.begin() + static_cast<std::ptrdiff_t>(to));
   };
-  const auto block = [&](const std::string& block_name, const std::string& note, std::size_t from,
-                         std::size_t to) {
+  const auto block = [&, &loss = loss, &values = values](const std::string& block_name,
+                                                         const std::string& note, std::size_t from,
+                                                         std::size_t to) {
     table.blocks.push_back(
         {.name = block_name,
          .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" +
