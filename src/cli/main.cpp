@@ -11,6 +11,7 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "impact_damper/arithmetic.hpp"
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/provenance.hpp"
 
@@ -80,7 +81,9 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     for (const cli::Command& command : commands) {
-      if (command.arguments->parsed()) return command.act();
+      if (!command.arguments->parsed()) continue;
+      require_arithmetic();  // tables and verdicts are computed as well, without an engine
+      return command.act();
     }
     throw cli::UsageError("a subcommand must be given, see impact-damper --help");
   } catch (const CLI::Success& asked_for_help_or_version) {
