@@ -14,13 +14,16 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
+# What the tests need beside these.
+CHECK_PACKAGES := git python3 clang llvm lld locales
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bench build figures verify test bench bench-record stress stress-results check paper clean
+.PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
+  same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -53,6 +56,9 @@ endef
 
 deps:  ## install what is missing (Debian); elsewhere say what is wanted
 	@$(call install,$(PACKAGES))
+
+deps-check:  ## the same for the tests: make deps-check check
+	@$(call install,$(PACKAGES) $(CHECK_PACKAGES))
 
 deps-bench:  ## the same for the bench: its peers and its higher precision
 	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
@@ -97,9 +103,11 @@ check: build test  ## build, run every test, regenerate everything with all engi
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
 
-paper: build  ## refresh figures, verdicts and outputs in README.md and paper/
-	@$(MAKE) --no-print-directory figures ENGINE=exact
-	@paper/refresh $(BUILD)
+same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
+	@cmake --build $(BUILD) --target same-bits
+
+reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
+	@paper/renew $(BUILD)
 
 clean:  ## remove all that was built
 	@rm -rf $(BUILD)

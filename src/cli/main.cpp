@@ -12,6 +12,7 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "impact_damper/arithmetic.hpp"
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/provenance.hpp"
 
@@ -84,7 +85,9 @@ int main(int argc, char** argv) {
     const std::string swallowed = cli::swallowed_options(command_of());
     if (!swallowed.empty()) throw cli::UsageError(swallowed);
     for (const cli::Command& command : commands) {
-      if (command.arguments->parsed()) return command.act();
+      if (!command.arguments->parsed()) continue;
+      require_arithmetic();  // tables and verdicts are computed as well, without an engine
+      return command.act();
     }
     throw cli::UsageError("a subcommand must be given, see impact-damper --help");
   } catch (const CLI::Success& asked_for_help_or_version) {

@@ -1,8 +1,8 @@
 // `verify`: the claims, one by one, held against the runs.
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <set>
@@ -33,8 +33,8 @@ struct Verified {
 std::string brief(double value) {
   if (std::isnan(value)) return "none";
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  const auto written = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4);
+  return {text, written.ptr};
 }
 
 std::string admitted_text(const Claim& claim) {

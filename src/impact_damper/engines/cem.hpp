@@ -25,6 +25,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact_damper/arithmetic.hpp"
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/energy.hpp"
@@ -205,6 +206,7 @@ class CemEngine {
 // std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
 template <class Real = double, class Observer>
 Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
+  require_arithmetic();
   const Cem complete = resolved(scene, options);
   require_no_problems(scene, complete);
   return CemEngine<Real, Observer>(scene, complete, observer).run();

@@ -7,6 +7,7 @@
 // step, and no error but rounding.
 #pragma once
 
+#include "impact_damper/arithmetic.hpp"
 #include "impact_damper/engines/timeline.hpp"
 #include "impact_damper/motion/contact_works.hpp"
 #include "impact_damper/motion/flight.hpp"
@@ -17,6 +18,7 @@ namespace impact_damper {
 // Runs a scene that problems_of finds nothing wrong with, telling `observer` (recorder.hpp) what it wants.
 template <class Real, class Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
+  require_arithmetic();
   const System<Real> system(scene);
   const ContactSystem<Real> walls(system, zeta_m<Real>(scene, options.calibration));
   Timeline<Real, Observer> timeline(scene, system, options.budget, observer);

@@ -17,6 +17,7 @@
 // Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
+#include "impact_damper/arithmetic.hpp"
 #include "impact_damper/engines/timeline.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/stuck.hpp"
@@ -26,6 +27,7 @@ namespace impact_damper {
 // Runs a scene that problems_of finds nothing wrong with and that begins between the walls, 0 <= y0 <= 1.
 template <class Real, class Observer>
 Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
+  require_arithmetic();
   const System<Real> system(scene);
   Timeline<Real, Observer> timeline(scene, system, options.budget, observer);
   const Real nu = system.nu, e = system.e, tolerance = options.accumulation_tolerance;

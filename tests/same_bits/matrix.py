@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
+
+    matrix.py BUILD [--without-clang]
+
+BUILD is the project's build folder with the program in it, whose results all others are held against. Eight more
+programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O0, -O2, -O3 -march=native, -O2
+with link-time optimisation}. What is crossed with what:
+
+    all programs        x processor features {as they are, without FMA and AVX2}
+                        x {at home, all surroundings at once: time zone, comma locale, folder, ~/.gnuplot}
+    two of them         x the same features x each of the four surroundings by itself
+                          (g++ -O2 with link-time optimisation, clang++ -O3 -march=native)
+    pictures            gnuplot is no part of a build, so they are drawn once for each surrounding and each set of
+                        processor features, from the tables that by then are the same for all programs
+
+Each time all three engines run all scenes of the catalogue and those in scenes/ (forced and damped, the component
+element method also with its other ways to step), and all tables are made. The heap is filled with rubbish where the
+surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
+
+Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
+"""
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+from differences import compare_files
+
+SOURCE = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+COMPILERS = ["g++", "clang++"]
+# Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
+FLAGS = {
+    "-O0": ["-DCMAKE_CXX_FLAGS=-O0 -ftrivial-auto-var-init=pattern"],
+    "-O2": ["-DCMAKE_CXX_FLAGS=-O2"],
+    "-O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
+    "-O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"],
+}
+EACH_SURROUNDING_BY_ITSELF = ["g++ -O2 with LTO", "clang++ -O3 -march=native"]
+FEATURES = {"": {}, "without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"}}
+SURROUNDINGS = ["time zone", "comma locale", "folder", "~/.gnuplot"]
+ENGINES = ["exact", "restitution", "cem"]
+# The component element method's other ways, on the small scenes.
+WAYS = {"exact": [[], ["--calibration", "two-body"]], "restitution": [[]],
+        "cem": [[], ["--locate", "--large-step", "0.05", "--calibration", "two-body"], ["--damper", "lagged"]]}
+RECORD = ["--record", "half_cycles,impacts,contacts,energy,history", "--history", "0:150:301"]
+
+
+class Setting(NamedTuple):
+    """One cell of the matrix: a program, and what surrounds it."""
+    program: Path
+    build: str
+    features: str = ""
+    surroundings: tuple = ()
+
+    def __str__(self):
+        return ", ".join([self.build] + ([self.features] if self.features else []) +
+                         ([" + ".join(self.surroundings)] if self.surroundings else []))
+
+
+class Places(NamedTuple):
+    work: Path     # the matrix's own folder
+    locales: Path  # where de_DE.UTF-8 is
+    home: Path     # of another user
+
+    def environment(self, features: str, surroundings) -> dict:
+        kept = {name: os.environ[name] for name in ("PATH", "HOME", "TMPDIR") if name in os.environ}
+        kept.update(FEATURES[features])
+        if "time zone" in surroundings:
+            kept["TZ"] = "<+1245>-12:45<+1345>,M9.5.0,M4.1.0"
+        if "comma locale" in surroundings:
+            kept.update(LC_ALL="de_DE.UTF-8", LANG="de_DE.UTF-8", LOCPATH=str(self.locales))
+        if "~/.gnuplot" in surroundings:
+            kept.update(HOME=str(self.home), GNUTERM="dumb")
+        if surroundings:
+            kept["MALLOC_PERTURB_"] = "165"
+        return kept
+
+    def folder(self, surroundings) -> Path:
+        """Where commands run: what they read lies in data/, figures/ and tests/ below it."""
+        return self.work / "Übung 2; copy" if "folder" in surroundings else SOURCE
+
+
+def say(text: str):
+    print(f"same bits: {text}", file=sys.stderr, flush=True)
+
+
+def missing(text: str):
+    say(text)
+    sys.exit(2)
+
+
+def call(command, **options) -> str:
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, errors="replace", **options)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{done.stdout}")
+    return done.stdout
+
+
+def build(work: Path, compiler: str, name: str) -> Path:
+    folder = work / re.sub(r"[^\w+]+", "-", f"{compiler} {name}")
+    options = list(FLAGS[name])
+    if compiler == "clang++" and name.endswith("LTO"):
+        options.append("-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld")
+    call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={compiler}",
+          "-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF",
+          f"-DCMAKE_PROJECT_INCLUDE={HERE}/fewer_units.cmake", *options])
+    call(["cmake", "--build", folder, "--target", "impact-damper"])
+    return folder / "src" / "impact-damper"
+
+
+def make_places(work: Path) -> Places:
+    places = Places(work, work / "locales", work / "another user")
+    places.home.mkdir(parents=True, exist_ok=True)
+    shutil.copy(HERE / "hostile.gnuplot", places.home / ".gnuplot")
+    other = places.folder(["folder"])
+    for part in ("data/scenes", "figures", "tests/same_bits/scenes"):
+        shutil.copytree(SOURCE / part, other / part, dirs_exist_ok=True)
+    if not (places.locales / "de_DE.UTF-8").exists():
+        if not shutil.which("localedef") or not Path("/usr/share/i18n/locales/de_DE").exists():
+            missing("there is no locale de_DE to make: make deps-check installs it")
+        places.locales.mkdir(exist_ok=True)
+        call(["localedef", "-i", "de_DE", "-f", "UTF-8", places.locales / "de_DE.UTF-8"])
+    ask = "import locale; locale.setlocale(locale.LC_ALL, ''); print(locale.localeconv()['decimal_point'])"
+    if call([sys.executable, "-c", ask], env=places.environment("", ["comma locale"])).strip() != ",":
+        missing(f"the locale de_DE.UTF-8 in {places.locales} writes no comma")
+    return places
+
+
+def small_catalogues(work: Path) -> dict:
+    """The catalogue, with ensembles of two for the component element method, which takes a hundred times as long."""
+    text = (SOURCE / "figures/catalogue.json").read_text()
+    paths = {}
+    for engine in ENGINES:
+        paths[engine] = work / f"catalogue-{engine}.json"
+        paths[engine].write_text(re.sub(r'"ensemble": \d+', '"ensemble": 2', text) if engine == "cem" else text)
+    return paths
+
+
+def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
+    """All runs and tables of one setting, below `results`."""
+    shutil.rmtree(results, ignore_errors=True)
+    options = {"cwd": places.folder(setting.surroundings),
+               "env": places.environment(setting.features, setting.surroundings)}
+    program = setting.program
+    if "folder" in setting.surroundings:
+        program = results / "bin" / "impact-damper"
+        program.parent.mkdir(parents=True)
+        shutil.copy(setting.program, program)
+    for engine in ENGINES:
+        runs, tables = results / engine / "runs", results / engine / "tables"
+        runs.mkdir(parents=True)
+        tables.mkdir()
+        for entry in json.loads(catalogues[engine].read_text())["scenes"]:
+            windows = [["--history-below", f"{w['amplitude']}:{w['length']}:{w['count']}"]
+                       for w in entry.get("history_below", [])]
+            call([program, "run", "--scene", f"data/scenes/{entry['scene']}.json", "--engine", engine, "--record",
+                  ",".join(entry["record"]), *sum(windows, []), "-o", runs / f"{entry['scene']}.json"], **options)
+        for scene in sorted((HERE / "scenes").glob("*.json")):
+            for number, way in enumerate(WAYS[engine]):
+                call([program, "run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
+                      *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json"], **options)
+        call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",
+              "-o", tables], **options)
+
+
+def draw_all(places: Places, features: str, surroundings, tables: Path, pictures: Path):
+    """The pictures of all engines' tables, below `pictures`; `tables` are run_all's results."""
+    shutil.rmtree(pictures, ignore_errors=True)
+    for engine in ENGINES:
+        (pictures / engine).mkdir(parents=True)
+        for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]:
+            name = f"fig{figure['figure']:0>2}" if figure["figure"].isdigit() else f"fig{figure['figure']}"
+            table = tables / engine / "tables" / f"{name}.dat"
+            if not table.exists():
+                if figure["table"] != "drawing":
+                    raise RuntimeError(f"{table} is missing")
+                table = "-"
+                if engine != ENGINES[0]:
+                    continue
+            call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name],
+                 cwd=places.folder(surroundings), env=places.environment(features, surroundings))
+
+
+def held_against(reference: Path, results: Path) -> list:
+    """What differs, as text; names are engine/runs/SCENE.json, engine/tables/figNN.dat, engine/figNN.svg."""
+    found = []
+    names = {path.relative_to(root) for root in (reference, results) for kind in ("json", "dat", "svg")
+             for path in root.rglob(f"*.{kind}")}
+    for name in sorted(names):
+        difference = compare_files(str(name), str(reference / name), str(results / name))
+        if difference:
+            found.append(str(difference))
+    return found
+
+
+def settings_of(programs: dict) -> list:
+    cells = []
+    for name, program in programs.items():
+        for features in FEATURES:
+            chosen = [(), tuple(SURROUNDINGS)]
+            if name in EACH_SURROUNDING_BY_ITSELF:
+                chosen += [(each,) for each in SURROUNDINGS]
+            cells += [Setting(program, name, features, surroundings) for surroundings in chosen]
+    return cells
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
+    arguments = parser.parse_args()
+    own = arguments.build.resolve() / "src" / "impact-damper"
+    if not own.exists():
+        missing(f"{own} is missing: make build")
+    compilers = [name for name in COMPILERS if name != "clang++" or not arguments.without_clang]
+    for tool in compilers + ["cmake", "ninja", "gnuplot", "rsvg-convert"] + ["ld.lld"] * ("clang++" in compilers):
+        if not shutil.which(tool):
+            missing(f"{tool} is missing: make deps-check installs it" +
+                    ("; --without-clang leaves its half of the builds out" if tool in ("clang++", "ld.lld") else ""))
+    begin = time.monotonic()
+    work = arguments.build.resolve() / "same_bits"
+    work.mkdir(exist_ok=True)
+    places = make_places(work)
+    catalogues = small_catalogues(work)
+
+    programs = {"the project's own build": own}
+    for compiler in compilers:
+        for name in FLAGS:
+            say(f"building with {compiler} {name} ({len(programs)} of {len(compilers) * len(FLAGS)})")
+            programs[f"{compiler} {name}"] = build(work, compiler, name)
+    built = time.monotonic()
+
+    cells = settings_of(programs)
+    reference = work / "results-0"
+    run_all(cells[0], places, catalogues, reference)
+    wrong = {}
+
+    def examine(number):
+        results = work / f"results-{number}"
+        run_all(cells[number], places, catalogues, results)
+        found = held_against(reference, results)
+        if not found:
+            shutil.rmtree(results)
+        say(f"{number} of {len(cells) - 1}: {cells[number]}: " +
+            (f"{len(found)} files differ" if found else "the same"))
+        if found:
+            wrong[str(cells[number])] = found
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(examine, range(1, len(cells))))
+    ran = time.monotonic()
+
+    drawings = [(features, surroundings) for features in FEATURES
+                for surroundings in [(), *((each,) for each in SURROUNDINGS)]]
+    draw_all(places, *drawings[0], reference, work / "pictures-0")
+
+    def examine_drawing(number):
+        features, surroundings = drawings[number]
+        draw_all(places, features, surroundings, reference, work / f"pictures-{number}")
+        found = held_against(work / "pictures-0", work / f"pictures-{number}")
+        name = "pictures, " + (" + ".join([features] * bool(features) + list(surroundings)))
+        say(f"{name}: " + (f"{len(found)} files differ" if found else "the same"))
+        if found:
+            wrong[name] = found
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(examine_drawing, range(1, len(drawings))))
+    drawn = time.monotonic()
+
+    for name, found in wrong.items():
+        print(f"\n{name}: {len(found)} files differ from {cells[0]}")
+        for text in found[:3]:
+            print("  " + text)
+        if len(found) > 3:
+            print(f"  and {len(found) - 3} more")
+    files = sum(1 for kind in ("json", "dat") for path in reference.rglob(f"*.{kind}"))
+    print(f"\nsame bits: {len(programs)} programs, {len(cells)} settings of {files} runs and tables, "
+          f"{len(drawings)} of {len(list((work / 'pictures-0').rglob('*.svg')))} pictures: " +
+          (f"{len(wrong)} settings differ" if wrong else "no byte differs"))
+    if "clang++" not in compilers:
+        print("same bits: NOT COVERED: clang++, left out by --without-clang")
+    if "fma" not in Path("/proc/cpuinfo").read_text().split():
+        print("same bits: NOT COVERED: this processor has no FMA to be switched off")
+    say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
