@@ -15,6 +15,7 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "interruption.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -161,11 +162,16 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
            const std::optional<std::string>& verdicts_file, const std::optional<std::string>& markdown_file) {
   const std::vector<Claim> claims = read_claims(claims_file);
   if (catalogue) check_catalogue(*catalogue, claims);
+  for (const auto& file : {verdicts_file, markdown_file}) {
+    if (file) require_writable(*file);
+  }
   Runs runs(runs_folder, ensemble);
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
   for (const Claim& claim : claims) {
+    if_interrupted_say(std::to_string(claims.size() - all.size()) + " of " + std::to_string(claims.size()) +
+                       " claims are left" + (verdicts_file ? "; " + left_as_it_was(*verdicts_file) : ""));
     const auto now = std::chrono::steady_clock::now();
     if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
       std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
@@ -181,10 +187,10 @@ int verify(const std::filesystem::path& claims_file, const std::filesystem::path
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
-  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
-                        summary_text(all));
   if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
   if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
+  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
+                        summary_text(all));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 

@@ -95,7 +95,7 @@ class CemEngine {
   void cross_zero(const Real& at);
   void consider_peak(const Real& from, const Real& to);
   void give_samples(const Real& until);
-  void finish(StopReason reason, const Real& at);
+  void finish(StopReason reason, const Real& at, bool by_horizon = false);
 
   // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
   Real last_step_begin() const { return origin_ + Real(step_ - 1) * pace_.h; }
@@ -165,8 +165,8 @@ class CemEngine {
 
   const Budget budget_;
   const std::optional<double> until_amplitude_;
-  const Real end_time_;
-  const StopReason end_reason_;
+  const Outcome horizon_;  // if nothing else ends the scene before
+  const Real end_time_;    // its
   const Damper damper_;
   const bool locate_;
   Observer& observer_;

@@ -9,8 +9,8 @@ template <class Real, class Observer>
 CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Observer& observer)
     : budget_(options.budget),
       until_amplitude_(scene.until_amplitude),
-      end_time_(scene.until_time.value_or(options.budget.max_time)),
-      end_reason_(scene.until_time ? StopReason::time : StopReason::time_budget),
+      horizon_(horizon_of(scene, options.budget)),
+      end_time_(horizon_.end_time),
       damper_(options.damper),
       locate_(options.locate),
       observer_(observer),
@@ -194,7 +194,7 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   }
   if (zero && !zero_first && !end_) cross_zero(*zero);
   if (end_ || restart) return;
-  if (last) return finish(end_reason_, span);
+  if (last) return finish(horizon_.stop_reason, span, true);
   if (steps_left_ == 0) return finish(StopReason::step_budget, span);
   give_samples(begin + span);
 }
@@ -224,7 +224,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
   const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
   const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
-  if (!wall_ && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
+  if (met && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
   if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
 
   if (locate_) {
@@ -305,8 +305,8 @@ void CemEngine<Real, Observer>::give_samples(const Real& until) {
 }
 
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
-  const Real time = reason == end_reason_ ? end_time_ : last_step_begin() + at;
+void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at, bool by_horizon) {
+  const Real time = by_horizon ? end_time_ : last_step_begin() + at;
   give_samples(time);
   if (ledger_) {
     close_powers(at);
