@@ -26,14 +26,14 @@ def catches_interrupts(process):
     return False
 
 
-def interrupt(name, command, folder, files, code, moments, check):
-    """Whether it was met alive. `code` is the signal."""
+def interrupt(name, command, folder, files, code, wait, check):
+    """After a time `wait`, with the signal `code`. Returns whether it was met alive."""
     before = {file: (folder / file).read_bytes() if (folder / file).exists() else None for file in files}
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                env=scratch.ENVIRONMENT)
     while process.poll() is None and not catches_interrupts(process):
         pass
-    time.sleep(moments.uniform(0, 0.25))
+    time.sleep(wait)
     process.send_signal(code)
     _, error = process.communicate()
     check(not scratch.unfinished_in(folder), f"{name}: unfinished files remain: {scratch.unfinished_in(folder)}")
@@ -61,7 +61,8 @@ def programs(options, tree, folder, moments, check):
         here = scratch.make_folder(folder / name)
         met = 0
         for code in [signal.SIGINT] * 6 + [signal.SIGTERM, signal.SIGHUP]:
-            met += interrupt(name, command, here, files, code, moments, check)
+            longest = 0.02 if name == "series" else 0.25
+            met += interrupt(name, command, here, files, code, moments.uniform(0, longest), check)
             check(all(not (here / file).exists() for file in files), f"{name}: a file was written all the same")
             for file in files:
                 (here / file).unlink(missing_ok=True)
@@ -99,7 +100,7 @@ def makes_at_once(folder, program, figures, wanted, count, check):
     for make, text in zip(makes, texts):
         check(make.returncode == 0, f"{count} makes at once: {text}")
     waited = sum("waiting for another make in this folder to end" in text for text in texts)
-    check(waited == count - 1, f"{count} makes at once: {waited} waited and said so")
+    check(waited >= count - 1, f"{count} makes at once: {waited} waited and said so")
     check(scratch.made_in(tree) == wanted, f"{count} makes at once: other files or bytes")
     check(not scratch.unfinished_in(tree), "makes at once: unfinished files remain")
 

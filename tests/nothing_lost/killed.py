@@ -58,7 +58,7 @@ def wait_for_moment(victim, random_moments):
     if random_moments.random() < 0.5:
         time.sleep(random_moments.uniform(0, 1.1 * victim.duration))
         return victim.process.poll() is None
-    wait = random_moments.choice([0, 0, random_moments.uniform(0, 0.003), random_moments.uniform(0, 0.03)])
+    wait = random_moments.choice([0, 0, 0, random_moments.uniform(0, 0.003), random_moments.uniform(0, 0.03)])
     nth = random_moments.randint(1, len(victim.files))
     seen = set()
     while victim.process.poll() is None:
@@ -74,6 +74,8 @@ def kill_once(victim, random_moments, check, tally):
     victim.put_back(old)
     victim.start()
     alive = wait_for_moment(victim, random_moments)
+    if alive:
+        os.killpg(victim.process.pid, signal.SIGKILL)
     scratch.kill_all_below_me()
     victim.process.stderr.close()
     tally["alive"] += alive
@@ -92,11 +94,12 @@ def kill_once(victim, random_moments, check, tally):
 def kill_make(tree, wanted, random_moments, check, tally, duration):
     """All that it began, make and ninja alone, or one process of all."""
     whom = random_moments.choice(["all", "all", "group", "one"])
-    if random_moments.random() < 0.3:
-        for pattern in ("runs/exact/*", "series/exact/*", "figures/*.*"):
-            for file in (tree / "build").glob(pattern):
-                if random_moments.random() < 0.5:
-                    file.unlink()
+    gone = random_moments.choice([0.3, 0.7, 1])
+    for file in scratch.made_in(tree):
+        if random_moments.random() < gone:
+            (tree / file).unlink()
+    if random_moments.random() < 0.15:
+        (tree / "build" / "build.ninja").unlink(missing_ok=True)
     make = subprocess.Popen(["make", "figures"], cwd=tree, env=scratch.ENVIRONMENT, stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL, start_new_session=True)
     time.sleep(random_moments.uniform(0, duration))
@@ -129,10 +132,11 @@ def main():
     check = scratch.Check()
 
     tree = scratch.make_tree(folder / "tree", options.program.resolve(), options.figures)
+    configured = scratch.make(tree, "build/build.ninja")
     begin = time.monotonic()
     undisturbed = scratch.make(tree, "figures")
     if undisturbed.returncode != 0:
-        sys.exit(undisturbed.stdout + undisturbed.stderr)
+        sys.exit(configured.stdout + configured.stderr + undisturbed.stdout + undisturbed.stderr)
     duration = time.monotonic() - begin
     wanted = scratch.made_in(tree)
 
@@ -150,7 +154,7 @@ def main():
 
     victims = [
         victim("run", [program, "run", "--until-time", "300", "--record", "impacts,contacts,energy,history",
-                       "--history", "0:300:100000", "-o", "out.json"], ["out.json"]),
+                       "--history", "0:300:300000", "-o", "out.json"], ["out.json"]),
         victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "-o", "."], tables),
         victim("draw", [str(tree / "figures" / "draw"), script,
                         str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig"],
@@ -175,8 +179,8 @@ def main():
     tally = {"alive": 0, "unfinished": 0}
     for i in range(shares["make figures"]):
         kill_make(tree, wanted, random_moments, check, tally, duration)
-        # Now and then undisturbed to the end; else the next is killed going on from here.
-        if i % 4 == 3 or i == shares["make figures"] - 1:
+        # Mostly undisturbed to the end; else the next is killed going on from here.
+        if random_moments.random() < 0.7 or i == shares["make figures"] - 1:
             again = scratch.make(tree, "figures")
             check(again.returncode == 0, f"make figures, again: {again.stdout}{again.stderr}")
             check(scratch.made_in(tree) == wanted, "make figures, again: other files or bytes than undisturbed")

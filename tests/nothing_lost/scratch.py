@@ -53,6 +53,8 @@ def make_tree(folder, program, figures=None):
         file = folder / "figures" / "catalogue.json"
         catalogue = json.loads(file.read_text())
         catalogue["figures"] = [each for each in catalogue["figures"] if each["figure"] in figures]
+        drawn = {curve["scene"] for each in catalogue["figures"] for curve in each.get("curves", [])}
+        catalogue["scenes"] = [each for each in catalogue["scenes"] if each["scene"] in drawn]
         file.write_text(json.dumps(catalogue))
     (folder / "build" / "src").mkdir(parents=True)
     shutil.copy(program, folder / "build" / "src" / "impact-damper")
@@ -76,7 +78,8 @@ def made_in(tree):
 
 def unfinished_in(folder):
     """Temporary files and folders of the program and of figures/draw."""
-    return sorted(str(each) for each in folder.rglob(".*") if each.suffix in (".tmp", ".draw"))
+    return sorted(os.path.join(place, name) for place, folders, files in os.walk(folder) for name in folders + files
+                  if name.startswith(".") and name.endswith((".tmp", ".draw")))
 
 
 def adopt_orphans():

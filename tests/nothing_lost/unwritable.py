@@ -107,8 +107,8 @@ def small_disk(p, here):
         total = sum(len(content) for content in new.values())
         failures = 0
         for part in (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.3):
-            # Whole pages; those of the old files and the last of each file come on top.
-            pages = int(part * total) // 4096 + len(new) + 1
+            # Whole pages, and those of the old files.
+            pages = int(part * total) // 4096 + len(new) * (1 if part < 1 else 2)
             mount(here, f"{pages * 4}k")
             old = {file: b"old\n" for file in new}
             for file, content in old.items():
