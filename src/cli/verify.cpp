@@ -203,7 +203,8 @@ Command verify_command(CLI::App& program) {
   app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
       ->type_name("FOLDER");
   app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
-  app->add_option("--members", "releases in each ensemble, the run file's own among them; default 16")
+  app->add_option("--members",
+                  "releases in each ensemble, the run file's own among them;\n1 to 100, default 16")
       ->type_name("N");
   app->add_option("-o,--output", "write the verdicts as JSON")->type_name("FILE");
   app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
@@ -215,17 +216,17 @@ Command verify_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
-  return {
-      app, [app] {
-        Arguments arguments(*app);
-        EnsembleOptions ensemble;
-        ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
-        ensemble.threads = threads_of(arguments);
-        arguments.finish();
-        return verify(arguments.text("--claims").value_or("data/claims.json"),
-                      arguments.text("--runs").value_or("build/runs/exact"), arguments.text("--catalogue"),
-                      ensemble, arguments.text("--output"), arguments.text("--markdown"));
-      }};
+  return {app, [app] {
+            Arguments arguments(*app);
+            EnsembleOptions ensemble;
+            ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
+            ensemble.threads = threads_of(arguments);
+            arguments.finish();
+            return verify(arguments.text("--claims").value_or("data/claims.json"),
+                          arguments.text("--runs").value_or("build/runs/exact"),
+                          arguments.text("--catalogue"), ensemble, arguments.text("--output"),
+                          arguments.text("--markdown"));
+          }};
 }
 
 }  // namespace impact_damper::cli

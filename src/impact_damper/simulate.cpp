@@ -9,13 +9,13 @@
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/files/number_text.hpp"
-#include "impact_damper/motion/first_root.hpp"
+#include "impact_damper/motion/effort.hpp"
 
 namespace impact_damper {
 namespace {
 
-// About a second. The paper's decays take a few thousand, as most events are found without a search.
-constexpr std::int64_t most_search_steps = 4'000'000;
+// A second or two. The paper's decays take a few thousand, as most events are found without a search.
+constexpr std::int64_t most_effort = 3'000'000;
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
   return run_exact<double>(scene, options, recorder);
@@ -116,7 +116,7 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   result.scene = scene;
   result.engine = engine;
   Recorder recorder(record);
-  search_steps_left = most_search_steps;
+  effort_left = most_effort;
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = resolved(scene, options.budget);

@@ -181,11 +181,12 @@ class CemEngine {
 
   std::optional<Rates> rates_;  // small_ beside them
 
-  Pace<Real> pace_;           // of the steps since origin_
-  Moment before_{}, now_{};   // the last step went from the one to the other
-  Real origin_ = 0;           // time of step 0
-  std::int64_t step_ = 0;     // number of now_
-  std::int64_t steps_left_;   // until max_steps are done
+  Pace<Real> pace_;          // of the steps since origin_
+  Moment before_{}, now_{};  // the last step went from the one to the other
+  Real origin_ = 0;          // time of step 0
+  std::int64_t step_ = 0;    // number of now_
+  std::int64_t steps_left_;  // until max_steps are done
+  std::int64_t looks_left_;
   std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;

@@ -24,7 +24,8 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       peaks_(observer.wants_half_cycles() || scene.until_amplitude),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
       pace_(small_),
-      steps_left_(options.max_steps) {
+      steps_left_(options.max_steps),
+      looks_left_(std::max<std::int64_t>(options.max_steps / 16, 10'000'000)) {
   if (options.large_step) {
     const Real large = multiple_of_h(*options.large_step);
     const Real pressed = stability_limit(scene, options.damper, options.calibration) / 2;
@@ -56,6 +57,8 @@ Outcome CemEngine<Real, Observer>::run() {
     const std::int64_t most = rates_ ? std::min(choose_pace(), steps_left_) : steps_left_;
     take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), most));
     look_at_last_step();
+    // Steps that each end in an event, or in none that can be told, cost many times what the others do.
+    if (looks_left_-- <= 0 && !end_ && step_ > 0) finish(StopReason::step_budget, pace_.h);
   }
   return *end_;
 }

@@ -11,11 +11,10 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 
-#include "impact_damper/files/errors.hpp"
+#include "impact_damper/motion/effort.hpp"
 #include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
@@ -93,25 +92,17 @@ struct Root {
   std::size_t which;  // of the functions that were watched
 };
 
-// Steps that searches in this thread may still take, all together: where a motion is so stiff, or so long,
-// that no bound holds for more than a moment, a search would go on for years. simulate.hpp sets it for each
-// run.
-inline thread_local constinit std::int64_t search_steps_left = std::numeric_limits<std::int64_t>::max();
-
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
 // outlook(t), a std::array<Outlook<Real>, N>, says where each function stands and what bounds it for a time
 // `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
-// A function that is not positive but rising is one that has just been left. Throws NumericalError when there
-// are no search_steps_left.
+// A function that is not positive but rising is one that has just been left. Every step is an
+// effort (effort.hpp).
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
                                      const Real& resolution) {
   Real time = from;
   while (time < horizon) {
-    if (search_steps_left-- <= 0) {
-      throw NumericalError(
-          "the search for the next event takes too many steps: the motion is too stiff for its length");
-    }
+    spend_effort();
     const auto functions = outlook(time);
     const Real rest_of_horizon = horizon - time;
     const Real most = rest_of_horizon < span ? rest_of_horizon : span;
