@@ -109,7 +109,7 @@ struct Outcome {
 // When a scene ends that nothing else ends before: by until_time or, if earlier, by Budget::max_time.
 Outcome horizon_of(const Scene& scene, const Budget& budget);
 // The budget with max_time filled in if absent.
-Budget resolved(const Scene& scene, Budget budget);
+Budget budget_for(const Scene& scene, Budget budget);
 
 struct Run {
   StopReason stop_reason = StopReason::time;

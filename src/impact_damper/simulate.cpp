@@ -14,8 +14,8 @@
 namespace impact_damper {
 namespace {
 
-// A second or two. The paper's decays take a few thousand, as most events are found without a search.
-constexpr std::int64_t most_effort = 3'000'000;
+// A second or so. The paper's decays take a few thousand, as most events are found without a search.
+constexpr std::int64_t most_effort = 1'000'000;
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
   return run_exact<double>(scene, options, recorder);
@@ -119,7 +119,7 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   effort_left = most_effort;
   const Outcome outcome = std::visit(
       [&](auto& options) {
-        options.budget = resolved(scene, options.budget);
+        options.budget = budget_for(scene, options.budget);
         return run(scene, options, recorder);
       },
       result.engine);
