@@ -13,14 +13,14 @@ endif
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \
-  gnuplot-nox librsvg2-bin fonts-dejavu-core
+  gnuplot-nox librsvg2-bin fonts-dejavu-core python3
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bench build figures verify test bench bench-record stress stress-results check paper clean
+.PHONY: help deps deps-bench build figures verify test bench bench-record stress stress-results kills check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -107,6 +107,9 @@ stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random s
 
 stress-results: $(BUILD)/build.ninja  ## the same, and keep page and figures in tests/stress/
 	@$(alone) cmake --build $(BUILD) --target stress-results
+
+kills: $(BUILD)/build.ninja  ## kill run, series, drawing, verify and make figures 150 times (minutes)
+	@$(alone) cmake --build $(BUILD) --target kills
 
 check: build test  ## build, run every test, regenerate everything with all engines and verify it
 	@for engine in exact restitution cem; do \

@@ -1,5 +1,6 @@
 #include "impact_damper/simulate.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -14,8 +15,15 @@
 namespace impact_damper {
 namespace {
 
-// A second or so. The paper's decays take a few thousand, as most events are found without a search.
-constexpr std::int64_t most_effort = 1'000'000;
+// A second or so by the default budget, in proportion where more is admitted. The paper's decays take a few
+// thousand, as most events are found without a search.
+std::int64_t effort_for(const Scene& scene, const Budget& budget) {
+  const Budget usual = budget_for(scene, {});
+  const double times = std::max({1.0, double(budget.max_impacts) / double(usual.max_impacts),
+                                 double(budget.max_half_cycles) / double(usual.max_half_cycles),
+                                 *budget.max_time / *usual.max_time});
+  return std::int64_t(1e6 * std::min(times, 1e9));
+}
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
   return run_exact<double>(scene, options, recorder);
@@ -116,10 +124,10 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   result.scene = scene;
   result.engine = engine;
   Recorder recorder(record);
-  effort_left = most_effort;
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
+        effort_left = effort_for(scene, options.budget);
         return run(scene, options, recorder);
       },
       result.engine);
