@@ -22,7 +22,7 @@ std::int64_t effort_for(const Scene& scene, const Budget& budget) {
   const double times = std::max({1.0, double(budget.max_impacts) / double(usual.max_impacts),
                                  double(budget.max_half_cycles) / double(usual.max_half_cycles),
                                  *budget.max_time / *usual.max_time});
-  return std::int64_t(1e6 * std::min(times, 1e9));
+  return std::int64_t(2e6 * std::min(times, 1e9));
 }
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
