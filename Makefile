@@ -108,7 +108,7 @@ stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random s
 stress-results: $(BUILD)/build.ninja  ## the same, and keep page and figures in tests/stress/
 	@$(alone) cmake --build $(BUILD) --target stress-results
 
-kills: $(BUILD)/build.ninja  ## kill run, series, drawing, verify and make figures 150 times (minutes)
+kills: $(BUILD)/build.ninja  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) cmake --build $(BUILD) --target kills
 
 check: build test  ## build, run every test, regenerate everything with all engines and verify it

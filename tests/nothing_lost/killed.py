@@ -56,7 +56,7 @@ class Victim:
 def wait_for_moment(victim, random_moments):
     """Whether the victim still lived then."""
     if random_moments.random() < 0.5:
-        time.sleep(random_moments.uniform(0, 1.1 * victim.duration))
+        time.sleep(random_moments.uniform(0, victim.duration))
         return victim.process.poll() is None
     wait = random_moments.choice([0, 0, 0, random_moments.uniform(0, 0.003), random_moments.uniform(0, 0.03)])
     nth = random_moments.randint(1, len(victim.files))
@@ -102,7 +102,7 @@ def kill_make(tree, wanted, random_moments, check, tally, duration):
         (tree / "build" / "build.ninja").unlink(missing_ok=True)
     make = subprocess.Popen(["make", "figures"], cwd=tree, env=scratch.ENVIRONMENT, stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL, start_new_session=True)
-    time.sleep(random_moments.uniform(0, duration))
+    time.sleep(random_moments.uniform(0, 0.8 * gone * duration))
     tally["alive"] += make.poll() is None
     if whom == "one":
         below = scratch.descendants(make.pid)
@@ -165,29 +165,26 @@ def main():
     ]
     for each in victims:
         each.measure()
-    shares = {each.name: options.kills // 5 for each in victims}
+    # A kill counts if it met a living process.
+    shares = {each.name: options.kills * 9 // 40 for each in victims}
     shares["make figures"] = options.kills - sum(shares.values())
-    rows = []
     for each in victims:
         tally = {"alive": 0, "unfinished": 0}
-        for _ in range(shares[each.name]):
+        while tally["alive"] < shares[each.name]:
             kill_once(each, random_moments, check, tally)
-        rows.append((each.name, shares[each.name], tally))
-        print(f"{each.name}: {shares[each.name]} kills, {tally['alive']} of a living process, "
-              f"{tally['unfinished']} left something unfinished", flush=True)
+        print(f"{each.name}: {tally['alive']} kills, {tally['unfinished']} left something unfinished", flush=True)
 
     tally = {"alive": 0, "unfinished": 0}
-    for i in range(shares["make figures"]):
+    while tally["alive"] < shares["make figures"]:
         kill_make(tree, wanted, random_moments, check, tally, duration)
         # Mostly undisturbed to the end; else the next is killed going on from here.
-        if random_moments.random() < 0.7 or i == shares["make figures"] - 1:
+        if random_moments.random() < 0.7 or tally["alive"] == shares["make figures"]:
             again = scratch.make(tree, "figures")
             check(again.returncode == 0, f"make figures, again: {again.stdout}{again.stderr}")
             check(scratch.made_in(tree) == wanted, "make figures, again: other files or bytes than undisturbed")
             left = scratch.unfinished_in(tree)
             check(not left, f"make figures, again: unfinished files remain: {left}")
-    print(f"make figures: {shares['make figures']} kills, {tally['alive']} of a living process, "
-          f"{tally['unfinished']} left something unfinished")
+    print(f"make figures: {tally['alive']} kills, {tally['unfinished']} left something unfinished")
     check.end(f"{options.kills} kills, {check.count} checks")
 
 

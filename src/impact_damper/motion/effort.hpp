@@ -10,7 +10,7 @@
 namespace impact_damper {
 
 // Steps of searches (first_root.hpp) and panels of quadratures (energy.hpp) that this thread may still take,
-// at about a microsecond each; simulate() sets them for each run.
+// at about a microsecond each; simulate() sets them for each run, in proportion to its budget.
 inline thread_local constinit std::int64_t effort_left = std::numeric_limits<std::int64_t>::max();
 
 // Throws NumericalError when none is left.
