@@ -13,7 +13,7 @@ endif
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
-  gnuplot-nox librsvg2-bin fonts-dejavu-core
+  gnuplot-nox librsvg2-bin fonts-dejavu-core python3
 # What the tests need beside these.
 CHECK_PACKAGES := git python3 clang llvm lld locales
 # What the bench's references and peers are made of.
@@ -23,7 +23,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  same-bits reference clean
+  kills same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -64,39 +64,58 @@ deps-bench:  ## the same for the bench: its peers and its higher precision
 	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
 	@rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
 
+# What comes first in a recipe that CMake or ninja works for: one at a time in this folder, also where a killed
+# one's children still work. The lock goes with the last process that inherits descriptor 9.
+define alone
+exec 9<.; \
+if command -v flock >/dev/null && ! flock -n 9; then \
+  echo "make $@: waiting for another make in this folder to end" >&2; \
+  flock 9; \
+fi;
+endef
+
 # Made by a recipe, not while the Makefile is read: `make deps figures` has no CMake before its first half.
 $(BUILD)/build.ninja:
-	@cmake --preset release
+	@$(alone) [ -f $@ ] || cmake --preset release
 
 build: $(BUILD)/build.ninja  ## compile the program and its tests
-	@cmake --build $(BUILD)
+	@$(alone) cmake --build $(BUILD)
 
 figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE=exact|restitution|cem)
-	@touch $(BUILD)/figures.begin
-	@cmake --build $(BUILD) --target figures-$(ENGINE) $(if $(wildcard $(BUILD)/figures-$(ENGINE).stamp),-- --quiet)
-	@if [ $(BUILD)/figures-$(ENGINE).stamp -nt $(BUILD)/figures.begin ]; then \
+	@$(alone) \
+	trap 'exec 9<&-; if command -v flock >/dev/null; then flock . true; fi; \
+	  left=$$(cmake --build $(BUILD) --target figures-$(ENGINE) -- -n | grep -c "^\["); \
+	  echo "make $@: interrupted, at most $$left steps are left: the same command goes on from here" >&2; \
+	  exit 130' INT; \
+	touch $(BUILD)/figures.begin; \
+	cmake --build $(BUILD) --target figures-$(ENGINE) \
+	  $(if $(wildcard $(BUILD)/figures-$(ENGINE).stamp),-- --quiet) || exit; \
+	if [ $(BUILD)/figures-$(ENGINE).stamp -nt $(BUILD)/figures.begin ]; then \
 	  echo "Figures drawn: $(FIGURES)"; else echo "Figures are up to date: $(FIGURES)"; fi
 
 verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by claim (ENGINE= as for figures)
-	@cmake --build $(BUILD) --target runs-$(ENGINE) -- --quiet
-	@$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
+	@$(alone) cmake --build $(BUILD) --target runs-$(ENGINE) -- --quiet || exit; \
+	$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
-	@cmake --build $(BUILD) --target bench
+	@$(alone) cmake --build $(BUILD) --target bench
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
 	@mkdir -p bench/results
 	@cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
 stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random scenes, aimed ones (minutes)
-	@cmake --build $(BUILD) --target stress
+	@$(alone) cmake --build $(BUILD) --target stress
 
 stress-results: $(BUILD)/build.ninja  ## the same, and keep page and figures in tests/stress/
-	@cmake --build $(BUILD) --target stress-results
+	@$(alone) cmake --build $(BUILD) --target stress-results
+
+kills: $(BUILD)/build.ninja  ## kill run, series, drawing, verify and make figures 110 times (minutes)
+	@$(alone) cmake --build $(BUILD) --target kills
 
 check: build test  ## build, run every test, regenerate everything with all engines and verify it
 	@for engine in exact restitution cem; do \
@@ -110,4 +129,4 @@ reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and
 	@paper/renew $(BUILD)
 
 clean:  ## remove all that was built
-	@rm -rf $(BUILD)
+	@$(alone) rm -rf $(BUILD)

@@ -392,3 +392,47 @@ TEST_CASE("what is recorded never changes the motion, to the last bit") {
     CHECK(bare.end_time == full.end_time);
   }
 }
+
+TEST_CASE("the budget's time ends every scene, sooner where a forcing is fast, unless it is given") {
+  const Run late = simulate({.x0 = 0.01, .y0 = 0.5, .until_time = 1e12}, Exact{}, {.half_cycles = false});
+  CHECK(late.stop_reason == StopReason::time_budget);
+  CHECK(late.end_time == 500'000);
+  CHECK(std::get<Exact>(late.engine).budget.max_time == 500'000);
+  Scene fast{.x0 = 0, .y0 = 0.5, .force_amplitude = 1e-3, .force_frequency = 50, .until_time = 1e12};
+  CHECK(simulate(fast, Exact{}, {.half_cycles = false}).end_time == 10'000);
+  fast.until_time = 10'000;
+  CHECK(simulate(fast, Exact{}, {.half_cycles = false}).stop_reason == StopReason::time);
+  fast.until_time = 1e12;
+  CHECK(simulate(fast, Exact{.budget = {.max_time = 20}}, {}).end_time == 20);
+}
+
+TEST_CASE("what could not be kept in memory is refused before it is begun") {
+  const Scene scene{.until_time = 1};
+  const auto message = [&](const Budget& budget, const Record& record) -> std::string {
+    try {
+      simulate(scene, Exact{.budget = budget}, record);
+    } catch (const std::invalid_argument& refused) {
+      return refused.what();
+    }
+    return {};
+  };
+  const Record nothing{.half_cycles = false};
+  CHECK(message({.max_impacts = most_rows + 1, .max_half_cycles = most_rows + 1}, nothing).empty());
+  CHECK(message({.max_impacts = most_rows + 1}, {.impacts = true}) ==
+        "max_impacts: must be <= 10000000 where impacts, contacts or energy are recorded, got 10000001");
+  CHECK(message({.max_impacts = most_rows}, {.impacts = true}).empty());
+  CHECK(message({.max_half_cycles = most_rows + 1}, {}) ==
+        "max_half_cycles: must be <= 10000000 where half cycles are recorded, got 10000001");
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  CHECK(message({}, {.history = {{0, 0.5, most_samples}}}).empty());
+  CHECK(message({}, {.history = {{0, 0.5, most_samples - 1}, {0.5, 1, 2}}}) ==
+        "history: must ask for at most 1000000 samples in all");
+  CHECK(message({}, {.history_below = {{1, 1, most}, {0.5, 1, most}}}) ==
+        "history_below: must ask for at most 1000000 samples in all");
+}
+
+TEST_CASE("motions too stiff for their length end in an error, and the next run has its whole effort again") {
+  const Scene stiff{.damping_ratio = 1e6, .force_amplitude = 10, .until_time = 1e12};
+  CHECK_THROWS_WITH_AS(simulate(stiff, Exact{}, {}), doctest::Contains("too stiff"), NumericalError);
+  CHECK(simulate({.until_time = 50}, Exact{}, {}).stop_reason == StopReason::time);
+}

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <string>
+#include <vector>
 
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/json_reader.hpp"
@@ -87,4 +88,46 @@ TEST_CASE("a disk that fills up while writing leaves the old file and no tempora
   setrlimit(RLIMIT_FSIZE, &limit);
   CHECK(read_text(file) == "old");
   CHECK(folder.files() == 1);
+}
+
+TEST_CASE(
+    "what killed processes left of a file goes when it is written again, what others are writing stays") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt";
+  // Process numbers end well below this one.
+  const fs::path abandoned = folder.path / ".a.txt.2000000000.tmp";
+  const fs::path alive = folder.path / (".a.txt." + std::to_string(::getppid()) + ".tmp");
+  const fs::path anothers = folder.path / ".b.txt.2000000000.tmp", unlike = folder.path / ".a.txt.mine.tmp";
+  const std::vector<fs::path> all{abandoned, alive, anothers, unlike};
+  for (const bool anew : {true, false}) {
+    for (const fs::path& each : all) write_file(each, "half");
+    CHECK(write_file(file, "whole") == anew);
+    CHECK(!fs::exists(abandoned));
+    CHECK(fs::exists(alive));
+    CHECK(fs::exists(anothers));
+    CHECK(fs::exists(unlike));
+  }
+}
+
+TEST_CASE("a temporary file that a process of the same number left is no obstacle, nor where it leads") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt", elsewhere = folder.path / "elsewhere.txt";
+  write_file(elsewhere, "kept");
+  fs::create_symlink(elsewhere, folder.path / (".a.txt." + std::to_string(::getpid()) + ".tmp"));
+  CHECK(write_file(file, "whole"));
+  CHECK(read_text(file) == "whole");
+  CHECK(!fs::is_symlink(file));
+  CHECK(read_text(elsewhere) == "kept");
+  CHECK(folder.files() == 2);
+}
+
+TEST_CASE("files are compared to their last byte, however long") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.txt";
+  std::string text(200'000, 'x');
+  write_file(file, text);
+  CHECK(!write_file(file, text));
+  text.back() = 'y';
+  CHECK(write_file(file, text));
+  CHECK(read_text(file) == text);
 }

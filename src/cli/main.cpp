@@ -14,7 +14,9 @@
 #include "commands.hpp"
 #include "impact_damper/arithmetic.hpp"
 #include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/provenance.hpp"
+#include "interruption.hpp"
 
 namespace {
 
@@ -53,6 +55,7 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
 }  // namespace
 
 int main(int argc, char** argv) {
+  cli::end_cleanly();
   CLI::App program{
       "The impact damped simple harmonic oscillator: simulate it, and hold the results against the paper.",
       "impact-damper"};
@@ -64,7 +67,7 @@ int main(int argc, char** argv) {
       "impact-damper SUBCOMMAND --help says more about each.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not admitted, 3 an input file's content "
       "is\n"
-      "not admitted, 4 numerical failure, 5 a file cannot be read or written.");
+      "not admitted, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
 
   const std::array commands{
       cli::run_command(program),    cli::scenes_command(program),  cli::verify_command(program),
@@ -81,7 +84,14 @@ int main(int argc, char** argv) {
   };
 
   try {
-    program.parse(argc, argv);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::Success& asked_for_help_or_version) {
+      std::ostringstream text;
+      const int code = program.exit(asked_for_help_or_version, text);
+      write_standard_output(text.str());
+      return code;
+    }
     const std::string swallowed = cli::swallowed_options(command_of());
     if (!swallowed.empty()) throw cli::UsageError(swallowed);
     for (const cli::Command& command : commands) {
@@ -90,8 +100,6 @@ int main(int argc, char** argv) {
       return command.act();
     }
     throw cli::UsageError("a subcommand must be given, see impact-damper --help");
-  } catch (const CLI::Success& asked_for_help_or_version) {
-    return program.exit(asked_for_help_or_version);
   } catch (const CLI::ExtrasError&) {
     const std::string swallowed = cli::swallowed_options(command_of());
     return fail(usage, head(), swallowed.empty() ? unknown_arguments(program, command_of()) : swallowed);

@@ -12,11 +12,10 @@
 #include "impact_damper/files/run_file.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "interruption.hpp"
 
 namespace impact_damper::cli {
 namespace {
-
-constexpr std::int64_t most_samples = 100'000'000;
 
 std::string option_of(std::string_view field) {
   std::string name(field);
@@ -224,7 +223,10 @@ int run(const CLI::App& app) {
   const std::optional<std::string> file = arguments.file("--output");
   arguments.refuse_overwriting("--output", file, {arguments.text("--scene").value_or("")});
   arguments.finish();
-  if (file) require_writable(*file);
+  if (file) {
+    require_writable(*file);
+    if_interrupted_say(left_as_it_was(*file));
+  }
   const Run result = simulate_as_asked(scene, engine, record);
   warn_of_missing_samples(result, record);
   const std::string text = run_text(result);
@@ -284,11 +286,13 @@ void add_engine_options(CLI::App& app) {
       "restitution: bounce-down jumps to its end once the relative\n"
       "acceleration changes by less than this fraction in the rest of\n"
       "it; a number > 0 and <= 0.001, default 1e-8");
-  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 10000000");
-  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 10000000");
+  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 200000");
+  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 200000");
   add("--max-time", "T",
-      "stop at this time if there is no --until-time;\na number > 0 and <= 1e12, default 1e7");
-  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 1000000000");
+      "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
+      "than "
+      "1 divided by its\nfrequency");
+  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 500000000");
 }
 
 void add_output_options(CLI::App& app) {

@@ -9,6 +9,7 @@
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/run_file.hpp"
 #include "impact_damper/paper/catalogue.hpp"
+#include "interruption.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -79,14 +80,26 @@ int make_tables(Arguments arguments) {
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
 
+  const auto place_of = [&](const Figure& figure) {
+    return into_folder ? fs::path(*output) / (file_stem(figure) + ".dat") : fs::path(*output);
+  };
+  if (output) {
+    for (const Figure* figure : figures) require_writable(place_of(*figure));
+  }
+
   FigureRuns runs;
+  std::size_t made = 0;
   for (const Figure* figure : figures) {
+    if (output) {
+      if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
+                         " tables are left; " + left_as_it_was(place_of(*figure)));
+    }
     load(*figure, runs_folder, runs);
     const std::string text = to_text(figure_table(*figure, runs, threads));
     if (!output) {
       write_standard_output(text);
     } else {
-      write_file(into_folder ? fs::path(*output) / (file_stem(*figure) + ".dat") : fs::path(*output), text);
+      write_file(place_of(*figure), text);
     }
   }
   return 0;

@@ -15,6 +15,7 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "interruption.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -164,7 +165,7 @@ void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
 
 int verify(Arguments arguments) {
   EnsembleOptions ensemble;
-  ensemble.members = arguments.whole_number("--members", within(1, 10000)).value_or(ensemble.members);
+  ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
   ensemble.threads = threads_of(arguments);
   const fs::path claims_file = arguments.file("--claims").value_or("data/claims.json"),
                  runs_folder = arguments.file("--runs").value_or("build/runs/exact");
@@ -191,6 +192,8 @@ int verify(Arguments arguments) {
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
   for (const Claim& claim : claims) {
+    if_interrupted_say(std::to_string(claims.size() - all.size()) + " of " + std::to_string(claims.size()) +
+                       " claims are left" + (verdicts_file ? "; " + left_as_it_was(*verdicts_file) : ""));
     const auto now = std::chrono::steady_clock::now();
     if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
       std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
@@ -206,10 +209,10 @@ int verify(Arguments arguments) {
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
-  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
-                        summary_text(all));
   if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
   if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
+  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
+                        summary_text(all));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 
@@ -222,7 +225,8 @@ Command verify_command(CLI::App& program) {
   app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
       ->type_name("FOLDER");
   app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
-  app->add_option("--members", "releases in each ensemble, the run file's own among them; default 16")
+  app->add_option("--members",
+                  "releases in each ensemble, the run file's own among them;\n1 to 100, default 16")
       ->type_name("N");
   app->add_option("-o,--output", "write the verdicts as JSON")->type_name("FILE");
   app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");

@@ -21,11 +21,13 @@ enum class Damper {
   lagged,   // (y_n - y_{n-1}) / h: one step behind, explicit
 };
 
-// Where a run ends that nothing else ends. A budget that is used up is a stop reason, never an error.
+// Where a run ends that nothing else ends. A budget that is used up is a stop reason, never an error. The
+// defaults let no scene run for more than a second or two, nor its record grow beyond 200 MB; a decay of the
+// paper's needs a few thousand impacts and a time of 1200.
 struct Budget {
-  std::int64_t max_impacts = 10'000'000;
-  std::int64_t max_half_cycles = 10'000'000;
-  double max_time = 1e7;  // only for scenes without until_time
+  std::int64_t max_impacts = 200'000;      // >= 0; at most most_rows where they are recorded
+  std::int64_t max_half_cycles = 200'000;  // >= 1; the same
+  std::optional<double> max_time;  // > 0, <= 1e12; absent: 500 000, by 1/omega_f where the forcing is faster
 
   bool operator==(const Budget&) const = default;
 };
@@ -60,7 +62,7 @@ struct Cem {
   std::optional<double> large_step;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
-  std::int64_t max_steps = 1'000'000'000;  // > 0; a budget like the others, for steps too small for the scene
+  std::int64_t max_steps = 500'000'000;  // > 0; a budget like the others, for steps too small for the scene
   Budget budget;
 
   bool operator==(const Cem&) const = default;

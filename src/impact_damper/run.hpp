@@ -78,6 +78,9 @@ struct EnergyLedger {
                                     // initial energy plus the integral of the forcing's |power|
 };
 
+// Rows that a section of a run may be asked to have at most; samples that a history may be.
+inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 1'000'000;
+
 // What a run is asked to record. Nothing else is computed.
 struct HistoryWindow {  // `count` equally spaced samples, both ends included
   double begin = 0, end = 0;
@@ -93,8 +96,8 @@ struct Record {
   bool contacts = false;
   bool energy = false;
   // History by times or by amplitudes, not both in one run.
-  std::vector<HistoryWindow> history;          // ascending, not overlapping
-  std::vector<AmplitudeWindow> history_below;  // descending amplitudes
+  std::vector<HistoryWindow> history;          // ascending, not overlapping; at most most_samples
+  std::vector<AmplitudeWindow> history_below;  // descending amplitudes; the same
 };
 
 // Why and when a scene ended: what an engine returns; all else it tells its observer (recorder.hpp).
@@ -102,6 +105,11 @@ struct Outcome {
   StopReason stop_reason = StopReason::time;
   double end_time = 0;
 };
+
+// When a scene ends that nothing else ends before: by until_time or, if earlier, by Budget::max_time.
+Outcome horizon_of(const Scene& scene, const Budget& budget);
+// The budget with max_time filled in if absent.
+Budget budget_for(const Scene& scene, Budget budget);
 
 struct Run {
   StopReason stop_reason = StopReason::time;

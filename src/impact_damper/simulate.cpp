@@ -1,5 +1,6 @@
 #include "impact_damper/simulate.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -9,9 +10,20 @@
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/files/number_text.hpp"
+#include "impact_damper/motion/effort.hpp"
 
 namespace impact_damper {
 namespace {
+
+// A second or so by the default budget, in proportion where more is admitted. The paper's decays take a few
+// thousand, as most events are found without a search.
+std::int64_t effort_for(const Scene& scene, const Budget& budget) {
+  const Budget usual = budget_for(scene, {});
+  const double times = std::max({1.0, double(budget.max_impacts) / double(usual.max_impacts),
+                                 double(budget.max_half_cycles) / double(usual.max_half_cycles),
+                                 *budget.max_time / *usual.max_time});
+  return std::int64_t(2e6 * std::min(times, 1e9));
+}
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
   return run_exact<double>(scene, options, recorder);
@@ -39,7 +51,9 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
   if (budget.max_impacts < 0) collect(all, "max_impacts", "must be >= 0");
   if (budget.max_half_cycles < 1) collect(all, "max_half_cycles", "must be >= 1");
-  if (!(budget.max_time > 0 && budget.max_time <= 1e12)) collect(all, "max_time", "must be > 0 and <= 1e12");
+  if (budget.max_time && !(*budget.max_time > 0 && *budget.max_time <= 1e12)) {
+    collect(all, "max_time", "must be > 0 and <= 1e12");
+  }
   if (const auto* options = std::get_if<Restitution>(&engine)) {
     if (!(options->accumulation_tolerance > 0 && options->accumulation_tolerance <= 1e-3)) {
       collect(all, "accumulation_tolerance", "must be > 0 and <= 0.001");
@@ -49,6 +63,30 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
               "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid, got " +
                   number_text(scene.y0));
     }
+  }
+
+  // What would not fit into memory is not begun.
+  const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what) {
+    if (rows <= most_rows) return;
+    collect(all, field,
+            "must be <= " + std::to_string(most_rows) + " where " + what + " recorded, got " +
+                std::to_string(rows));
+  };
+  if (record.impacts || record.contacts || record.energy) {
+    bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
+  }
+  if (record.half_cycles) bounded("max_half_cycles", budget.max_half_cycles, "half cycles are");
+  std::int64_t samples = 0;
+  const auto add = [&](const auto& windows) {
+    for (const auto& window : windows) {
+      samples = window.count > most_samples - samples ? most_samples + 1 : samples + window.count;
+    }
+  };
+  add(record.history);
+  add(record.history_below);
+  if (samples > most_samples) {
+    collect(all, record.history.empty() ? "history_below" : "history",
+            "must ask for at most " + std::to_string(most_samples) + " samples in all");
   }
 
   if (!record.history.empty() && !record.history_below.empty()) {
@@ -86,8 +124,13 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   result.scene = scene;
   result.engine = engine;
   Recorder recorder(record);
-  const Outcome outcome =
-      std::visit([&](auto& options) { return run(scene, options, recorder); }, result.engine);
+  const Outcome outcome = std::visit(
+      [&](auto& options) {
+        options.budget = budget_for(scene, options.budget);
+        effort_left = effort_for(scene, options.budget);
+        return run(scene, options, recorder);
+      },
+      result.engine);
   result.stop_reason = outcome.stop_reason;
   result.end_time = outcome.end_time;
   recorder.finish(result);

@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -49,7 +50,12 @@ void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
   };
   {
     std::vector<std::jthread> helpers;
-    for (std::int64_t n = std::min(number_of(threads), count); n > 1; --n) helpers.emplace_back(take_indices);
+    try {
+      for (std::int64_t n = std::min(number_of(threads), count); n > 1; --n)
+        helpers.emplace_back(take_indices);
+    } catch (const std::system_error&) {
+      // No more threads are to be had: those that there are do the work.
+    }
     take_indices();
   }
   if (failure) std::rethrow_exception(failure);

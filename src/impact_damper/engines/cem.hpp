@@ -96,7 +96,7 @@ class CemEngine {
   void cross_zero(const Real& at);
   void consider_peak(const Real& from, const Real& to);
   void give_samples(const Real& until);
-  void finish(StopReason reason, const Real& at);
+  void finish(StopReason reason, const Real& at, bool by_horizon = false);
 
   // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
   Real last_step_begin() const { return origin_ + Real(step_ - 1) * pace_.h; }
@@ -166,8 +166,8 @@ class CemEngine {
 
   const Budget budget_;
   const std::optional<double> until_amplitude_;
-  const Real end_time_;
-  const StopReason end_reason_;
+  const Outcome horizon_;  // if nothing else ends the scene before
+  const Real end_time_;    // its
   const Damper damper_;
   const bool locate_;
   Observer& observer_;
@@ -182,11 +182,12 @@ class CemEngine {
 
   std::optional<Rates> rates_;  // small_ beside them
 
-  Pace<Real> pace_;           // of the steps since origin_
-  Moment before_{}, now_{};   // the last step went from the one to the other
-  Real origin_ = 0;           // time of step 0
-  std::int64_t step_ = 0;     // number of now_
-  std::int64_t steps_left_;   // until max_steps are done
+  Pace<Real> pace_;          // of the steps since origin_
+  Moment before_{}, now_{};  // the last step went from the one to the other
+  Real origin_ = 0;          // time of step 0
+  std::int64_t step_ = 0;    // number of now_
+  std::int64_t steps_left_;  // until max_steps are done
+  std::int64_t looks_left_;
   std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;

@@ -9,8 +9,8 @@ template <class Real, class Observer>
 CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Observer& observer)
     : budget_(options.budget),
       until_amplitude_(scene.until_amplitude),
-      end_time_(scene.until_time.value_or(options.budget.max_time)),
-      end_reason_(scene.until_time ? StopReason::time : StopReason::time_budget),
+      horizon_(horizon_of(scene, options.budget)),
+      end_time_(horizon_.end_time),
       damper_(options.damper),
       locate_(options.locate),
       observer_(observer),
@@ -24,7 +24,8 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       peaks_(observer.wants_half_cycles() || scene.until_amplitude),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
       pace_(small_),
-      steps_left_(options.max_steps) {
+      steps_left_(options.max_steps),
+      looks_left_(std::max<std::int64_t>(options.max_steps / 16, 10'000'000)) {
   if (options.large_step) {
     const Real large = multiple_of_h(*options.large_step);
     const Real pressed = stability_limit(scene, options.damper, options.calibration) / 2;
@@ -56,6 +57,8 @@ Outcome CemEngine<Real, Observer>::run() {
     const std::int64_t most = rates_ ? std::min(choose_pace(), steps_left_) : steps_left_;
     take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), most));
     look_at_last_step();
+    // Steps that each end in an event, or in none that can be told, cost many times what the others do.
+    if (looks_left_-- <= 0 && !end_ && step_ > 0) finish(StopReason::step_budget, pace_.h);
   }
   return *end_;
 }
@@ -194,7 +197,7 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   }
   if (zero && !zero_first && !end_) cross_zero(*zero);
   if (end_ || restart) return;
-  if (last) return finish(end_reason_, span);
+  if (last) return finish(horizon_.stop_reason, span, true);
   if (steps_left_ == 0) return finish(StopReason::step_budget, span);
   give_samples(begin + span);
 }
@@ -224,7 +227,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
   const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
   const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
-  if (!wall_ && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
+  if (met && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
   if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
 
   if (locate_) {
@@ -305,8 +308,8 @@ void CemEngine<Real, Observer>::give_samples(const Real& until) {
 }
 
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at) {
-  const Real time = reason == end_reason_ ? end_time_ : last_step_begin() + at;
+void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at, bool by_horizon) {
+  const Real time = by_horizon ? end_time_ : last_step_begin() + at;
   give_samples(time);
   if (ledger_) {
     close_powers(at);

@@ -34,18 +34,15 @@ class Timeline {
         system_(system),
         budget_(budget),
         observer_(observer),
-        end_(scene.until_time ? *scene.until_time : budget.max_time),
+        horizon_(horizon_of(scene, budget)),
         span_(bounded_span(system.forcing)),
         tracks_half_cycles_(observer.wants_half_cycles() || scene.until_amplitude.has_value()) {}
 
   const Real& now() const { return clock_.now(); }
-  Real remaining() const { return Real(end_) - clock_.now(); }
+  Real remaining() const { return Real(horizon_.end_time) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
   // When the scene ended: on the dot where a time ended it.
-  double end_time() const {
-    const bool by_time = stopped_ == StopReason::time || stopped_ == StopReason::time_budget;
-    return by_time ? end_ : double(clock_.now());
-  }
+  double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
   // For how long a bound on a motion may be asked for.
   const Real& span() const { return span_; }
 
@@ -61,7 +58,8 @@ class Timeline {
                                     const Real& wall_damping) {
     if (!(duration < remaining())) {
       duration = remaining();
-      stopped_ = scene_.until_time ? StopReason::time : StopReason::time_budget;
+      stopped_ = horizon_.stop_reason;
+      timed_out_ = true;
       end = motion.at(duration);
     }
     if (tracks_half_cycles_) {
@@ -155,6 +153,7 @@ class Timeline {
         const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
         if (low || rows_ >= budget_.max_half_cycles) {
           stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
+          timed_out_ = false;
           return *crossing;
         }
         last_best_ = row_best_;
@@ -193,10 +192,11 @@ class Timeline {
   const Budget& budget_;
   Observer& observer_;
   Clock<Real> clock_;
-  double end_;
+  Outcome horizon_;  // if nothing else ends the scene before
   Real span_;
   bool tracks_half_cycles_;
   std::optional<StopReason> stopped_;
+  bool timed_out_ = false;  // by the horizon
   Real passed_{0};
   std::int64_t impacts_ = 0, rows_ = 0;
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and

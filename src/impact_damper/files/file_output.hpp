@@ -10,12 +10,18 @@ namespace impact_damper {
 // A file that already holds these bytes is left alone, time stamp included, so that whatever is made
 // from it stays up to date; returns whether it was written. Symbolic links are followed; a device or
 // pipe (/dev/null) is written to directly. Throws IoError, leaving nothing behind, if the folder does
-// not exist, `file` is a directory, or the place cannot be written.
+// not exist, `file` is a directory, or the place cannot be written. What processes that were killed on the
+// way left beside `file` is removed. However the process ends, `file` is whole; when the machine itself fails
+// its file system has the last word. Not to be called by two threads at once.
 bool write_file(const std::filesystem::path& file, std::string_view text);
 
 // Throws the IoError that write_file would if it is plain beforehand: `file` is a directory, or its folder
 // is missing or not writable. Before a long computation.
 void require_writable(const std::filesystem::path& file);
+
+// For a signal handler that ends the process: removes the temporary file of the write_file that was under
+// way.
+void remove_unfinished_file() noexcept;
 
 // The same as write_file for standard output: a full disk behind it is an IoError too.
 void write_standard_output(std::string_view text);

@@ -54,6 +54,7 @@ Works<Real> integrated_works(const System<Real>& system, Rates&& rates, Panel&& 
   Real from{0};
   const Real least = duration / 65536;
   for (int panels = 1; from < duration; ++panels) {
+    spend_effort();
     Real to = from + panel(from);
     if (panels > 65536 && to < from + least) to = from + least;
     if (!(to < duration)) to = duration;

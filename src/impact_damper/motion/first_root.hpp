@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 
+#include "impact_damper/motion/effort.hpp"
 #include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
@@ -94,12 +95,14 @@ struct Root {
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
 // outlook(t), a std::array<Outlook<Real>, N>, says where each function stands and what bounds it for a time
 // `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
-// A function that is not positive but rising is one that has just been left.
+// A function that is not positive but rising is one that has just been left. Every step is an
+// effort (effort.hpp).
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
                                      const Real& resolution) {
   Real time = from;
   while (time < horizon) {
+    spend_effort();
     const auto functions = outlook(time);
     const Real rest_of_horizon = horizon - time;
     const Real most = rest_of_horizon < span ? rest_of_horizon : span;

@@ -1,0 +1,57 @@
+#include "interruption.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+
+#include "impact_damper/files/file_output.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+std::atomic<const char*> what_is_left = "impact-damper: interrupted: nothing is written\n";
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+// Calls only what a signal handler may. Not by the signal's own end, which shells report with the same
+// number: who waits for the program sees an exit code then, as documented.
+extern "C" void end(int signal) {
+  remove_unfinished_file();
+  const char* const text = what_is_left;
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) {
+    // Nobody listens.
+  }
+  ::_exit(128 + signal);
+}
+
+}  // namespace
+
+void end_cleanly() {
+  struct sigaction action {};
+  action.sa_handler = end;
+  sigfillset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    // Whoever starts the program in the background or by nohup has them ignored.
+    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
+      ::sigaction(signal, &action, nullptr);
+    }
+  }
+  std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void if_interrupted_say(const std::string& text) {
+  static std::deque<std::string> all;  // a signal may be reading the one before
+  what_is_left = all.emplace_back("impact-damper: interrupted: " + text + '\n').c_str();
+}
+
+std::string left_as_it_was(const std::string& file) {
+  std::error_code none;
+  return file + (std::filesystem::exists(file, none) ? " is as it was" : " is not written");
+}
+
+}  // namespace impact_damper::cli

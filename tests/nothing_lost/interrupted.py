@@ -1,0 +1,132 @@
+"""Ctrl-C: run, series, verify with threads, and `make figures`.
+
+Exit code 130, one line on stderr that says what is left, nothing partial and nothing unfinished; and what was
+interrupted goes on to the same bytes. Then two and three `make figures` at once in one tree.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import scratch
+
+
+def catches_interrupts(process):
+    """Whether the program has got so far as to say something when it is interrupted."""
+    try:
+        for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
+            if line.startswith("SigCgt:"):
+                return bool(int(line.split()[1], 16) & (1 << (signal.SIGINT - 1)))
+    except OSError:
+        pass
+    return False
+
+
+def interrupt(name, command, folder, files, code, wait, check):
+    """After a time `wait`, with the signal `code`. Returns whether it was met alive."""
+    before = {file: (folder / file).read_bytes() if (folder / file).exists() else None for file in files}
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                               env=scratch.ENVIRONMENT)
+    while process.poll() is None and not catches_interrupts(process):
+        pass
+    time.sleep(wait)
+    process.send_signal(code)
+    _, error = process.communicate()
+    check(not scratch.unfinished_in(folder), f"{name}: unfinished files remain: {scratch.unfinished_in(folder)}")
+    if process.returncode in (0, 1):  # done before
+        return False
+    lines = [line for line in error.splitlines() if not line.startswith("verify: ")]  # its progress
+    check(process.returncode == 128 + code, f"{name}: exit code {process.returncode}: {error}")
+    check(len(lines) == 1 and lines[0].startswith("impact-damper: interrupted: "), f"{name}: says {error!r}")
+    whole = {file for file in files if (folder / file).exists() and before[file] is None}
+    return not whole or name == "series"
+
+
+def programs(options, tree, folder, moments, check):
+    program = str(options.program.resolve())
+    runs, catalogue = str(tree / "build" / "runs" / "exact"), str(tree / "figures" / "catalogue.json")
+    claims = str(tree / "data" / "claims.json")
+    commands = {
+        "run": ([program, "run", "--engine", "cem", "--time-step", "1e-9", "--until-time", "10", "-o", "out.json"],
+                ["out.json"]),
+        "series": ([program, "series", "--catalogue", catalogue, "--runs", runs, "--threads", "4", "-o", "."], []),
+        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--members", "32", "--threads", "4", "-o",
+                    "verdicts.json"], ["verdicts.json"]),
+    }
+    for name, (command, files) in commands.items():
+        here = scratch.make_folder(folder / name)
+        met = 0
+        for code in [signal.SIGINT] * 6 + [signal.SIGTERM, signal.SIGHUP]:
+            longest = 0.02 if name == "series" else 0.25
+            met += interrupt(name, command, here, files, code, moments.uniform(0, longest), check)
+            check(all(not (here / file).exists() for file in files), f"{name}: a file was written all the same")
+            for file in files:
+                (here / file).unlink(missing_ok=True)
+        print(f"{name}: {met} of 8 interrupts met it alive")
+        check(met > 0, f"{name} was never met alive")
+
+
+def make_interrupted(tree, wanted, moments, check):
+    """The terminal's Ctrl-C reaches make, its shell, CMake and ninja, which ends what it began."""
+    for file in (tree / "build" / "figures").glob("*.*"):
+        file.unlink()
+    begun = moments.randint(0, 3)
+    make = subprocess.Popen(["make", "figures"], cwd=tree, env=scratch.ENVIRONMENT, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+    while make.poll() is None and len(list((tree / "build" / "figures").glob("*.svg"))) < begun:
+        time.sleep(0.001)
+    time.sleep(moments.uniform(0.05, 0.15))
+    os.killpg(make.pid, signal.SIGINT)
+    text, _ = make.communicate()
+    # Make ends itself by the signal, which a shell reports as 130.
+    check(make.returncode in (130, -signal.SIGINT), f"make figures: exit code {make.returncode}: {text}")
+    check("make figures: interrupted, at most " in text, f"make figures: says {text!r}")
+    for file, content in scratch.made_in(tree).items():
+        check(content == wanted[file], f"make figures: {file} is partial after an interrupt")
+    check(not scratch.unfinished_in(tree), f"make figures: unfinished: {scratch.unfinished_in(tree)}")
+    again = scratch.make(tree, "figures")
+    check(again.returncode == 0 and scratch.made_in(tree) == wanted, "make figures does not go on to the same bytes")
+
+
+def makes_at_once(folder, program, figures, wanted, count, check):
+    tree = scratch.make_tree(folder, program, figures)
+    makes = [subprocess.Popen(["make", "figures"], cwd=tree, env=scratch.ENVIRONMENT, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for _ in range(count)]
+    texts = [make.communicate()[0] for make in makes]
+    for make, text in zip(makes, texts):
+        check(make.returncode == 0, f"{count} makes at once: {text}")
+    waited = sum("waiting for another make in this folder to end" in text for text in texts)
+    check(waited >= count - 1, f"{count} makes at once: {waited} waited and said so")
+    check(scratch.made_in(tree) == wanted, f"{count} makes at once: other files or bytes")
+    check(not scratch.unfinished_in(tree), "makes at once: unfinished files remain")
+
+
+def main():
+    parser = scratch.arguments(__doc__)
+    parser.add_argument("--seed", type=int, default=None)
+    parser.add_argument("--figures", nargs="*", default=["5", "7", "13"], help="that the scratch tree draws")
+    options = parser.parse_args()
+    seed = options.seed if options.seed is not None else random.SystemRandom().randrange(2**32)
+    print(f"seed {seed}", flush=True)
+    moments = random.Random(seed)
+    folder = scratch.make_folder(options.folder)
+    check = scratch.Check()
+    tree = scratch.make_tree(folder / "tree", options.program, options.figures)
+    first = scratch.make(tree, "figures")
+    if first.returncode != 0:
+        sys.exit(first.stdout + first.stderr)
+    wanted = scratch.made_in(tree)
+    programs(options, tree, folder, moments, check)
+    for _ in range(3):
+        make_interrupted(tree, wanted, moments, check)
+    for count in (2, 3):
+        makes_at_once(folder / "crowded", options.program, options.figures, wanted, count, check)
+    check.end(f"interrupts and makes at once, {check.count} checks")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,146 @@
+"""What the tests of this folder share: a tree to work in, and processes to end from outside.
+
+A scratch tree is the project as far as `make figures` and `make verify` go: its Makefile, figures/, data/ and the
+program as it is built, but no sources. What is made there is made by the project's own rules.
+"""
+
+import argparse
+import ctypes
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+
+CMAKE_LISTS = """cmake_minimum_required(VERSION 3.25)
+project(scratch NONE)
+add_executable(impact-damper IMPORTED GLOBAL)
+set_target_properties(impact-damper PROPERTIES IMPORTED_LOCATION "${PROJECT_BINARY_DIR}/src/impact-damper")
+add_subdirectory(figures ${PROJECT_BINARY_DIR}/figure-rules)
+"""
+# A make above this one shall not tell those below what to do.
+ENVIRONMENT = {name: value for name, value in os.environ.items()
+               if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "CMAKE_BUILD_PARALLEL_LEVEL")}
+
+
+def arguments(description):
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--program", type=Path, required=True, help="impact-damper as it is built")
+    parser.add_argument("--folder", type=Path, required=True, help="to work in; it is made anew")
+    return parser
+
+
+def make_folder(folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    return folder.resolve()
+
+
+def make_tree(folder, program, figures=None):
+    """A scratch tree with the catalogue's figures of these numbers, or with all; nothing is made in it yet."""
+    make_folder(folder)
+    (folder / "CMakeLists.txt").write_text(CMAKE_LISTS)
+    for name in ("Makefile", "CMakePresets.json"):
+        shutil.copy(SOURCE / name, folder)
+    for name in ("figures", "data"):
+        shutil.copytree(SOURCE / name, folder / name)
+    if figures:
+        file = folder / "figures" / "catalogue.json"
+        catalogue = json.loads(file.read_text())
+        catalogue["figures"] = [each for each in catalogue["figures"] if each["figure"] in figures]
+        drawn = {curve["scene"] for each in catalogue["figures"] for curve in each.get("curves", [])}
+        catalogue["scenes"] = [each for each in catalogue["scenes"] if each["scene"] in drawn]
+        file.write_text(json.dumps(catalogue))
+    (folder / "build" / "src").mkdir(parents=True)
+    shutil.copy(program, folder / "build" / "src" / "impact-damper")
+    return folder
+
+
+def make(tree, *targets, **more):
+    return subprocess.run(["make", "--no-print-directory", *targets], cwd=tree, env=ENVIRONMENT, text=True,
+                          capture_output=True, **more)
+
+
+def made_in(tree):
+    """What stands under final names in a tree: runs, tables, figures, verdicts."""
+    files = {}
+    for pattern in ("runs/*/*.json", "series/*/*.dat", "figures/*.*", "verdicts-*.json"):
+        for file in (tree / "build").glob(pattern):
+            if not file.name.startswith("."):
+                files[str(file.relative_to(tree))] = file.read_bytes()
+    return files
+
+
+def unfinished_in(folder):
+    """Temporary files and folders of the program and of figures/draw."""
+    return sorted(os.path.join(place, name) for place, folders, files in os.walk(folder) for name in folders + files
+                  if name.startswith(".") and name.endswith((".tmp", ".draw")))
+
+
+def adopt_orphans():
+    """Children of killed children become ours, so that they can be found."""
+    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
+
+
+def descendants(process):
+    children = {}
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            text = status.read_text()
+        except OSError:
+            continue
+        fields = text[text.rindex(")") + 2:].split()
+        children.setdefault(int(fields[1]), []).append(int(text.split(" ", 1)[0]))
+    found, left = [], [process]
+    while left:
+        below = children.get(left.pop(), [])
+        found += below
+        left += below
+    return found
+
+
+def kill(processes):
+    for process in processes:
+        try:
+            os.kill(process, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
+def kill_all_below_me():
+    """Until none is left; a process may have begun another while it was looked for."""
+    while alive := descendants(os.getpid()):
+        kill(alive)
+        reap()
+
+
+def reap():
+    try:
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+    except ChildProcessError:
+        pass
+    time.sleep(0.001)
+
+
+class Check:
+    """Counts what was looked at, and ends the program with what was wrong."""
+
+    def __init__(self):
+        self.count, self.faults = 0, []
+
+    def __call__(self, condition, fault):
+        self.count += 1
+        if not condition:
+            self.faults.append(fault)
+            print("FAULT:", fault, file=sys.stderr)
+        return condition
+
+    def end(self, summary):
+        print(f"{summary}: {len(self.faults)} faults")
+        sys.exit(1 if self.faults else 0)
