@@ -10,17 +10,21 @@ FIGURES := $(BUILD)/figures$(if $(filter-out exact,$(ENGINE)),/$(ENGINE))
 ifeq ($(filter $(ENGINE),exact restitution cem),)
 $(error ENGINE must be exact, restitution or cem, got $(ENGINE))
 endif
+FUZZ_SECONDS ?= 60
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
+# What the tests need beside these.
+CHECK_PACKAGES := git python3 clang llvm lld locales
+CHECK_PACKAGES += libclang-rt-14-dev python3-jsonschema  # the fuzz targets, the schemas
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bench build figures verify test bench bench-record stress stress-results check paper clean
+.PHONY: help deps deps-bench deps-check fuzz build figures verify test bench bench-record stress stress-results check paper clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -54,6 +58,9 @@ endef
 deps:  ## install what is missing (Debian); elsewhere say what is wanted
 	@$(call install,$(PACKAGES))
 
+deps-check:  ## the same for the tests: make deps-check check
+	@$(call install,$(PACKAGES) $(CHECK_PACKAGES))
+
 deps-bench:  ## the same for the bench: its peers and its higher precision
 	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
 	@rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
@@ -78,6 +85,9 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
+	@tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/fuzz
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
 	@cmake --build $(BUILD) --target bench
