@@ -10,12 +10,13 @@ FIGURES := $(BUILD)/figures$(if $(filter-out exact,$(ENGINE)),/$(ENGINE))
 ifeq ($(filter $(ENGINE),exact restitution cem),)
 $(error ENGINE must be exact, restitution or cem, got $(ENGINE))
 endif
+FUZZ_SECONDS ?= 60
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
-  gnuplot-nox librsvg2-bin fonts-dejavu-core python3
+  gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git python3 clang llvm lld locales
+CHECK_PACKAGES := git python3 python3-jsonschema clang llvm lld libclang-rt-14-dev locales
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
@@ -23,7 +24,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  kills same-bits reference clean
+  fuzz kills same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -100,6 +101,9 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 
 test: build  ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
+	@tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/fuzz
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
 	@$(alone) cmake --build $(BUILD) --target bench

@@ -91,9 +91,10 @@ inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(dou
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
 template <std::same_as<Counted> Real>
-Real guess(const Derivatives<Real, 6>& u, const Real& most) {
+Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
+                  const Real& most) {
   ++counts.guesses;
-  return impact_damper::guess<Real>(u, most);
+  return impact_damper::guess<Real>(u, fourth, rate, most);
 }
 
 template <std::same_as<Counted> Real>

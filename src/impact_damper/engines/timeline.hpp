@@ -15,6 +15,7 @@ template <class Real>
 class Clock {
  public:
   const Real& now() const { return now_; }
+  Real after(const Real& duration) const { return now_ + (duration + rounded_off_); }
   void advance(const Real& duration) {
     const Real added = duration + rounded_off_, sum = now_ + added;
     const Real back = sum - now_;
@@ -145,7 +146,7 @@ class Timeline {
       const Real until = crossing ? *crossing : duration;
       if (may_turn && no_turn_before <= until) find_peaks(motion, from, until, rising, no_turn_before);
       if (!crossing) return duration;
-      const Real zero = now() + *crossing;
+      const Real zero = clock_.after(*crossing);
       // A heavy mass may meet its wall just as x comes to zero, and throw it back: by rounding x was across.
       if (row_best_ > last_best_ * (16 * std::numeric_limits<Real>::epsilon())) {
         observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
