@@ -155,7 +155,9 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
     if "folder" in setting.surroundings:
         program = results / "bin" / "impact-damper"
         program.parent.mkdir(parents=True)
-        shutil.copy(setting.program, program)
+        # By another process: what this one has open for writing, its other threads' children have, too, and no
+        # program starts from a file that somebody may write.
+        call(["cp", setting.program, program])
     for engine in ENGINES:
         runs, tables = results / engine / "runs", results / engine / "tables"
         runs.mkdir(parents=True)
