@@ -132,8 +132,8 @@ def compare(name: str, one: bytes, other: bytes) -> Optional[Difference]:
             continue
         count += 1
         x, y = number(a), number(b)
-        if math.isfinite(x) and math.isfinite(y):
-            common = -math.log10(abs(x - y) / scale[a.column]) if x != y else 17.0
+        if math.isfinite(x) and math.isfinite(y) and a.place == b.place:
+            common = -math.log10(max(abs(x - y) / scale[a.column], 1e-17)) if x != y else 17.0
         else:
             common = -math.inf
         if worst is None or common < digits:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
 
-    matrix.py BUILD [--without-clang]
+    matrix.py BUILD [--without-clang] [--only BUILDS]
 
 BUILD is the project's build folder with the program in it, whose results all others are held against. Eight more
 programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O0, -O2, -O3 -march=native, -O2
@@ -11,8 +11,8 @@ with link-time optimisation}. What is crossed with what:
                         x {at home, all surroundings at once: time zone, comma locale, folder, ~/.gnuplot}
     two of them         x the same features x each of the four surroundings by itself
                           (g++ -O2 with link-time optimisation, clang++ -O3 -march=native)
-    pictures            gnuplot is no part of a build, so they are drawn once for each surrounding and each set of
-                        processor features, from the tables that by then are the same for all programs
+    pictures            gnuplot is no part of a build, so they are drawn from the tables that by then are the same for
+                        all programs, once in each of the four surroundings, once in all at once without FMA and AVX2
 
 Each time all three engines run all scenes of the catalogue and those in scenes/ (forced and damped, the component
 element method also with its other ways to step), and all tables are made. The heap is filled with rubbish where the
@@ -155,7 +155,9 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
     if "folder" in setting.surroundings:
         program = results / "bin" / "impact-damper"
         program.parent.mkdir(parents=True)
-        shutil.copy(setting.program, program)
+        # By another process: what this one has open for writing, its other threads' children have, too, and no
+        # program starts from a file that somebody may write.
+        call(["cp", setting.program, program])
     for engine in ENGINES:
         runs, tables = results / engine / "runs", results / engine / "tables"
         runs.mkdir(parents=True)
@@ -218,6 +220,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
+    parser.add_argument("--only", metavar="BUILDS", help="only builds whose name has this in it, and say so")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -234,10 +237,11 @@ def main() -> int:
     catalogues = small_catalogues(work)
 
     programs = {"the project's own build": own}
-    for compiler in compilers:
-        for name in FLAGS:
-            say(f"building with {compiler} {name} ({len(programs)} of {len(compilers) * len(FLAGS)})")
-            programs[f"{compiler} {name}"] = build(work, compiler, name)
+    wanted = [(compiler, name) for compiler in compilers for name in FLAGS
+              if not arguments.only or arguments.only in f"{compiler} {name}"]
+    for compiler, name in wanted:
+        say(f"building with {compiler} {name} ({len(programs)} of {len(wanted)})")
+        programs[f"{compiler} {name}"] = build(work, compiler, name)
     built = time.monotonic()
 
     cells = settings_of(programs)
@@ -260,8 +264,7 @@ def main() -> int:
         list(pool.map(examine, range(1, len(cells))))
     ran = time.monotonic()
 
-    drawings = [(features, surroundings) for features in FEATURES
-                for surroundings in [(), *((each,) for each in SURROUNDINGS)]]
+    drawings = [("", ()), *(("", (each,)) for each in SURROUNDINGS), (list(FEATURES)[-1], tuple(SURROUNDINGS))]
     draw_all(places, *drawings[0], reference, work / "pictures-0")
 
     def examine_drawing(number):
@@ -289,6 +292,8 @@ def main() -> int:
           (f"{len(wrong)} settings differ" if wrong else "no byte differs"))
     if "clang++" not in compilers:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
+    if arguments.only:
+        print(f"same bits: NOT COVERED: all builds without {arguments.only} in their names, left out by --only")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")

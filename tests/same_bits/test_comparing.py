@@ -12,6 +12,7 @@ from pathlib import Path
 
 from differences import compare
 from reference import differences
+from scan import WORDS, findings
 
 SOURCE = Path(__file__).resolve().parents[2]
 RUN = b"""{
@@ -79,6 +80,10 @@ class WhatDiffersIsNamed(unittest.TestCase):
         self.assertEqual(compare("a.json", RUN, RUN.replace(b",5.94", b"")).digits, float("-inf"))
         self.assertEqual(compare("a.dat", TABLE, TABLE.replace(b"\n3 4", b"")).digits, float("-inf"))
 
+    def test_columns_that_come_in_another_order_have_no_numbers_in_common(self):
+        swapped = RUN.replace(b"peak_time", b"x").replace(b"amplitude", b"peak_time")
+        self.assertEqual(compare("a.json", RUN, swapped).digits, float("-inf"))
+
     def test_no_number_is_worse_than_any(self):
         found = compare("fig08.dat", TABLE, TABLE.replace(b"0.5", b"nan").replace(b"0.25", b"-0.25"))
         self.assertIn("0.5 and nan", found.worst)
@@ -91,6 +96,18 @@ class WhatDiffersIsNamed(unittest.TestCase):
 
     def test_a_picture_is_named_by_its_line(self):
         self.assertEqual(compare("a.svg", b"<svg>\n<a/>", b"<svg>\n<b/>").first, "line 2: <a/> and <b/>")
+
+
+class TheScan(unittest.TestCase):
+    def test_one_word_of_each_subject_is_found_and_comments_and_texts_are_not(self):
+        lines = ["std::unordered_map<int, int> m;", 'std::snprintf(t, 9, "%g", x);', "std::time(nullptr);", "rand();",
+                 'getenv("HOME");', "new double[9];", "std::map<const Node*, int> m;", "std::reduce(a, b);", "float x;",
+                 "// getenv(), rand()", 'throw Error("float");']
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "a.cpp").write_text("\n".join(lines))
+            found = findings(Path(folder))
+        self.assertEqual([int(text.split(":")[1]) for text in found], list(range(1, len(WORDS) + 1)))
+        self.assertEqual({text.split("depends on ")[1] for text in found}, set(WORDS))
 
 
 class InAFolder(unittest.TestCase):
