@@ -103,7 +103,8 @@ TEST_CASE_TEMPLATE("impact failure is the fold of the single impacts", Model, Ex
   // Passed slowly, a fold is left late, by a distance that shrinks with the rate of passage, as nu^(2/3).
   double before = 1;
   for (const double ratio : {1e-3, 1e-4, 1e-5}) {
-    const Run run = decay(Model{.budget = {.max_impacts = most_rows, .max_half_cycles = most_rows}}, ratio);
+    const Run run = decay(
+        Model{.budget = {.max_impacts = most_rows, .max_half_cycles = most_rows, .max_time = 1e7}}, ratio);
     std::size_t i = 1;  // the first impact that was waited for much longer than half a period
     const auto& time = run.impacts->time;
     while (i < time.size() && !(run.impacts->amplitude[i].value_or(0) < 0.2 && time[i] - time[i - 1] > 4))
