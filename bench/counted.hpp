@@ -91,16 +91,15 @@ inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(dou
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
 template <std::same_as<Counted> Real>
-Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
-                  const Real& most) {
+Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
   ++counts.guesses;
-  return impact_damper::guess<Real>(u, fourth, rate, most);
+  return impact_damper::guess<Real>(u, short_time, most);
 }
 
 template <std::same_as<Counted> Real>
-Nearby<Real> nearby(const Real& level, const Derivatives<Real, 8>& y, const Real& h, const Real& rate) {
+Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
   ++counts.evaluations;
-  return impact_damper::nearby<Real>(level, y, h, rate);
+  return impact_damper::nearby<Real>(level, y, h, fourth);
 }
 
 template <std::same_as<Counted> Real, class Watch>

@@ -41,53 +41,44 @@ struct Arrival {
 template <class Real, std::size_t N>
 using Derivatives = std::array<Real, N>;
 
-// c_0 + c_1 s + c_2 s^2 + ...: terms two by two, then those two by two, as few operations as can be waiting
-// for each other.
+// c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
+// operations that wait for each other.
 template <class Real, std::size_t N>
 Real sum(const std::array<Real, N>& c, const Real& s) {
-  if constexpr (N == 1) {
-    return c[0];
-  } else {
-    std::array<Real, (N + 1) / 2> pairs;
-    for (std::size_t n = 0; n < N / 2; ++n) pairs[n] = c[2 * n] + s * c[2 * n + 1];
-    if constexpr (N % 2 == 1) pairs[N / 2] = c[N - 1];
-    return sum(pairs, Real(s * s));
+  static_assert(N % 2 == 0);
+  const Real s_2 = s * s;
+  Real even = c[N - 2], odd = c[N - 1];
+  for (std::size_t n = N - 2; n > 0; n -= 2) {
+    even = c[n - 2] + s_2 * even;
+    odd = c[n - 1] + s_2 * odd;
   }
+  return even + s * odd;
 }
-// The first M terms of its derivative.
-template <std::size_t M, class Real, std::size_t N>
-std::array<Real, M> slopes(const std::array<Real, N>& c) {
-  static_assert(M < N);
-  std::array<Real, M> d;
-  for (std::size_t n = 0; n < M; ++n) d[n] = Real(double(n + 1)) * c[n + 1];
+// The terms of its derivative.
+template <class Real, std::size_t N>
+std::array<Real, N> slopes(const std::array<Real, N>& c) {
+  std::array<Real, N> d;
+  for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
+  d[N - 1] = 0;
   return d;
 }
 
-// When y meets a level nearby: its fifth-order series turned round. `close` tells whether what that leaves,
-// and what moved() leaves, is no more than a rounding error of the time h that has led here and of a motion
-// of which each derivative is bounded by `rate` times the one before.
+// When y meets a level nearby: its third-order series turned round. `close` tells whether that leaves no more
+// than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
 template <class Real>
 struct Nearby {
   Real shift, newton;  // and by the first order alone
   bool close;
 };
 template <class Real>
-Nearby<Real> nearby(const Real& level, const Derivatives<Real, 8>& y, const Real& h, const Real& rate) {
-  const auto& by = reciprocals<Real>;
-  const Real over = 1 / y[1], t = (level - y[0]) * over, t_2 = t * t, p = t * over;
-  // The orders' parts, y^(n) t^(n-1) / (n! y'), n from 2 on.
-  const Real a = p * y[2] / 2, b = (p * t) * (y[3] * by[6]), c = (p * t_2) * (y[4] * by[24]);
-  const Real d = (p * t_2) * (t * y[5] * (by[24] * by[5])), e = (p * t_2) * (t_2 * y[6] * (by[24] * by[30]));
-  const Real a_2 = a * a;
-  const Real fourth = 5 * a * (b - a_2) - c,
-             fifth = 7 * a_2 * (2 * a_2 - 3 * b) + (3 * (2 * a * c + b * b) - d);
-  const Real shift = t * ((1 - a) + ((2 * a_2 - b) + (fourth + fifth)));
-
-  const Real A = absolute(a), B = absolute(b), C = absolute(c), D = absolute(d), E = absolute(e);
-  const Real sixth = 14 * A * (3 * a_2 * (a_2 + 2 * B) + 2 * (A * C + B * B)) + 7 * (A * D + B * C) + E;
-  const Real enough = std::numeric_limits<Real>::epsilon() / 64;
-  const Real angle = shift * rate, angle_2 = angle * angle, angle_6 = angle_2 * angle_2 * angle_2;
-  return {shift, t, absolute(t) * sixth <= enough * h && absolute(angle * angle_6) <= 5040 * enough};
+Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
+  const Real over = 1 / y[1], t = (level - y[0]) * over;
+  const Real a = t * y[2] * over / 2, b = t * t * y[3] * over * reciprocals<Real>[6];
+  const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
+  const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
+  // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
+  return {shift, t, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+                     fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
 // u and u' a short time later.
@@ -96,36 +87,24 @@ struct Moved {
   Real u, u1;
 };
 template <class Real>
-Moved<Real> moved(const Derivatives<Real, 8>& d, const Real& t) {
-  const auto& by = reciprocals<Real>;
-  const Real half = t / 2, third = t * by[3], quarter = t / 4, fifth = t * by[5], sixth = t * by[6];
-  const auto sum = [&](std::size_t n) {
-    return d[n] +
-           t * (d[n + 1] +
-                half * (d[n + 2] +
-                        third * (d[n + 3] + quarter * (d[n + 4] + fifth * (d[n + 5] + sixth * d[n + 6])))));
-  };
-  return {sum(0), sum(1)};
+Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
+  const Real half = t / 2, third = t * reciprocals<Real>[3], quarter = t / 4;
+  return {d[0] + t * (d[1] + half * (d[2] + third * (d[3] + quarter * d[4]))),
+          d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
 }
 
-// How many terms of a flight's series a guess is made by.
-inline constexpr std::size_t flight_terms = 12;
-
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series. Where that is as good as the motion
-// itself, `whole`, u and its derivatives at that time are given too, u as the distance from the wall it
-// meets.
+// parabola through its beginning, then by Halley's method on the series: roughly, but accurately within a
+// `short_time`. u is the distance from the wall it left.
 template <class Real>
 struct Guess {
   Real time;
-  bool across = false;  // at the other wall
-  bool whole = false;
-  Derivatives<Real, 8> u{};
+  bool across;     // at the other wall
+  Real u, u1, u2;  // of the series then: u from the wall it meets, and its first derivatives
 };
-// u is the distance from the wall it left, |u''''| <= fourth, and |each derivative| <= rate |the one before|.
 template <class Real>
-Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, const Real& rate,
-                  const Real& most) {
+Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
+  const auto& over = reciprocals<Real>;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
@@ -135,30 +114,24 @@ Guess<Real> guess(const Derivatives<Real, flight_terms>& u, const Real& fourth, 
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = most;
-  std::array<Real, flight_terms> c{across ? Real(u[0] - 1) : u[0], u[1]};
-  for (std::size_t n = 2; n < c.size(); ++n) c[n] = u[n] * inverse_factorials<Real>[n];
-  const auto c1 = slopes<flight_terms - 1>(c);
-  const auto c2 = slopes<8>(c1);
-  for (int i = 0; i < 5; ++i) {
-    const Real g = sum(c, t), g1 = sum(c1, t), g2 = sum(c2, t);
-    const Real step = g * g1 / (g * g2 / 2 - g1 * g1), size = absolute(step);
-    const Real tr = t * rate, tr_2 = tr * tr, tr_4 = tr_2 * tr_2;
-    const bool brief = tr < Real(0.125);
-    if (brief && size * 8192 < t) {
-      const auto c3 = slopes<6>(c2);
-      const auto c4 = slopes<4>(c3);
-      // What is left out: of u' |u^(12)| t^11/11!.
-      const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
-      const bool whole =
-          fourth * (tr_4 * tr_4 * tr_2 * tr) <= 39916800 * tiny * absolute(g1) * (rate * rate * rate);
-      return {t, across, whole, {g, g1, g2, sum(c3, t), sum(c4, t), u[5]}};
-    }
-    if (!(size < t)) break;
-    t += step;
-    if (!(t < most)) return {most};
-    if (!brief && size * 16 < t) break;
+  Derivatives<Real, 8> c{across ? Real(u[0] - 1) : u[0], u[1]};
+  Real factor = over[2];
+  for (std::size_t n = 2; n < c.size(); ++n) {
+    c[n] = factor * u[n];
+    factor *= over[n + 1];
   }
-  return {t};
+  const auto c1 = slopes(c), c2 = slopes(c1);
+  Real g, g1, g2;
+  for (int i = 0;; ++i) {
+    g = sum(c, t);
+    g1 = sum(c1, t);
+    g2 = sum(c2, t);
+    const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
+    if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
+    t += step;
+    if (t > short_time && size * 64 < t) break;
+  }
+  return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
@@ -183,6 +156,23 @@ bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& 
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
   return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
          (u0 + u1) / 2 + h * (slope0 - slope1) / 6 > off;
+}
+
+// A guess made good, where the series is so short a time the motion itself: u' at the wall.
+template <class Real>
+struct SeriesLanding {
+  Real shift, u1;
+  bool close;
+};
+template <class Real>
+SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
+  const auto& [h, across, g, g1, g2] = guess;
+  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
+  const Real hr = h * rate, hr_2 = hr * hr, tiny = std::numeric_limits<Real>::epsilon() / 16;
+  // What is left out: of u' |u^(8)| h^7/7!, of the shift its third power.
+  return {shift, g1 + shift * g2,
+          fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate) &&
+              absolute(shift) * 33554432 < h};
 }
 
 }  // namespace impact_damper

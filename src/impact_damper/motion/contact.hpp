@@ -301,12 +301,12 @@ class Contact {
     const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
     const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth, last = h;
     for (int correction = 0; correction < 4; ++correction) {
-      Derivatives<Real, 8> x, q;
+      Derivatives<Real, 6> x, q;
       const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
       c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
                 slow_end.w + fast_end.w},
                x, q);
-      const auto [shift, newton, close] = nearby(Real(0), q, h, c.fast.derived_rate());
+      const auto [shift, newton, close] = nearby(Real(0), q, h, faint);
       h += shift;
       if (!(absolute(h - last) < late / 4)) return {};
       if (!close) continue;

@@ -112,7 +112,7 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto x = swing_.template instant<flight_terms>(here.x, here.v, begin);
+      const auto x = swing_.template instant<8>(here.x, here.v, begin);
       const auto u = derivatives_of_u(here, x.derivatives());
       const Real fourth = x.bound(4, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
@@ -125,25 +125,23 @@ class Flight {
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      const Guess<Real> guessed = guess(u, fourth, rate, most);
+      const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
       Real h = guessed.time;
       if (!(h > 0)) return {};
-      if (guessed.whole) {
-        if (const auto [shift, newton, close] = nearby(Real(0), guessed.u, h, rate); close) {
-          // z = x + y has gone straight there.
-          const Real whole = h + shift, level = guessed.across ? 1 : 0, u1 = moved(guessed.u, shift).u1;
-          return reached(guessed.across, whole,
-                         here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
-                         here.v + away_ * (here.u1 - u1), u1);
-        }
+      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close) {
+        // z = x + y has gone straight there.
+        const Real whole = h + shift, level = guessed.across ? 1 : 0;
+        return reached(guessed.across, whole,
+                       here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
+                       here.v + away_ * (here.u1 - u1), u1);
       }
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto x_there = swing_.template derivatives<8>(there.x, there.v, begin + h);
+        const auto x_there = swing_.template derivatives<6>(there.x, there.v, begin + h);
         const auto u_there = derivatives_of_u(there, x_there);
         const bool across = there.u > Real(0.5);
-        const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, rate);
+        const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4) {
           const auto [x1, v1] = moved(x_there, shift);
           return reached(across, h + shift, x1, v1, moved(u_there, shift).u1);

@@ -27,14 +27,6 @@ inline const std::array<Real, 64> reciprocals = [] {
 }();
 
 template <class Real>
-inline const std::array<Real, 16> inverse_factorials = [] {
-  std::array<Real, 16> all{Real(1)};
-  Real factorial{1};
-  for (int n = 1; n < 16; ++n) all[n] = 1 / (factorial *= n);
-  return all;
-}();
-
-template <class Real>
 struct Propagator {
   Real c{1}, s{0};    // C, S
   Real c1{0}, s1{0};  // C - 1, S - t
@@ -76,16 +68,12 @@ class Oscillator {
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
-    const Real z = a / root_b_;
-    derived_rate_ = root_b_ * (z + square_root(Real(1 + z * z)));
   }
 
   const Real& a() const { return a_; }
   const Real& b() const { return b_; }
   const Real& root_b() const { return root_b_; }
   const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
-  // A free motion's derivative is at most this times its size, sqrt(u^2 + u'^2/b), and so is the next.
-  const Real& derived_rate() const { return derived_rate_; }
   // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
   const Real& half_period() const { return half_period_; }
 
@@ -280,7 +268,7 @@ class Oscillator {
   bool underdamped_ = true;
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
-  Real rate_{1}, derived_rate_{1};
+  Real rate_{1};
   Real root_b_{1}, half_period_{0};
 };
 

@@ -66,11 +66,15 @@ class Rebound {
     decay_ = fast.a();
     unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
     growth_ = exponential(Real(fast.a() * swing_));
+    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
+    const auto fastest = [](const Oscillator<Real>& o) {
+      const Real root_b = square_root(o.b()), z = o.a() / root_b;
+      return Real(root_b * (z + square_root(Real(1 + z * z))));
+    };
     const auto size = [](const Oscillator<Real>& o, const Real& u, const Real& u1) {
       return Real(square_root(Real(u * u + u1 * u1 / o.b())));
     };
-    const Real slow_rate = slow.derived_rate(), fast_rate = fast.derived_rate(),
-               weighted = slow_rate + fast.a();
+    const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& [s, f, fast_centre] = start[i];
       const Real b = slow.b(), gone = 1 + left_;
@@ -162,8 +166,7 @@ class Rebound {
     std::array<Real, terms> q = combine<terms>(q_, start);
     q[1] -= left_ * w;
     Real left_w;
-    const auto q1 = slopes<terms - 1>(q);
-    const auto q2 = slopes<terms / 2 + 2>(q1);  // which corrects a correction: enough
+    const auto q1 = slopes(q), q2 = slopes(q1);
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
       const Real g = sum(q, s), g1 = sum(q1, s), g2 = sum(q2, s), newton = -g / g1;
@@ -191,7 +194,7 @@ class Rebound {
     const std::array<Real, terms> centre = combine<terms>(centre_, start);
     const Real centre_v = v + share_ * w;
     return End{time, x + (centre_v * s + sum(centre, s)),
-               v + (share_ * (w - left_w) + sum(slopes<terms - 1>(centre), s)), left_w};
+               v + (share_ * (w - left_w) + sum(slopes(centre), s)), left_w};
   }
   static Real bound(const Start& row, const Start& start) {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);

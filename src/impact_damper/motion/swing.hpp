@@ -135,10 +135,9 @@ class Swing {
             std::numeric_limits<Real>::infinity()};
   }
 
-  // What bounds a derivative by the one before.
+  // The fastest that anything happens in it.
   Real rate() const {
-    const Real& rate = oscillator_.derived_rate();
-    return forcing_ && forcing_.frequency > rate ? forcing_.frequency : rate;
+    return forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
   }
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
