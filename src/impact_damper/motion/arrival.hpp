@@ -77,8 +77,9 @@ Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
   const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
   // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
-  return {shift, t, absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
-                     fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
+  return {shift, t,
+          absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+              fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
 // u and u' a short time later.

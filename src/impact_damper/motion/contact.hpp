@@ -196,7 +196,16 @@ class Contact {
     return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
                              until, span, resolution());
   }
-  Real height(const Real& t) const { return absolute(at(t).x); }
+  // |x| at a turn.
+  Real height(const Real& t) const {
+    const ContactSystem<Real>& c = system_;
+    if (!c.forcing && parts_ && c.slow.rings()) {
+      const auto& [slow, fast] = *parts_;
+      const Real height = c.slow.height(slow.x, slow.v, t);
+      if (c.fast.left(fast.x, fast.v, t) < height * (std::numeric_limits<Real>::epsilon() / 8)) return height;
+    }
+    return absolute(at(t).x);
+  }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
     return look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
@@ -245,7 +254,7 @@ class Contact {
     const auto fast = derivatives<3>(c.fast, parts().fast.x, parts().fast.v);
     const Real u = sign * slow[order], u1 = sign * slow[order + 1], f = fast[order], f1 = fast[order + 1];
     const Real fall = c.slow.fall(u, u1, from), quiet = from > 0 ? from : Real(fall / 2);
-    const Real kept = exponential(Real(-c.slow.a() * quiet));
+    const Real kept = c.slow.kept(quiet);
     const Real size = absolute(u) + absolute(u1) / c.slow.root_b();
     if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 32 * kept * size)) return {};
     return from > 0 || 2 * c.fast.left(f, f1, Real(0)) < kept * u ? std::optional(fall) : std::nullopt;
@@ -266,7 +275,7 @@ class Contact {
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
     const Real h = c.slow.fall(depth, Real(inward_ * slow.w)), early = h / 4, late = h * Real(0.75);
-    const Real chord = exponential(Real(-c.slow.a() * h)) * depth;
+    const Real chord = c.slow.kept(h) * depth;
     const Real slow_fourth = fourth_of(c.slow, slow.q, slow.w);
     const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
 

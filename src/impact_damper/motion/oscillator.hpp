@@ -93,9 +93,16 @@ class Oscillator {
   // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
   // exp(-a t) (u C + (u' + a u) S) with the undamped C and S, and where overdamped S <= t exp(omega t).
   Real left(const Real& u, const Real& u1, const Real& t) const {
-    const Real along = u1 + a_ * u;
-    if (underdamped_) return exponential(Real(-a_ * t)) * (absolute(u) + absolute(along) / omega_);
-    return exponential(Real(-slow_rate_ * t)) * (absolute(u) + absolute(along) * (t + 1 / slow_rate_));
+    const Real along = absolute(u1 + a_ * u), rate = underdamped_ ? a_ : slow_rate_;
+    const Real size =
+        absolute(u) + (underdamped_ ? Real(along / omega_) : Real(along * (t + 1 / slow_rate_)));
+    return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
+  }
+  // At least so much of a free motion's swing is left after a time t: a bound on exp(-a t), cheaply where
+  // near.
+  Real kept(const Real& t) const {
+    const Real lost = a_ * t;
+    return lost < Real(0.5) ? Real(1 - lost) : exponential(-lost);
   }
   // Whether its own motion swings before it has died away.
   bool rings() const { return underdamped_ && 2 * omega_ > a_; }
