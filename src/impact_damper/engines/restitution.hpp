@@ -69,7 +69,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
       const Stuck<Real> stuck(system, timeline.now(), state.x, state.v + joined, wall);
       const Real begin = timeline.now() + accumulation;
       const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
-      if (released) state = stuck.at(*released);
+      if (released) state = stuck.released(*released);
       timeline.pass(stuck, released ? *released : timeline.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= timeline.now()) {
         observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),

@@ -19,6 +19,12 @@ class Stuck {
     const auto now = swing_.at(t);
     return {now.x, now.v, start_.y, Real(0)};
   }
+  // The state when it vanishes, release(): x' has its turn there, and x'' = 0 tells x, to the last bit.
+  State<Real> released(const Real& t) const {
+    if (t == 0) return start_;
+    const auto v = swing_.speed_at_turn(t);
+    return v ? State<Real>{-push_ * *v * swing_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
+  }
   // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
   std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) const {
     return swing_.falls(2, push_, from, horizon, span);

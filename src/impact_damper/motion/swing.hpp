@@ -98,7 +98,7 @@ class Swing {
 
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
   bool keeps_side(const Real& side, const Real& x, const Real& t) const {
-    if (!(side * x0_ > 0 && side * x > 0)) return false;
+    if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
     return forcing_ ? keeps_sign(x0_, x, beginning().bound(2, t), t) : t < one_zero_within();
   }
   bool keeps_course(const Real& v, const Real& t) const {
@@ -126,6 +126,13 @@ class Swing {
       return absolute(at(t).x);
     return oscillator_.height(x0_, v0_, t);
   }
+  // |x'| where that turns, if in closed form; x there is -2a/b times x'.
+  std::optional<Real> speed_at_turn(const Real& t) const {
+    if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
+    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    return oscillator_.height(x[1], x[2], t);
+  }
+  Real per_speed() const { return 2 * oscillator_.a() / oscillator_.b(); }
   // The `order`-th derivative of x, looked ahead from t.
   Outlook<Real> outlook_at(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     const Change now = at(t);
