@@ -90,10 +90,8 @@ Engine read_engine(ObjectReader& object) {
         options = read_options(object, options);
         object.required("max_impacts", options.budget.max_impacts, at_least(0));
         object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
-        double max_time = 0;
-        if (object.required("max_time", max_time, NumberRange{0, 1e12, false})) {
-          options.budget.max_time = max_time;
-        }
+        if (double time = 0; object.required("max_time", time, NumberRange{0, 1e12, false}))
+          options.budget.max_time = time;
       },
       engine);
   return engine;

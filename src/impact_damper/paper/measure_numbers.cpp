@@ -17,8 +17,7 @@ const std::vector<MeasureNumber>& measure_numbers() {
   static const std::vector<MeasureNumber> table{
       {"amplitude", amplitudes, 0, "amplitude of a half cycle, by the free travel"},
       {"averaged_over", within(10, 18), 2, "half cycles that the loss factor is averaged over"},
-      {"damping_ratio", above_up_to(0, 0.5), 0,
-       "viscous damping ratio zeta of a decay with enough peaks"},
+      {"damping_ratio", above_up_to(0, 0.5), 0, "viscous damping ratio zeta of a decay with enough peaks"},
       {"eta", above_up_to(0, 1e3), 0, "averaged loss factor per radian"},
       {"factor", above_up_to(1, 1e3), 0, "by how much a value or a time step is divided"},
       {"from", amplitudes, 0, "least amplitude looked at, by the free travel; below \"to\""},
