@@ -127,7 +127,7 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
-        effort_left = effort_for(scene, options.budget);
+        const Effort effort(effort_for(scene, options.budget));
         return run(scene, options, recorder);
       },
       result.engine);

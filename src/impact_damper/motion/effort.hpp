@@ -13,6 +13,18 @@ namespace impact_damper {
 // at about a microsecond each; simulate() sets them for each run, in proportion to its budget.
 inline thread_local constinit std::int64_t effort_left = std::numeric_limits<std::int64_t>::max();
 
+// Sets it for as long as it lives.
+class Effort {
+ public:
+  explicit Effort(std::int64_t steps) : before_(effort_left) { effort_left = steps; }
+  ~Effort() { effort_left = before_; }
+  Effort(const Effort&) = delete;
+  Effort& operator=(const Effort&) = delete;
+
+ private:
+  std::int64_t before_;
+};
+
 // Throws NumericalError when none is left.
 inline void spend_effort() {
   if (effort_left-- > 0) return;
