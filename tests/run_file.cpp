@@ -92,7 +92,7 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
   CHECK(without_provenance(run_text(full_run())) == R"({
  "schema": "impact-damper/run/1",
  "scene": {"mass_ratio": 0.1, "restitution": 0.6, "damping_ratio": 0, "wall_stiffness": 10000, "x0": 6, "v0": 0, "y0": 0, "w0": 0, "force_amplitude": 0, "force_frequency": 1, "until_time": null, "until_amplitude": 0.01},
- "engine": {"name": "cem", "time_step": 1e-04, "damper": "lagged", "locate": false, "unstable": false, "calibration": "fixed-wall", "max_steps": 500000000, "max_impacts": 500000, "max_half_cycles": 500000, "max_time": 1e+06},
+ "engine": {"name": "cem", "time_step": 1e-04, "damper": "lagged", "locate": false, "unstable": false, "calibration": "fixed-wall", "max_steps": 500000000, "max_impacts": 200000, "max_half_cycles": 200000, "max_time": 1e+06},
  "stop_reason": "impact_budget",
  "end_time": 7.25,
  "half_cycles": {
@@ -195,7 +195,7 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
   CHECK(only("0.1,", "-0.1,").starts_with("r.json: /scene/mass_ratio: must be > 0"));
   CHECK(only("\"cem\"", "\"CEM\"") ==
         "r.json: /engine/name: must be one of \"exact\", \"restitution\", \"cem\", got the string \"CEM\"");
-  CHECK(only("\"max_impacts\": 500000", "\"max_impacts\": -5") ==
+  CHECK(only("\"max_impacts\": 200000", "\"max_impacts\": -5") ==
         "r.json: /engine/max_impacts: must be a whole number >= 0, got -5");
   CHECK(only("[3,0]", "[3]") ==
         "r.json: /half_cycles/impacts: must be as long as the section's first column, 2, got a length of 1");

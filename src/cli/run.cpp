@@ -286,8 +286,8 @@ void add_engine_options(CLI::App& app) {
       "restitution: bounce-down jumps to its end once the relative\n"
       "acceleration changes by less than this fraction in the rest of\n"
       "it; a number > 0 and <= 0.001, default 1e-8");
-  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 500000");
-  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 500000");
+  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 200000");
+  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 200000");
   add("--max-time", "T",
       "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
       "than "

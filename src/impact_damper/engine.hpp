@@ -25,8 +25,8 @@ enum class Damper {
 // defaults let no scene run for more than a second or two, nor its record grow beyond 200 MB; a decay of the
 // paper's needs a few thousand impacts and a time of 1200.
 struct Budget {
-  std::int64_t max_impacts = 500'000;      // >= 0; at most most_rows where they are recorded
-  std::int64_t max_half_cycles = 500'000;  // >= 1; the same
+  std::int64_t max_impacts = 200'000;      // >= 0; at most most_rows where they are recorded
+  std::int64_t max_half_cycles = 200'000;  // >= 1; the same
   std::optional<double> max_time;  // > 0, <= 1e12; absent: 500 000, by 1/omega_f where the forcing is faster
 
   bool operator==(const Budget&) const = default;

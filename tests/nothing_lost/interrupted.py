@@ -108,7 +108,7 @@ def makes_at_once(folder, program, figures, wanted, count, check):
 def main():
     parser = scratch.arguments(__doc__)
     parser.add_argument("--seed", type=int, default=None)
-    parser.add_argument("--figures", nargs="*", default=["5", "7", "13"], help="that the scratch tree draws")
+    parser.add_argument("--figures", nargs="*", default=None, help="that the scratch tree draws; default all")
     options = parser.parse_args()
     seed = options.seed if options.seed is not None else random.SystemRandom().randrange(2**32)
     print(f"seed {seed}", flush=True)
