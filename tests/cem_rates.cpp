@@ -264,7 +264,7 @@ TEST_CASE("in long flights times are counted and the motion keeps to the scheme'
   const double small = 1e-4, large = 2999 * small, time = 1e6;
   const Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = time};
   const Run run =
-      simulate(scene, Cem{.time_step = small, .large_step = 0.29999, .budget = {.max_time = time}},
+      simulate(scene, Cem{.time_step = small, .large_step = 0.29999, .budget = {.max_half_cycles = 1'000'000, .max_time = time}},
                {.history = {{time - 0.25, time, 2}}});
   const double steps = std::floor((time - small) / large), rest = std::fma(-steps, large, time - small);
   const double angle = steps * 2 * std::asin(large / 2) + 2 * std::asin(rest / 2) + small;

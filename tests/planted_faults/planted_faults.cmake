@@ -62,9 +62,9 @@ plant("restitution off by 0.05" motion/wall.hpp
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes.
 plant("contact force clipped at zero" motion/contact.hpp
       "    if (start_.y == wall_) {
-      auto end ="
+      std::optional<typename Rebound<Real>::End> end;"
       "    if (false) {
-      auto end ="
+      std::optional<typename Rebound<Real>::End> end;"
       "    return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                 instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);"
       "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
