@@ -1,5 +1,4 @@
 // The component element method with two rates: no impact missed, nothing of its accuracy lost.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>
