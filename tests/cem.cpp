@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
 #include "impact_damper/engines/recorder.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 using namespace impact_damper;
 constexpr double pi = std::numbers::pi;

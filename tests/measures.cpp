@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <stdexcept>
 
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/file_output.hpp"

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <stdexcept>
+
 #include "impact_damper/motion/wall.hpp"
 
 using namespace impact_damper;

@@ -6,7 +6,7 @@
 BUILD is the build folder, whose compile_commands.json says how each source is compiled. clang-tidy's checks are those
 of .clang-tidy, with the reason for each that is left out; cppcheck's are below and in cppcheck.txt. Headers are
 looked at with the sources that include them. clang-tidy spends its time on the headers of others, so sources that can
-be compiled together are looked at together (GROUPS).
+be compiled as one are looked at as one, by groups.txt.
 
 Exit code 1: something was found, 2: a tool or the build is missing.
 """
@@ -22,19 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-# Below src/; where two sources give one name to two things, they cannot stand in one group. Whatever no group names
-# stands alone.
-LIBRARY = "impact_damper"
-GROUPS = {
-    "cli": "cli/*.cpp",
-    "motion": f"{LIBRARY}/motion/*.cpp {LIBRARY}/analysis/theory_forced.cpp",
-    "engines": f"{LIBRARY}/*.cpp {LIBRARY}/engines/*.cpp {LIBRARY}/files/scene_file.cpp {LIBRARY}/analysis/*.cpp",
-    "files": f"{LIBRARY}/files/*.cpp",
-    "series": f"{LIBRARY}/paper/series*.cpp {LIBRARY}/paper/table.cpp",
-    "measures": f"{LIBRARY}/paper/measure_numbers.cpp {LIBRARY}/paper/measures_models.cpp "
-                f"{LIBRARY}/paper/measures_regimes.cpp",
-    "paper": f"{LIBRARY}/paper/*.cpp",
-}
+GROUPS = SOURCE / "tests/same_bits/groups.txt"
 CPPCHECK = ["cppcheck", "--enable=warning,style,performance,portability", "--std=c++20", "--error-exitcode=1", "--quiet",
             "--inline-suppr", "--suppressions-list=tests/checks/cppcheck.txt", "--template={file}:{line}: {message} [{id}]",
             "-Isrc", "src"]
@@ -53,12 +41,13 @@ def grouped(build):
     commands = {Path(entry["file"]): entry["command"] for entry in json.loads(database.read_text())}
     left = [file for file in sorted(commands) if SOURCE / "src" in file.parents]
     groups = {}
-    for name, patterns in GROUPS.items():
+    lines = [line.split(": ") for line in GROUPS.read_text().splitlines() if line and not line.startswith("#")]
+    for name, patterns in lines:
         wanted = {file for pattern in patterns.split() for file in (SOURCE / "src").glob(pattern)}
         groups[name] = [file for file in left if file in wanted]
         left = [file for file in left if file not in wanted]
         if not groups[name]:
-            missing(f"no source of the group {name} is compiled in {build}: mend GROUPS")
+            missing(f"no source of the group {name} is compiled in {build}: mend {GROUPS}")
     groups |= {file.stem: [file] for file in left}
     # Where it is included from, its own folder is not looked in by itself.
     return [(name, files, [word for word in shlex.split(commands[files[0]])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or

@@ -85,7 +85,7 @@ constexpr auto make_arc_tangent() noexcept {
     at.a0_rest = rest(angle, at.a0);
     // a1 = 1/(1 + c^2), and by the equation of the derivative, (1 + t^2) a' = 1:
     // (1 + c^2) (n + 1) a_(n+1) + 2 c n a_n + (n - 1) a_(n-1) = 0.
-    const Fixed a1 = one / (64 * 64 + Fixed(k) * k) * (64 * 64);
+    const Fixed a1 = one / (4096 + Fixed(k) * k) * 4096;
     at.a1_short = head(a1, 25);
     at.a1_rest = rest(a1, at.a1_short);
     Fixed before = 0, now = a1;
