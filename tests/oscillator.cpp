@@ -56,7 +56,7 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
                    Real, double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   for (const auto& damping : dampings) {
-    const double a = damping.first, b = damping.second;
+    const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     // C - 1 and S - t do not turn back while the slower of the two rates has not acted.
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : std::sqrt(b);
@@ -82,7 +82,7 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
                    double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   for (const auto& damping : dampings) {
-    const double a = damping.first, b = damping.second;
+    const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : a > 0 ? a : std::sqrt(b);
     for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4}) {
