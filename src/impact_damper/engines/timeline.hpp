@@ -165,7 +165,7 @@ class Timeline {
       row_peak_time_ = zero;
       from = *crossing;
       rising = true;
-      may_cross = !(duration < from + motion.one_zero_within(from));
+      may_cross = !motion.leaves_zero(from, end, duration);
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.

@@ -41,25 +41,24 @@ struct Arrival {
 template <class Real, std::size_t N>
 using Derivatives = std::array<Real, N>;
 
-// c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
-// operations that wait for each other.
+// c_0 + c_1 s + c_2 s^2 + ...: even and odd powers apart, half as long a chain of operations that wait for each
+// other.
 template <class Real, std::size_t N>
 Real sum(const std::array<Real, N>& c, const Real& s) {
-  static_assert(N % 2 == 0);
+  static_assert(N >= 2);
   const Real s_2 = s * s;
-  Real even = c[N - 2], odd = c[N - 1];
-  for (std::size_t n = N - 2; n > 0; n -= 2) {
-    even = c[n - 2] + s_2 * even;
-    odd = c[n - 1] + s_2 * odd;
+  Real highest = c[N - 1], next = c[N - 2];
+  for (std::size_t n = N - 1; n >= 2; n -= 2) {
+    highest = c[n - 2] + s_2 * highest;
+    if (n > 2) next = c[n - 3] + s_2 * next;
   }
-  return even + s * odd;
+  return N % 2 == 0 ? next + s * highest : highest + s * next;
 }
 // The terms of its derivative.
 template <class Real, std::size_t N>
-std::array<Real, N> slopes(const std::array<Real, N>& c) {
-  std::array<Real, N> d;
+std::array<Real, N - 1> slopes(const std::array<Real, N>& c) {
+  std::array<Real, N - 1> d;
   for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
-  d[N - 1] = 0;
   return d;
 }
 

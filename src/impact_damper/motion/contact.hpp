@@ -79,6 +79,10 @@ class Contact {
     const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
     return c.fast.left(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
   }
+  // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return t < from + one_zero_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
+  }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     if (const auto fall = fall_of_slow_x(order, sign, from)) return *fall < until ? fall : std::nullopt;
@@ -133,20 +137,44 @@ class Contact {
   }
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, where that is
-  // when the slow part's does: where what is left of the fast one is less than a rounding error, from `from`
-  // on or, in a contact's beginning, from halfway there on, and was smaller than the slow part before. That
-  // is exp(-a t) times the arc of a sine, above its chord: half of what it began with is left halfway.
+  // about when the slow part does, F. Nothing where that is not proved.
+  //
+  // The proof. The slow part u is exp(-a t) times the arc of a sine, and so above exp(-a F) times its chord.
+  // What is left of the fast part only decays, and is less than that chord until a time, and what is left then
+  // until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from there
+  // on, by a bound on u'', and once; and a step of Newton's from F finds where.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactSystem<Real>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
-    const auto slow = derivatives<3>(c.slow, parts().slow.x, parts().slow.v);
-    const auto fast = derivatives<3>(c.fast, parts().fast.x, parts().fast.v);
-    const Real u = sign * slow[order], u1 = sign * slow[order + 1], f = fast[order], f1 = fast[order + 1];
-    const Real fall = c.slow.fall(u, u1, from), quiet = from > 0 ? from : Real(fall / 2);
-    const Real kept = c.slow.kept(quiet);
-    const Real size = absolute(u) + absolute(u1) / c.slow.root_b();
-    if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 32 * kept * size)) return {};
-    return from > 0 || 2 * c.fast.left(f, f1, Real(0)) < kept * u ? std::optional(fall) : std::nullopt;
+    const auto slow = derivatives<5>(c.slow, parts().slow.x, parts().slow.v);
+    const auto fast = derivatives<5>(c.fast, parts().fast.x, parts().fast.v);
+    const auto left = [&](std::size_t n, const Real& t) {
+      return c.fast.left(fast[order + n], fast[order + n + 1], t);
+    };
+    const Real u = sign * slow[order], u1 = sign * slow[order + 1];
+    const Real fall = c.slow.fall(u, u1, from), kept = c.slow.kept(fall);
+    const Real nothing =
+        std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
+    if (from > 0) return left(0, from) < nothing ? std::optional(fall) : std::nullopt;
+
+    Real quiet{0}, rest = left(0, quiet);
+    for (int i = 0; i < 2; ++i) {
+      if (!(rest < kept * u)) return {};
+      quiet = fall - fall * rest / (kept * u);
+      rest = left(0, quiet);
+      if (rest < nothing) return fall;
+    }
+    const ContactState<Real> slow_then = slow_at(fall), fast_then = fast_at(fall);
+    const auto u_then = derivatives<3>(c.slow, slow_then.x, slow_then.v);
+    const auto f_then = derivatives<3>(c.fast, fast_then.x, fast_then.v);
+    const Real slope = absolute(u_then[order + 1]);
+    const Real second = c.slow.left(slow[order + 2], slow[order + 3], Real(0));
+    const Real within = fall - quiet + 2 * rest / slope;
+    if (!(2 * (second * within + left(1, quiet)) < slope)) return {};
+    const Real shift = -(u_then[order] + f_then[order]) / (u_then[order + 1] + f_then[order + 1]);
+    const Real enough = std::numeric_limits<Real>::epsilon() / 32 * fall;
+    if (!((second + left(2, quiet)) * (shift * shift) < enough * slope)) return {};
+    return fall + shift;
   }
 
   // The end of a contact that lasts: the fast motion dies away, and the mass leaves at h, when the slow one

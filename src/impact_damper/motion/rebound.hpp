@@ -126,7 +126,7 @@ class Rebound {
       if (const auto end = end_within<few>(start, s, few_)) return end;
     if (size < more_.s)
       if (const auto end = end_within<more>(start, s, more_)) return end;
-    return end_within<many>(start, s, many_);
+    return size < many_.s ? end_within<many>(start, s, many_) : std::nullopt;
   }
   // Bounds on the second and third derivative of x in it.
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {

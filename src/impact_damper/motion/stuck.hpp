@@ -35,6 +35,9 @@ class Stuck {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return swing_.keeps_course(end.v, t);
   }
+  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
+    return swing_.leaves_zero(from, t);
+  }
   Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {

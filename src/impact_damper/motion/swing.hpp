@@ -107,6 +107,8 @@ class Swing {
   }
   // From any time on, a time in which x has one zero at most, and so has each of its derivatives.
   Real one_zero_within() const { return forcing_ ? Real(0) : oscillator_.half_period(); }
+  // Whether x, zero at `from`, is proved to have no other zero until t.
+  bool leaves_zero(const Real& from, const Real& t) const { return t < from + one_zero_within(); }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
