@@ -9,10 +9,10 @@
 
 namespace impact_damper {
 
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Contact {
  public:
-  Contact(const ContactSystem<Real>& system, const Real& begin, const State<Real>& start, Wall wall)
+  Contact(const ContactSystem<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : system_(system),
         begin_(begin),
         start_(start),
@@ -56,7 +56,7 @@ class Contact {
   ContactState<Real> fast_at(const Real& t) const {
     return move(system_.fast, parts().fast, system_.drive_fast, t);
   }
-  const ContactSystem<Real>& system() const { return system_; }
+  const ContactSystem<Real, Force>& system() const { return system_; }
 
   // Towards zero: how deep the secondary mass is in the wall.
   Outlook<Real> depth(const Real& t, const Real& span) const {
@@ -73,7 +73,7 @@ class Contact {
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
   Real one_zero_within(const Real& from) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
     const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
@@ -91,7 +91,7 @@ class Contact {
   }
   // |x| at a turn.
   Real height(const Real& t) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (!c.forcing && parts_ && c.slow.rings()) {
       const auto& [slow, fast] = *parts_;
       const Real height = c.slow.height(slow.x, slow.v, t);
@@ -108,7 +108,7 @@ class Contact {
   // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
   // rounding errors would decide where one is zero.
   std::array<Real, 4> leads_of_x() const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     const auto f = c.forcing.template derivatives<2>(begin_);
     const Real force = c.damping * start_.w + c.stiffness * (start_.y - wall_);
     const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
@@ -144,7 +144,7 @@ class Contact {
   // until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from there
   // on, by a bound on u'', and once; and a step of Newton's from F finds where.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
     const auto slow = derivatives<5>(c.slow, parts().slow.x, parts().slow.v);
     const auto fast = derivatives<5>(c.fast, parts().fast.x, parts().fast.v);
@@ -186,7 +186,7 @@ class Contact {
   // sides). (2) Where by h it is less than a rounding error, this is the end; else (3) the end is corrected,
   // and proved by the bound again.
   std::optional<typename Rebound<Real>::End> settle() const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
@@ -223,7 +223,7 @@ class Contact {
   }
   std::optional<typename Rebound<Real>::End> settle_after(const Real& late, Real h,
                                                           const Real& slow_fourth) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
     const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth, last = h;
     for (int correction = 0; correction < 4; ++correction) {
@@ -294,7 +294,7 @@ class Contact {
 
   // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation
   // under (drive1 + 2 a drive) f + drive f'.
-  using Part = Instant<Real, 6>;
+  using Part = Instant<Real, 6, Force>;
   static Real on_f(const Oscillator<Real>& oscillator, const Real& drive, const Real& drive1) {
     return drive1 + 2 * oscillator.a() * drive;
   }
@@ -318,7 +318,7 @@ class Contact {
             fast.transient(n)};
   }
 
-  const ContactSystem<Real>& system_;
+  const ContactSystem<Real, Force>& system_;
   Real begin_;
   State<Real> start_;
   Real wall_, inward_;

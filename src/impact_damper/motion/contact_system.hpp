@@ -29,10 +29,10 @@
 
 namespace impact_damper {
 
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class ContactSystem {
  public:
-  ContactSystem(const System<Real>& system, const Real& zeta_m)
+  ContactSystem(const System<Real, Force>& system, const Real& zeta_m)
       : nu(system.nu),
         zeta(system.zeta),
         stiffness(system.k / system.nu),
@@ -105,7 +105,7 @@ class ContactSystem {
   }
 
   Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
-  Forcing<Real> forcing;
+  Force forcing;
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;
 

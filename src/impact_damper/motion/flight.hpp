@@ -6,10 +6,10 @@
 
 namespace impact_damper {
 
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Flight {
  public:
-  Flight(const System<Real>& system, const Real& begin, const State<Real>& start)
+  Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : swing_(system.free, system.forcing, begin, start.x, start.v),
         start_(start),
         wall_(start.y > Real(0.5) ? 1 : 0),
@@ -71,7 +71,7 @@ class Flight {
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     return swing_.outlook_at(order, sign, t, span);
   }
-  typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
+  typename Swing<Real, Force>::Beginning leads_of_x() const { return swing_.beginning(); }
   Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
@@ -161,7 +161,7 @@ class Flight {
     return {};
   }
 
-  Swing<Real> swing_;
+  Swing<Real, Force> swing_;
   State<Real> start_;
   Real wall_, away_;
 };

@@ -50,6 +50,18 @@ struct Forcing {
   }
 };
 
+// None, known when compiled: what scenes without forcing need not ask is not there.
+template <class Real>
+struct NoForcing {
+  Real amplitude{0}, frequency{1};
+  explicit constexpr operator bool() const { return false; }
+
+  template <std::size_t N>
+  std::array<Real, N> derivatives(const Real&) const {
+    return {};
+  }
+};
+
 // Displacement and velocity, from rest, of an oscillator under f.
 template <class Real>
 struct DrivenResponse {
@@ -149,7 +161,8 @@ class Oscillator {
   }
 
   // Response, from rest at time `begin`, after a time t. `p` is propagate(t).
-  DrivenResponse<Real> respond(const Forcing<Real>& forcing, const Real& begin, const Real& t,
+  template <class Force>
+  DrivenResponse<Real> respond(const Force& forcing, const Real& begin, const Real& t,
                                const Propagator<Real>& p) const {
     if (t == 0) return {};
     const auto [sin, cos] = sin_cos(forcing.frequency * begin);
@@ -218,7 +231,8 @@ class Oscillator {
     return p;
   }
 
-  DrivenResponse<Real> respond_shortly(const Forcing<Real>& forcing, const Real& sin, const Real& cos,
+  template <class Force>
+  DrivenResponse<Real> respond_shortly(const Force& forcing, const Real& sin, const Real& cos,
                                        const Real& t) const {
     const Real at = 2 * a_ * t, bt = b_ * t * t, phase = forcing.frequency * t;
     // d_n, f_n: terms of order t^n of the response and of the force times t^2.
@@ -303,12 +317,12 @@ std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& 
 
 // An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
 // from there on.
-template <class Real, std::size_t N>
+template <class Real, std::size_t N, class Force = Forcing<Real>>
 class Instant {
  public:
   Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
-          const Real& on_f1, const Forcing<Real>& forcing, const Real& time)
-      : root_b_(oscillator.root_b()), frequency_(forcing.frequency) {
+          const Real& on_f1, const Force& forcing, const Real& time)
+      : root_b_(oscillator.root_b()), forcing_(forcing) {
     if (!forcing) {
       d_ = impact_damper::derivatives<N>(oscillator, u, u1);
       return;
@@ -318,12 +332,13 @@ class Instant {
     // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
     // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the
     // other.
-    const Real re = oscillator.b() - frequency_ * frequency_, im = 2 * oscillator.a() * frequency_;
+    const Real frequency = forcing.frequency;
+    const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
     const Real h2 = re * re + im * im;
-    const Real on_sin = (re * on_f + im * on_f1 * frequency_) / h2;
-    const Real on_cos = (re * on_f1 - im * on_f / frequency_) / h2;
+    const Real on_sin = (re * on_f + im * on_f1 * frequency) / h2;
+    const Real on_cos = (re * on_f1 - im * on_f / frequency) / h2;
     for (std::size_t n = 0; n < N; ++n) steady_[n] = on_sin * f[n] + on_cos * f[n + 1];
-    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency_ * frequency_));
+    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency * frequency));
     force_ = absolute(forcing.amplitude) * size;
     steady_size_ = force_ / square_root(h2);
   }
@@ -336,9 +351,9 @@ class Instant {
   // time. Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
   Real bound(std::size_t n, const Real& span) const {
     const Real free = size_of(d_[n], d_[n + 1]);
-    if (force_ == 0) return free;
+    if (!forcing_) return free;
     Real power{1};
-    for (std::size_t i = 0; i < n; ++i) power *= frequency_;
+    for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
     const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
     return steady < growing ? steady : growing;  // growing where steady is NaN
   }
@@ -346,7 +361,7 @@ class Instant {
   const Real& steady(std::size_t n) const { return steady_[n]; }
   Real steady_bound(std::size_t n) const {
     Real size = steady_size_;
-    for (std::size_t i = 0; i < n; ++i) size *= frequency_;
+    for (std::size_t i = 0; i < n; ++i) size *= forcing_.frequency;
     return size;
   }
   // What of u^(n) is not the steady state, at most, from here on.
@@ -359,7 +374,8 @@ class Instant {
   }
 
   std::array<Real, N> d_, steady_{};
-  Real root_b_, frequency_, force_{0}, steady_size_{0};
+  Real root_b_, force_{0}, steady_size_{0};
+  Force forcing_;
 };
 
 }  // namespace impact_damper

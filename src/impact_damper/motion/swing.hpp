@@ -13,7 +13,7 @@
 namespace impact_damper {
 
 // The scene's numbers in the engine's scalar type.
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 struct System {
   explicit System(const Scene& scene)
       : nu(scene.mass_ratio),
@@ -25,14 +25,20 @@ struct System {
         stuck(zeta / (1 + nu), 1 / (1 + nu)) {}
 
   Real nu, e, zeta, k;
-  Forcing<Real> forcing;
+  Force forcing;
   Oscillator<Real> free;   // equation (3)
   Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
 };
 
+// Calls `then` with the scene's numbers, whose type tells whether there is a forcing.
+template <class Real, class Then>
+auto with_system(const Scene& scene, Then&& then) {
+  return scene.force_amplitude == 0 ? then(System<Real, NoForcing<Real>>(scene)) : then(System<Real>(scene));
+}
+
 // A quadrature panel (Oscillator::panel), no longer than the forcing allows.
-template <class Real>
-Real panel_under(const Forcing<Real>& forcing, const Real& panel) {
+template <class Real, class Force>
+Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
 }
 
@@ -54,10 +60,10 @@ bool keeps_sign(const Real& u0, const Real& u1, const Real& second, const Real& 
 }
 
 // x of a single oscillator under the forcing, with what bounds it.
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Swing {
  public:
-  Swing(const Oscillator<Real>& oscillator, const Forcing<Real>& forcing, const Real& begin, const Real& x0,
+  Swing(const Oscillator<Real>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
         const Real& v0)
       : oscillator_(oscillator), forcing_(forcing), begin_(begin), x0_(x0), v0_(v0) {}
 
@@ -84,7 +90,7 @@ class Swing {
   }
 
   template <std::size_t N>
-  Instant<Real, N> instant(const Real& x, const Real& v, const Real& t) const {
+  Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
   template <std::size_t N>
@@ -93,7 +99,7 @@ class Swing {
     return impact_damper::derivatives<N>(oscillator_, x, v, Real(1), Real(0),
                                          forcing_.template derivatives<N + 1>(begin_ + t));
   }
-  using Beginning = Instant<Real, 6>;
+  using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
 
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
@@ -152,14 +158,14 @@ class Swing {
 
  private:
   const Oscillator<Real>& oscillator_;
-  Forcing<Real> forcing_;
+  Force forcing_;
   Real begin_, x0_, v0_;
 };
 
 // How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
-template <class Real>
-Real bounded_span(const Forcing<Real>& forcing) {
-  return forcing ? Real(1) : std::numeric_limits<Real>::infinity();
+template <class Real, class Force>
+Real bounded_span(const System<Real, Force>& system) {
+  return system.forcing ? Real(1) : std::numeric_limits<Real>::infinity();
 }
 
 }  // namespace impact_damper
