@@ -19,12 +19,13 @@ namespace impact_damper {
 template <class Real, class Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
   require_arithmetic();
-  return with_system<Real>(
-      scene, [&](const auto& system) { return run_exact(system, scene, options, observer); });
+  return with_system<Real>(scene,
+                           [&](const auto& system) { return run_exact(system, scene, options, observer); });
 }
 
 template <class Real, class Force, class Observer>
-Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options, Observer& observer) {
+Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                  Observer& observer) {
   const ContactSystem<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
   Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
 

@@ -140,9 +140,9 @@ class Contact {
   // about when the slow part does, F. Nothing where that is not proved.
   //
   // The proof. The slow part u is exp(-a t) times the arc of a sine, and so above exp(-a F) times its chord.
-  // What is left of the fast part only decays, and is less than that chord until a time, and what is left then
-  // until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from there
-  // on, by a bound on u'', and once; and a step of Newton's from F finds where.
+  // What is left of the fast part only decays, and is less than that chord until a time, and what is left
+  // then until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from
+  // there on, by a bound on u'', and once; and a step of Newton's from F finds where.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
@@ -254,11 +254,10 @@ class Contact {
                                 const Overlap& now) {
     return {p.c * now.q + p.s * now.w, p.v * now.w - oscillator.b() * p.s * now.q};
   }
-  // A bound on |u''''| from here on: its size, which no damping raises.
+  // A bound on |u''''| from here on.
   static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
     const auto d = derivatives<6>(oscillator, u, u1);
-    const Real scaled = d[5] / oscillator.root_b();
-    return square_root(Real(d[4] * d[4] + scaled * scaled));
+    return oscillator.size(d[4], d[5]);
   }
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,

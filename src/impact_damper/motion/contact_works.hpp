@@ -83,8 +83,8 @@ RateParts<Real> rate_parts(const ContactSystem<Real, Force>& walls, const Contac
 
 // As the works of any motion (energy.hpp), at a cost that does not grow with how long the wall rings.
 template <class Real, class Force>
-Works<Real> works_of(const System<Real, Force>& system, const Contact<Real, Force>& contact, const Real& begin,
-                     const Real& duration, const Real& wall_damping) {
+Works<Real> works_of(const System<Real, Force>& system, const Contact<Real, Force>& contact,
+                     const Real& begin, const Real& duration, const Real& wall_damping) {
   const ContactSystem<Real, Force>& walls = contact.system();
   const Oscillator<Real>&slow = walls.slow, &fast = walls.fast;
   const Real square = walls.forcing ? walls.forcing.frequency * walls.forcing.frequency : Real(0);

@@ -48,8 +48,8 @@ inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1
 // (Oscillator::panel: to rounding), as long as there are no more than 65536 panels: then they get longer, and
 // what swings so often averages out.
 template <class Real, class Force, class Rates, class Panel>
-Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, Panel&& panel, const Real& begin,
-                             const Real& duration, const Real& wall_damping) {
+Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, Panel&& panel,
+                             const Real& begin, const Real& duration, const Real& wall_damping) {
   Works<Real> works;
   Real from{0};
   const Real least = duration / 65536;

@@ -77,6 +77,7 @@ class Oscillator {
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
     root_b_ = square_root(b);
+    over_root_b_ = 1 / root_b_;
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
@@ -109,6 +110,11 @@ class Oscillator {
     const Real size =
         absolute(u) + (underdamped_ ? Real(along / omega_) : Real(along * (t + 1 / slow_rate_)));
     return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
+  }
+  // The size of a free motion with u and u', which no damping raises: a bound on u from then on.
+  Real size(const Real& u, const Real& u1) const {
+    const Real scaled = u1 * over_root_b_;
+    return square_root(Real(u * u + scaled * scaled));
   }
   // At least so much of a free motion's swing is left after a time t: a bound on exp(-a t), cheaply where
   // near.
@@ -290,7 +296,7 @@ class Oscillator {
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
-  Real root_b_{1}, half_period_{0};
+  Real root_b_{1}, over_root_b_{1}, half_period_{0};
 };
 
 // u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.
@@ -322,7 +328,7 @@ class Instant {
  public:
   Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
           const Real& on_f1, const Force& forcing, const Real& time)
-      : root_b_(oscillator.root_b()), forcing_(forcing) {
+      : oscillator_(oscillator), forcing_(forcing) {
     if (!forcing) {
       d_ = impact_damper::derivatives<N>(oscillator, u, u1);
       return;
@@ -350,11 +356,12 @@ class Instant {
   // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per
   // time. Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
   Real bound(std::size_t n, const Real& span) const {
-    const Real free = size_of(d_[n], d_[n + 1]);
+    const Real free = oscillator_.size(d_[n], d_[n + 1]);
     if (!forcing_) return free;
     Real power{1};
     for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
-    const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
+    const Real growing = free + force_ * power * span / oscillator_.root_b(),
+               steady = steady_size_ * power + transient(n);
     return steady < growing ? steady : growing;  // growing where steady is NaN
   }
   // The steady state that the forcing keeps up, and a bound on it.
@@ -365,17 +372,15 @@ class Instant {
     return size;
   }
   // What of u^(n) is not the steady state, at most, from here on.
-  Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
-
- private:
-  Real size_of(const Real& u, const Real& u1) const {
-    const Real scaled = u1 / root_b_;
-    return square_root(Real(u * u + scaled * scaled));
+  Real transient(std::size_t n) const {
+    return oscillator_.size(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]);
   }
 
-  std::array<Real, N> d_, steady_{};
-  Real root_b_, force_{0}, steady_size_{0};
+ private:
+  const Oscillator<Real>& oscillator_;
   Force forcing_;
+  std::array<Real, N> d_, steady_{};
+  Real force_{0}, steady_size_{0};
 };
 
 }  // namespace impact_damper

@@ -93,11 +93,27 @@ class Swing {
   Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
+  // The same of `times` x; x and v are already that many times what they are.
   template <std::size_t N>
-  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t) const {
+  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t, const Real& times) const {
     if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
-    return impact_damper::derivatives<N>(oscillator_, x, v, Real(1), Real(0),
+    return impact_damper::derivatives<N>(oscillator_, x, v, times, Real(0),
                                          forcing_.template derivatives<N + 1>(begin_ + t));
+  }
+  // And a bound on the fourth for a time `span` from t on.
+  template <std::size_t N>
+  struct Lead {
+    Derivatives<Real, N> derivatives;
+    Real fourth;
+  };
+  template <std::size_t N>
+  Lead<N> lead(const Real& x, const Real& v, const Real& t, const Real& times, const Real& span) const {
+    if (!forcing_) {
+      const auto d = impact_damper::derivatives<N>(oscillator_, x, v);
+      return {d, oscillator_.size(d[4], d[5])};
+    }
+    const Instant<Real, N, Force> now{oscillator_, x, v, times, Real(0), forcing_, begin_ + t};
+    return {now.derivatives(), now.bound(4, span)};
   }
   using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
@@ -121,7 +137,7 @@ class Swing {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return search_fall<Real>([&](const Real& t) { return outlook_at(order, sign, t, span); }, from, until,
                                span, Real(1));
-    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     const Real u = sign * x[order], u1 = sign * x[order + 1];
     if (u == 0 && u1 == 0) return {};
     if (!(from > 0) && u <= 0 && u1 < 0) return from < until ? std::optional(from) : std::nullopt;
@@ -137,7 +153,7 @@ class Swing {
   // |x'| where that turns, if in closed form; x there is -2a/b times x'.
   std::optional<Real> speed_at_turn(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
-    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     return oscillator_.height(x[1], x[2], t);
   }
   Real per_speed() const { return 2 * oscillator_.a() / oscillator_.b(); }
