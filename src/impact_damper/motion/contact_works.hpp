@@ -91,7 +91,7 @@ Works<Real> works_of(const System<Real, Force>& system, const Contact<Real, Forc
   const bool apart = fast.b() > 64 * square && (!slow.rings() || fast.rate() > 8 * slow.rate());
   const bool lasts = fast.rate() * duration > 200;
   if (!(fast.rings() && apart && lasts)) {
-    return works_of<Real, Force, Contact<Real, Force>>(system, contact, begin, duration, wall_damping);
+    return works_of<Contact<Real, Force>>(system, contact, begin, duration, wall_damping);
   }
   using State = ContactState<Real>;
   const auto x_rate = [&](const State& slow_part, const State& fast_part, const Real& t) {

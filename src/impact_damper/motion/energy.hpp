@@ -78,7 +78,7 @@ Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, P
   return works;
 }
 
-template <class Real, class Force, class Motion>
+template <class Motion, class Real, class Force>
 Works<Real> works_of(const System<Real, Force>& system, const Motion& motion, const Real& begin,
                      const Real& duration, const Real& wall_damping) {
   if (system.zeta == 0 && !system.forcing && wall_damping == 0) return {};
