@@ -176,10 +176,10 @@ JsonDocument JsonDocument::read(const std::filesystem::path& file, const FileKin
   return parse(file.string(), read_text(file, kind));
 }
 
-JsonDocument JsonDocument::parse(std::string name, const std::string& text) {
+JsonDocument JsonDocument::parse(const std::string& name, const std::string& text) {
   JsonDocument document;
   document.value_ = std::make_unique<Json>();
-  document.problems_ = std::make_unique<JsonProblems>(std::move(name));
+  document.problems_ = std::make_unique<JsonProblems>(name);
   if (!parse_json(text, *document.value_, *document.problems_)) document.problems_->throw_if_any();
   return document;
 }
