@@ -1,0 +1,272 @@
+#!/usr/bin/env python3
+"""Do the fast tests notice a fault in the library? Plants those of faults.txt, one at a time, and writes results.md.
+
+In a scratch copy of the sources each fault is built and tested until a test fails: it is caught. A fault that does
+not compile proves nothing and has to be replaced. What survives is either told apart by no test that could be
+written, and faults.txt says why, or shows that a test is missing.
+
+The fast tests are the doctest binaries, in the order of what they cost, after those named after the faulty file and
+the one that has caught the fault before; at last the command lines and files of tests/cli and tests/corpus. Not
+among them are the comparisons with data/reference/, which would notice any change at all, right or wrong.
+
+The pass goes on where it was stopped: what was caught is not done again while its line in the sources stays as it
+is, unless with --afresh.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
+LIBRARY = Path("src/impact_damper")
+BUILD_TIMEOUT = 900
+CLI_TESTS = ["ctest", "-R", "^(cli|corpus): ", "-E", "1 GB|schemas", "--stop-on-failure", "--output-on-failure"]
+
+
+@dataclass
+class Fault:
+    file: str
+    kind: str
+    meaning: str
+    fragment: str
+    replacement: str
+    excuse: str  # why no test can catch it
+
+    def line(self, text):
+        """The lines that the fragment is part of: while they are as they were the fault is the same one."""
+        begin = text.index(self.fragment)
+        end = begin + len(self.fragment)
+        return text[text.rfind("\n", 0, begin) + 1:text.find("\n", end)].strip()
+
+    def key(self, text):
+        return " | ".join((self.file, self.line(text), self.fragment, self.replacement))
+
+
+def read_faults(file):
+    faults = []
+    for block in re.split(r"\n\s*\n", file.read_text()):
+        lines = [line for line in block.splitlines() if not line.startswith("#")]
+        if not lines:
+            continue
+        part = {mark: "\n".join(line[2:] for line in lines[1:] if line[:1] == mark) for mark in "-+="}
+        faults.append(Fault(*lines[0].split(": ", 2), part["-"], part["+"], part["="]))
+    return faults
+
+
+def stale(faults):
+    """The fragments that the sources no longer hold, or hold more than once."""
+    lines = []
+    for fault in faults:
+        file = SOURCE / LIBRARY / fault.file
+        count = file.read_text().count(fault.fragment) if file.exists() else 0
+        if count != 1 or fault.fragment == fault.replacement:
+            lines.append(f"{fault.file}: must be there once, is {count} times: {fault.fragment}")
+    return lines
+
+
+def synchronise(source, target):
+    """Copies what differs, so that what does not is not built anew; removes what is gone."""
+    target.mkdir(parents=True, exist_ok=True)
+    names = {each.name for each in source.iterdir() if not each.name.startswith((".", "build", "__pycache__"))}
+    for each in target.iterdir():
+        if each.name not in names and each.name != "build":
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+    for name in names:
+        here, there = source / name, target / name
+        if here.is_dir():
+            synchronise(here, there)
+        elif not there.exists() or here.read_bytes() != there.read_bytes():
+            shutil.copy(here, there)
+
+
+def run(command, folder, timeout=None):
+    """Exit code, None where it took too long, and all that was printed."""
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               errors="replace", start_new_session=True)
+    try:
+        out, _ = process.communicate(timeout=timeout)
+        return process.returncode, out
+    except BaseException as problem:
+        os.killpg(process.pid, signal.SIGKILL)
+        out, _ = process.communicate()
+        if isinstance(problem, subprocess.TimeoutExpired):
+            return None, out
+        raise
+
+
+class Tree:
+    """A copy of the sources and its build, which can be put back as it was."""
+
+    def __init__(self, folder, jobs):
+        self.sources, self.build, self.sound = folder / "tree", folder / "tree/build", folder / "sound"
+        self.jobs = str(jobs)
+        synchronise(SOURCE, self.sources)
+        if not (self.build / "build.ninja").exists():
+            code, out = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
+                             "-DCMAKE_CXX_FLAGS=-O1"], self.sources)
+            if code != 0:
+                sys.exit(out)
+        code, out = run(["ninja", "-t", "targets", "all"], self.build)
+        self.tests = {name[len("test_"):]: name for name in re.findall(r"^(test_\w+): phony", out, re.MULTILINE)}
+        self.tests["cli"] = "impact-damper"
+
+    def make(self, test):
+        return run(["ninja", "-j", self.jobs, self.tests[test]], self.build, BUILD_TIMEOUT)
+
+    def digest(self, test):
+        folder = "src" if test == "cli" else "tests"
+        return hashlib.sha256((self.build / folder / self.tests[test]).read_bytes()).hexdigest()
+
+    def check(self, test, timeout=None):
+        if test == "cli":
+            return run(CLI_TESTS + ["-j", self.jobs], self.build, timeout)
+        return run([str(self.build / "tests" / self.tests[test]), "--abort-after=1", "--no-colors"],
+                   self.build / "tests", timeout)
+
+    def keep(self):
+        shutil.rmtree(self.sound, ignore_errors=True)
+        shutil.copytree(self.build, self.sound, symlinks=True)
+
+    def restore(self, file, text, times):
+        """With the old time stamps: nothing is built anew."""
+        file.write_text(text)
+        os.utime(file, ns=times)
+        shutil.rmtree(self.build)
+        shutil.copytree(self.sound, self.build, symlinks=True)
+
+
+def first_failure(test, out):
+    if test == "cli":
+        found = re.search(r"The following tests FAILED:\s+\d+ - (.*) \(", out)
+        return found[1] if found else "cli"
+    found = re.search(r"^TEST CASE:\s+(.*)", out, re.MULTILINE)
+    return f"{test}: {found[1]}" if found else f"{test}: crashed"
+
+
+def check_sound(tree, state):
+    """Every test passes without a fault; how long it takes, and the bytes of its binary."""
+    sound = state.setdefault("sound", {})
+    for number, test in enumerate(tree.tests, 1):
+        print(f"no fault: {test} ({number} of {len(tree.tests)})", file=sys.stderr)
+        begin = time.monotonic()
+        code, out = tree.make(test)
+        if code != 0:
+            sys.exit(out)
+        built, digest = time.monotonic(), tree.digest(test)
+        if sound.get(test, {}).get("digest") == digest:
+            continue
+        code, out = tree.check(test)
+        if code != 0:
+            sys.exit(f"{test} fails without a fault:\n{out}")
+        sound[test] = {"digest": digest, "build": built - begin, "run": time.monotonic() - built}
+    tree.keep()
+
+
+def examine(tree, fault, sound, before):
+    """Who catches the fault: (verdict, by whom)."""
+    stem = Path(fault.file).stem
+    caught = (before or {}).get("by", "").split(": ")[0]
+    order = sorted(tree.tests, key=lambda test: (test != caught, test != stem, not test.startswith(stem),
+                                                 test == "cli", sound[test]["run"]))
+    for test in order:
+        code, out = tree.make(test)
+        if code is None:
+            return "caught", "compiling takes for ever"
+        if code != 0:
+            return ("not compiled", out) if "error:" in out else ("caught", f"{test}: (crashed)")
+        if tree.digest(test) == sound[test]["digest"]:
+            continue
+        code, out = tree.check(test, 30 + 10 * sound[test]["run"])
+        if code is None:
+            return "caught", f"{test}: takes too long"
+        if code != 0:
+            return "caught", first_failure(test, out)
+    return "survived", ""
+
+
+def page(faults, results):
+    """The table as Markdown, and whether all is well."""
+    caught = [fault for fault, result in results if result["verdict"] == "caught"]
+    left = [(fault, result) for fault, result in results if result["verdict"] != "caught"]
+    share = 100 * len(caught) / len(results)
+    well = len(results) == len(faults) and share >= 95 and all(
+        result["verdict"] == "survived" and fault.excuse for fault, result in left)
+
+    def code(text):
+        return "`" + " ".join(text.split()).replace("|", "\\|") + "`" if text else "nothing"
+
+    lines = ["# Planted faults and who caught them", "",
+             f"By `make mutation` ([mutate.py](mutate.py), which says how). {len(results)} faults, {len(caught)} caught "
+             f"({share:.1f} %), {len(left)} survived.", ""]
+    if left:
+        lines += ["| survived | fault | instead of | stands | why |", "|---|---|---|---|---|"]
+        lines += [f"| {fault.file} | {fault.kind}: {fault.meaning} | {code(fault.fragment)} | {code(fault.replacement)} | "
+                  f"{fault.excuse or result['verdict']} |" for fault, result in left] + [""]
+    lines += ["| file | fault | instead of | stands | caught by |", "|---|---|---|---|---|"]
+    lines += [f"| {fault.file} | {fault.kind}: {fault.meaning} | {code(fault.fragment)} | {code(fault.replacement)} | "
+              f"{result['by']} |".replace("\n", " ") for fault, result in results if result["verdict"] == "caught"]
+    return "\n".join(lines) + "\n", well
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--folder", type=Path, default=SOURCE / "build/mutation", help="to work in")
+    parser.add_argument("--only", default="", metavar="REGEX", help="only faults whose file or meaning matches")
+    parser.add_argument("--afresh", action="store_true", help="also what is known to be caught")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="for compiling")
+    options = parser.parse_args()
+
+    faults = read_faults(HERE / "faults.txt")
+    if lines := stale(faults):
+        sys.exit("faults.txt: these fragments have to be renewed:\n" + "\n".join(lines))
+    folder = options.folder.resolve()
+    tree = Tree(folder, options.jobs)
+    memory = folder / "state.json"
+    state = json.loads(memory.read_text()) if memory.exists() else {}
+    check_sound(tree, state)
+    memory.write_text(json.dumps(state, indent=1))
+
+    known = state.setdefault("results", {})
+    results = []
+    for number, fault in enumerate(faults, 1):
+        file = tree.sources / LIBRARY / fault.file
+        text, times = file.read_text(), (file.stat().st_atime_ns, file.stat().st_mtime_ns)
+        key = fault.key(text)
+        before = known.get(key)
+        wanted = re.search(options.only, f"{fault.file}: {fault.meaning}")
+        if wanted and (options.afresh or not before or before["verdict"] != "caught"):
+            print(f"[{number}/{len(faults)}] {fault.file}: {fault.kind}: {fault.meaning}", file=sys.stderr, end=" ",
+                  flush=True)
+            begin = time.monotonic()
+            try:
+                file.write_text(text.replace(fault.fragment, fault.replacement))
+                verdict, by = examine(tree, fault, state["sound"], before)
+            finally:
+                tree.restore(file, text, times)
+            before = known[key] = {"verdict": verdict, "by": by, "seconds": round(time.monotonic() - begin, 1)}
+            memory.write_text(json.dumps(state, indent=1))
+            print(f"- {verdict}, {before['seconds']:.0f} s: {by[:2000]}", file=sys.stderr)
+        if before:
+            results.append((fault, before))
+    if not results:
+        sys.exit("no fault matches")
+    text, well = page(faults, results)
+    (folder / "results.md").write_text(text)
+    if len(results) == len(faults):
+        (HERE / "results.md").write_text(text)
+    print("\n".join(text.splitlines()[2:3]))
+    sys.exit(0 if well else 1)
+
+
+if __name__ == "__main__":
+    main()
