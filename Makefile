@@ -24,7 +24,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  fuzz kills same-bits reference clean
+  fuzz kills mutation same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -125,6 +125,9 @@ check: build test  ## build, run every test, regenerate everything with all engi
 	@for engine in exact restitution cem; do \
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
+
+mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
+	@nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
 same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
 	@cmake --build $(BUILD) --target same-bits
