@@ -14,6 +14,7 @@ is, unless with --afresh.
 """
 
 import argparse
+import fcntl
 import hashlib
 import json
 import os
@@ -113,6 +114,8 @@ class Tree:
         self.sources, self.build, self.sound = folder / "tree", folder / "tree/build", folder / "sound"
         self.jobs = str(jobs)
         synchronise(SOURCE, self.sources)
+        if self.sound.exists():
+            self.restore_build()
         if not (self.build / "build.ninja").exists():
             code, out = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
                              f"-DCMAKE_CXX_FLAGS={FLAGS}"], self.sources)
@@ -135,15 +138,27 @@ class Tree:
                    timeout)
 
     def keep(self):
-        shutil.rmtree(self.sound, ignore_errors=True)
-        shutil.copytree(self.build, self.sound, symlinks=True)
+        half = self.sound.with_suffix(".tmp")
+        for folder in half, self.sound:
+            shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.build, half, symlinks=True)
+        half.rename(self.sound)
 
     def restore(self, file, text, times):
         """With the old time stamps: nothing is built anew."""
         file.write_text(text)
         os.utime(file, ns=times)
-        shutil.rmtree(self.build)
-        shutil.copytree(self.sound, self.build, symlinks=True)
+        self.restore_build()
+
+    def restore_build(self):
+        for folder, _, names in os.walk(self.sound):
+            place = self.build / Path(folder).relative_to(self.sound)
+            place.mkdir(parents=True, exist_ok=True)
+            for name in names:
+                sound, now = Path(folder, name), place / name
+                kept, found = sound.lstat(), now.lstat() if now.exists() else None
+                if not found or (kept.st_size, kept.st_mtime_ns) != (found.st_size, found.st_mtime_ns):
+                    shutil.copy2(sound, now, follow_symlinks=False)
 
 
 def first_failure(test, out):
@@ -233,6 +248,12 @@ def main():
     if lines := stale(faults):
         sys.exit("faults.txt: these fragments have to be renewed:\n" + "\n".join(lines))
     folder = options.folder.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        sys.exit(f"{folder}: another pass works here")
     tree = Tree(folder, options.jobs)
     memory = folder / "state.json"
     state = json.loads(memory.read_text()) if memory.exists() else {}
