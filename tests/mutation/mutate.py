@@ -5,8 +5,8 @@ In a scratch copy of the sources each fault is built and tested until a test fai
 not compile proves nothing and has to be replaced. What survives is either told apart by no test that could be
 written, and faults.txt says why, or shows that a test is missing.
 
-The fast tests are the doctest binaries, in the order of what they cost, after those named after the faulty file and
-the one that has caught the fault before; at last the command lines and files of tests/cli and tests/corpus. Not
+The fast tests are the doctest binaries, in the order of what they cost, those named after the faulty file sooner and
+the one that has caught the fault before first; at last the command lines and files of tests/cli and tests/corpus. Not
 among them are the comparisons with data/reference/, which would notice any change at all, right or wrong.
 
 The pass goes on where it was stopped: what was caught is not done again while its line in the sources stays as it
@@ -112,7 +112,7 @@ class Tree:
 
     def __init__(self, folder, jobs):
         self.sources, self.build, self.sound = folder / "tree", folder / "tree/build", folder / "sound"
-        self.jobs = str(jobs)
+        self.jobs, self.compiled_from = str(jobs), {}
         synchronise(SOURCE, self.sources)
         if self.sound.exists():
             self.restore_build()
@@ -136,6 +136,15 @@ class Tree:
             return run(CLI_TESTS + ["-j", self.jobs], self.build, timeout)
         return run([str(self.build / self.binaries[test]), "--abort-after=1", "--no-colors"], self.build / "tests",
                    timeout)
+
+    def includes(self, test, file):
+        """Whether the test's own source includes a file of the library, so that it takes compiling."""
+        if not self.compiled_from:
+            _, out = run(["ninja", "-t", "deps"], self.build)
+            for block in out.split("\n\n"):
+                if found := re.match(r"tests/CMakeFiles/test_(\w+)\.dir/", block):
+                    self.compiled_from[found[1]] = block
+        return f"{LIBRARY}/{file}\n" in self.compiled_from.get(test, "") + "\n"
 
     def keep(self):
         half = self.sound.with_suffix(".tmp")
@@ -192,8 +201,12 @@ def examine(tree, fault, sound, before):
     """Who catches the fault: (verdict, by whom)."""
     stem = Path(fault.file).stem
     caught = (before or {}).get("by", "").split(": ")[0]
-    order = sorted(tree.binaries, key=lambda test: (test != caught, not (test.startswith(stem) or stem.startswith(test)),
-                                                 test == "cli", sound[test]["run"]))
+
+    def cost(test):
+        seconds = sound[test]["run"] + 5 * tree.includes(test, fault.file)
+        return seconds / 5 if test.startswith(stem) or stem.startswith(test) else seconds
+
+    order = sorted(tree.binaries, key=lambda test: (test != caught, test == "cli", cost(test)))
     for test in order:
         code, out = tree.make(test)
         if code is None:
