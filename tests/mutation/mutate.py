@@ -9,8 +9,8 @@ The fast tests are the doctest binaries, in the order of what they cost, those n
 the one that has caught the fault before first; at last the command lines and files of tests/cli and tests/corpus. Not
 among them are the comparisons with data/reference/, which would notice any change at all, right or wrong.
 
-The pass goes on where it was stopped: what was caught is not done again while its line in the sources stays as it
-is, unless with --afresh.
+The pass goes on where it was stopped: what was caught, or has its excuse, is not done again while its line in the
+sources stays as it is, unless with --afresh.
 """
 
 import argparse
@@ -280,7 +280,8 @@ def main():
         key = fault.key(text)
         before = known.get(key)
         wanted = re.search(options.only, f"{fault.file}: {fault.meaning}")
-        if wanted and (options.afresh or not before or before["verdict"] != "caught"):
+        finished = before and (before["verdict"] == "caught" or fault.excuse)
+        if wanted and (options.afresh or not finished):
             print(f"[{number}/{len(faults)}] {fault.file}: {fault.kind}: {fault.meaning}", file=sys.stderr, end=" ",
                   flush=True)
             begin = time.monotonic()
