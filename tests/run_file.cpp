@@ -176,8 +176,9 @@ TEST_CASE("a run with energies has a loss for each impact, none less and none mo
   for (const std::size_t losses : {2, 4}) {
     Run run = full_run();
     run.energy->impact_loss.resize(losses);
-    CHECK(problems(run_text(run)) ==
-          Lines{"r.json: /energy: must hold a loss for each of the 3 impacts, got " + std::to_string(losses)});
+    CHECK(
+        problems(run_text(run)) ==
+        Lines{"r.json: /energy: must hold a loss for each of the 3 impacts, got " + std::to_string(losses)});
   }
 }
 
