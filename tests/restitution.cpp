@@ -345,3 +345,18 @@ TEST_CASE("the forced solution with two symmetric impacts per cycle holds for te
   CHECK(worst < 1e-10);
   CHECK(std::abs(run.energy->residual) < 1e-12 * 1e4);
 }
+
+TEST_CASE("the clock of many motions is right to its last two digits") {
+  // What is left are the roundings of what is added, not of the sum.
+  constexpr double last_two = 0x1p-50;
+  Clock<double> clock;
+  long double sum = 0;
+  for (int n = 1; n <= 200000; ++n) {
+    const double duration = 1.0 / (1 + n % 97);
+    const long double next = sum + duration;
+    CHECK(std::abs(clock.after(duration) - next) <= last_two * next);
+    clock.advance(duration);
+    sum = next;
+  }
+  CHECK(std::abs(clock.now() - sum) <= last_two * sum);
+}

@@ -203,8 +203,8 @@ def examine(tree, fault, sound, before):
     caught = (before or {}).get("by", "").split(": ")[0]
 
     def cost(test):
-        seconds = sound[test]["run"] + 5 * tree.includes(test, fault.file)
-        return seconds / 5 if test.startswith(stem) or stem.startswith(test) else seconds
+        seconds = sound[test]["run"] + 1 + 5 * tree.includes(test, fault.file)  # linking, compiling
+        return seconds / 10 if test.startswith(stem) or stem.startswith(test) else seconds
 
     order = sorted(tree.binaries, key=lambda test: (test != caught, test == "cli", cost(test)))
     for test in order:
