@@ -63,10 +63,11 @@ deps-check:  ## the same for the tests: make deps-check check
 
 deps-bench:  ## the same for the bench: its peers and its higher precision
 	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
-	@rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
+	@$(alone) rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
 
-# What comes first in a recipe that CMake or ninja works for: one at a time in this folder, also where a killed
-# one's children still work. The lock goes with the last process that inherits descriptor 9.
+# What comes first in a recipe that works in $(BUILD): one at a time in this folder, also where a killed one's
+# children still work. The lock goes with the last process that inherits descriptor 9. Where it is held, no make
+# may be called for the same folder: it would wait for the one that waits for it.
 define alone
 exec 9<.; \
 if command -v flock >/dev/null && ! flock -n 9; then \
@@ -100,17 +101,16 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
 test: build  ## run every test
-	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+	@$(alone) ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
-	@tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/fuzz
+	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/fuzz
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
 	@$(alone) cmake --build $(BUILD) --target bench
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
-	@mkdir -p bench/results
-	@cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
+	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
 stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random scenes, aimed ones (minutes)
 	@$(alone) cmake --build $(BUILD) --target stress
@@ -130,10 +130,10 @@ mutation:  ## plant faults in a copy of the library, one by one: do the fast tes
 	@nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
 same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
-	@cmake --build $(BUILD) --target same-bits
+	@$(alone) cmake --build $(BUILD) --target same-bits
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
-	@paper/renew $(BUILD)
+	@$(alone) paper/renew $(BUILD)
 
 clean:  ## remove all that was built
 	@$(alone) rm -rf $(BUILD)

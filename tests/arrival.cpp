@@ -123,7 +123,7 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
     const State<double> start{random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
                               random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
                               random.chance(0.2) ? random.uniform(0, 1) : double(!left), left ? w : -w};
-    const double begin = random.uniform(0, 10), span = bounded_span(system.forcing), horizon = 10;
+    const double begin = random.uniform(0, 10), span = bounded_span(system), horizon = 10;
     const Flight<double> flight(system, begin, start);
     const auto lead = flight.lead_of_y();
     const double away = left ? 1 : -1;

@@ -426,9 +426,9 @@ TEST_CASE("what could not be kept in memory is refused before it is begun") {
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   CHECK(message({}, {.history = {{0, 0.5, most_samples}}}).empty());
   CHECK(message({}, {.history = {{0, 0.5, most_samples - 1}, {0.5, 1, 2}}}) ==
-        "history: must ask for at most 1000000 samples in all");
+        "history: must ask for at most 500000 samples in all");
   CHECK(message({}, {.history_below = {{1, 1, most}, {0.5, 1, most}}}) ==
-        "history_below: must ask for at most 1000000 samples in all");
+        "history_below: must ask for at most 500000 samples in all");
 }
 
 TEST_CASE("motions too stiff for their length end in an error, and the next run has its whole effort again") {

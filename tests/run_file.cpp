@@ -9,6 +9,7 @@
 #include <random>
 
 #include "impact_damper/files/errors.hpp"
+#include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/scene_file.hpp"
 
 using namespace impact_damper;
@@ -92,7 +93,7 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
   CHECK(without_provenance(run_text(full_run())) == R"({
  "schema": "impact-damper/run/1",
  "scene": {"mass_ratio": 0.1, "restitution": 0.6, "damping_ratio": 0, "wall_stiffness": 10000, "x0": 6, "v0": 0, "y0": 0, "w0": 0, "force_amplitude": 0, "force_frequency": 1, "until_time": null, "until_amplitude": 0.01},
- "engine": {"name": "cem", "time_step": 1e-04, "damper": "lagged", "locate": false, "unstable": false, "calibration": "fixed-wall", "max_steps": 500000000, "max_impacts": 200000, "max_half_cycles": 200000, "max_time": 1e+06},
+ "engine": {"name": "cem", "time_step": 1e-04, "damper": "lagged", "locate": false, "unstable": false, "calibration": "fixed-wall", "max_steps": 300000000, "max_impacts": 200000, "max_half_cycles": 200000, "max_time": 1e+06},
  "stop_reason": "impact_budget",
  "end_time": 7.25,
  "half_cycles": {
@@ -136,8 +137,8 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
 }
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
-  for (const Engine& engine :
-       {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(), Engine(Cem{.time_step = 1e-5, .budget = {.max_time = 1e6}})}) {
+  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(),
+                               Engine(Cem{.time_step = 1e-5, .budget = {.max_time = 1e6}})}) {
     Run run = full_run(engine);
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
     CHECK(parse_run("r.json", run_text(run)).engine == engine);
@@ -258,6 +259,35 @@ TEST_CASE("whatever happens to a run file's bytes, it is read or refused with at
     }
   }
   CHECK(refused > 4000);  // what survives are changed digits and names in provenance
+}
+
+TEST_CASE("all that the default budgets admit and the longest history make a file that is admitted") {
+  // No double's shortest text is longer: a sign, 17 digits with a point, an exponent of three digits.
+  constexpr double longest = -2.2250738585072014e-308;
+  REQUIRE(number_text(longest).size() == 24);
+  constexpr Budget budget;
+  const auto length = [&](std::size_t half_cycles, std::size_t impacts, std::size_t samples) {
+    using Column = std::vector<double>;
+    using Gaps = std::vector<std::optional<double>>;
+    const Column rows(half_cycles, longest), times(impacts, longest), motion(samples, longest);
+    const Column contacts(impacts + 1, longest);  // one may be there from the beginning
+    Run run = full_run();
+    run.half_cycles = HalfCycles{rows, rows, rows, std::vector(half_cycles, budget.max_impacts)};
+    run.impacts = Impacts{times, std::vector(impacts, Wall::left), times, Gaps(impacts, longest),
+                          Gaps(impacts, longest)};
+    run.contacts = Contacts{contacts, contacts, std::vector(impacts + 1, Wall::left)};
+    run.energy->impact_loss = times;
+    run.history = History{motion, motion, motion, motion, motion};
+    return static_cast<std::int64_t>(run_text(run).size());
+  };
+  // Rounded up, for the sum of the losses, which is written as well.
+  const std::int64_t first = length(1, 1, 1);
+  const auto row = [&](std::int64_t length_of_1001) { return (length_of_1001 - first + 999) / 1000; };
+  const std::int64_t all = first + row(length(1001, 1, 1)) * budget.max_half_cycles +
+                           row(length(1, 1001, 1)) * budget.max_impacts +
+                           row(length(1, 1, 1001)) * most_samples;
+  CAPTURE(all);
+  CHECK(all <= static_cast<std::int64_t>(run_kind.most_bytes));
 }
 
 TEST_CASE("a scene file names what differs from the defaults") {

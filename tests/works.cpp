@@ -65,7 +65,7 @@ TEST_CASE("a long contact's works are those of a quadrature that follows all its
     const double wall_damping = system.nu * walls.damping;
     const Works<double> found = works_of(system, contact, begin, duration, wall_damping);
     const Works<double> expected =
-        works_of<double, Contact<double>>(system, contact, begin, duration, wall_damping);
+        works_of<Contact<double>>(system, contact, begin, duration, wall_damping);
     CAPTURE(n);
     CAPTURE(scene.mass_ratio);
     CAPTURE(scene.restitution);

@@ -292,7 +292,7 @@ void add_engine_options(CLI::App& app) {
       "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
       "than "
       "1 divided by its\nfrequency");
-  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 500000000");
+  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 300000000");
 }
 
 void add_output_options(CLI::App& app) {

@@ -62,7 +62,7 @@ struct Cem {
   std::optional<double> large_step;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
-  std::int64_t max_steps = 500'000'000;  // > 0; a budget like the others, for steps too small for the scene
+  std::int64_t max_steps = 300'000'000;  // > 0; a budget like the others, for steps too small for the scene
   Budget budget;
 
   bool operator==(const Cem&) const = default;

@@ -78,8 +78,10 @@ struct EnergyLedger {
                                     // initial energy plus the integral of the forcing's |power|
 };
 
-// Rows that a section of a run may be asked to have at most; samples that a history may be.
-inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 1'000'000;
+// Rows that a section of a run may be asked to have at most; samples that a history may be: with everything
+// that the default budgets admit beside them they take less than 200 MB, and their file can be read
+// (run_file.hpp).
+inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
 
 // What a run is asked to record. Nothing else is computed.
 struct HistoryWindow {  // `count` equally spaced samples, both ends included

@@ -235,8 +235,8 @@ def page(faults, results):
         return "`" + " ".join(text.split()).replace("|", "\\|") + "`" if text else "nothing"
 
     lines = ["# Planted faults and who caught them", "",
-             f"By `make mutation` ([mutate.py](mutate.py), which says how). {len(results)} faults, {len(caught)} caught "
-             f"({share:.1f} %), {len(left)} survived.", ""]
+             f"By `make mutation` ([mutate.py](mutate.py) says how). {len(results)} faults of {len(faults)} have been "
+             f"tried, {len(caught)} caught ({share:.1f} %), {len(left)} survived.", ""]
     if left:
         lines += ["| survived | fault | instead of | stands | why |", "|---|---|---|---|---|"]
         lines += [f"| {fault.file} | {fault.kind}: {fault.meaning} | {code(fault.fragment)} | {code(fault.replacement)} | "
@@ -298,9 +298,7 @@ def main():
     if not results:
         sys.exit("no fault matches")
     text, well = page(faults, results)
-    (folder / "results.md").write_text(text)
-    if len(results) == len(faults):
-        (HERE / "results.md").write_text(text)
+    (HERE / "results.md").write_text(text)
     print("\n".join(text.splitlines()[2:3]))
     sys.exit(0 if well else 1)
 

@@ -4,9 +4,9 @@ After each: no file under its final name is anything but what stood there before
 makes. Then the same is done again, undisturbed: it completes, with the same bytes, and nothing that the killed one
 left unfinished remains.
 
-Half of the kills come at any time of a process's life, half while a file is being written or renamed: when an
-unfinished one has been seen. All moments are drawn from the seed; that a machine meets them differently each time
-is the point of them.
+Half of the kills come at any time of a process's life; that a machine meets these moments differently each time is
+the point of them. The other half meets the writing of a file: the program is stopped at one of the points of it that
+hold.cpp knows, and killed there; figures/draw when an unfinished file has been seen. All are drawn from the seed.
 """
 
 import os
@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import scratch
 
@@ -27,9 +28,10 @@ class Victim:
         self.old = None  # what stands there before
         self.process = None
 
-    def start(self):
+    def start(self, **environment):
         self.process = subprocess.Popen(self.command, cwd=self.folder, stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.PIPE, env=scratch.ENVIRONMENT, start_new_session=True)
+                                        stderr=subprocess.PIPE, env={**scratch.ENVIRONMENT, **environment},
+                                        start_new_session=True)
 
     def contents(self):
         return {file: (self.folder / file).read_bytes() if (self.folder / file).exists() else None
@@ -53,11 +55,21 @@ class Victim:
                 (self.folder / file).write_bytes(content)
 
 
-def wait_for_moment(victim, random_moments):
-    """Whether the victim still lived then."""
-    if random_moments.random() < 0.5:
-        time.sleep(random_moments.uniform(0, victim.duration))
-        return victim.process.poll() is None
+POINTS = 5  # of each file's writing (hold.cpp)
+
+
+def stop_while_writing(victim, hold, random_moments, check):
+    """Starts the victim and stops it at one of its points. Whether it got there."""
+    at = random_moments.randrange(POINTS * len(victim.files))
+    victim.start(LD_PRELOAD=str(hold), HOLD_AT=str(at))
+    _, status = os.waitpid(victim.process.pid, os.WUNTRACED)
+    if not os.WIFSTOPPED(status):
+        victim.process.returncode = os.waitstatus_to_exitcode(status)
+    return check(os.WIFSTOPPED(status), f"{victim.name}: not stopped at point {at} of its writing: {status}")
+
+
+def see_unfinished(victim, random_moments):
+    """Waits until the victim has begun so many files. Whether it still lives then."""
     wait = random_moments.choice([0, 0, 0, random_moments.uniform(0, 0.003), random_moments.uniform(0, 0.03)])
     nth = random_moments.randint(1, len(victim.files))
     seen = set()
@@ -69,17 +81,26 @@ def wait_for_moment(victim, random_moments):
     return victim.process.poll() is None
 
 
-def kill_once(victim, random_moments, check, tally):
-    old = {file: random_moments.choice([None, b"old\n", victim.new[file]]) for file in victim.files}
+def kill_once(victim, hold, aimed, random_moments, check, tally):
+    """Aimed at the writing, or at any time."""
+    # Where the bytes are there already nothing is written.
+    old = {file: random_moments.choice([None, b"old\n"] + [victim.new[file]] * (not aimed)) for file in victim.files}
     victim.put_back(old)
-    victim.start()
-    alive = wait_for_moment(victim, random_moments)
+    if aimed and victim.name != "draw":
+        alive = stop_while_writing(victim, hold, random_moments, check)
+    else:
+        victim.start()
+        if aimed:
+            alive = see_unfinished(victim, random_moments)
+        else:
+            time.sleep(random_moments.uniform(0, victim.duration))
+            alive = victim.process.poll() is None
     if alive:
         os.killpg(victim.process.pid, signal.SIGKILL)
     scratch.kill_all_below_me()
     victim.process.stderr.close()
-    tally["alive"] += alive
     left = scratch.unfinished_in(victim.folder)
+    tally["alive"] += alive
     tally["unfinished"] += bool(left)
     for file, content in victim.contents().items():
         check(content in (old[file], victim.new[file]), f"{victim.name}: {file} is partial after a kill")
@@ -120,6 +141,7 @@ def kill_make(tree, wanted, random_moments, check, tally, duration):
 
 def main():
     parser = scratch.arguments(__doc__)
+    parser.add_argument("--hold", type=Path, required=True, help="hold.cpp, as it is built")
     parser.add_argument("--kills", type=int, default=110)
     parser.add_argument("--seed", type=int, default=None)
     parser.add_argument("--figures", nargs="*", help="only these; default all of the catalogue")
@@ -154,7 +176,7 @@ def main():
 
     victims = [
         victim("run", [program, "run", "--until-time", "300", "--record", "impacts,contacts,energy,history",
-                       "--history", "0:300:300000", "-o", "out.json"], ["out.json"]),
+                       "--history", "0:300:30000", "-o", "out.json"], ["out.json"]),
         victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "-o", "."], tables),
         victim("draw", [str(tree / "figures" / "draw"), script,
                         str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig"],
@@ -170,8 +192,10 @@ def main():
     shares["make figures"] = options.kills - sum(shares.values())
     for each in victims:
         tally = {"alive": 0, "unfinished": 0}
+        aimed = False
         while tally["alive"] < shares[each.name]:
-            kill_once(each, random_moments, check, tally)
+            aimed = not aimed
+            kill_once(each, options.hold.resolve(), aimed, random_moments, check, tally)
         print(f"{each.name}: {tally['alive']} kills, {tally['unfinished']} left something unfinished", flush=True)
 
     tally = {"alive": 0, "unfinished": 0}

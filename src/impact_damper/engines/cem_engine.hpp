@@ -25,7 +25,7 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
       pace_(small_),
       steps_left_(options.max_steps),
-      looks_left_(std::max<std::int64_t>(options.max_steps / 16, 10'000'000)) {
+      looks_left_(std::max<std::int64_t>(options.max_steps / 32, 10'000'000)) {
   if (options.large_step) {
     const Real large = multiple_of_h(*options.large_step);
     const Real pressed = stability_limit(scene, options.damper, options.calibration) / 2;

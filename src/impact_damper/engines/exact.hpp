@@ -19,9 +19,15 @@ namespace impact_damper {
 template <class Real, class Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
   require_arithmetic();
-  const System<Real> system(scene);
-  const ContactSystem<Real> walls(system, zeta_m<Real>(scene, options.calibration));
-  Timeline<Real, Observer> timeline(scene, system, options.budget, observer);
+  return with_system<Real>(scene,
+                           [&](const auto& system) { return run_exact(system, scene, options, observer); });
+}
+
+template <class Real, class Force, class Observer>
+Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                  Observer& observer) {
+  const ContactSystem<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
+  Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
   const auto depth_of = [](const State<Real>& s) {
@@ -37,7 +43,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
   const Real no_time = std::numeric_limits<Real>::epsilon() / walls.fast.rate();
   const auto pressed = [&](Real towards_cavity) {
     if (state.w != 0) return false;
-    const auto lead = Flight<Real>(system, timeline.now(), state).lead_of_y();
+    const auto lead = Flight<Real, Force>(system, timeline.now(), state).lead_of_y();
     return towards_cavity * (lead[2] + no_time * lead[3]) < 0;
   };
   bool in_contact =
@@ -48,7 +54,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
 
   while (!timeline.stopped()) {
     if (!in_contact) {
-      const Flight<Real> flight(system, timeline.now(), state);
+      const Flight<Real, Force> flight(system, timeline.now(), state);
       const auto met = flight.next_wall(Real(0), timeline.remaining(), timeline.span());
       if (met) state = met->state;
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
@@ -57,7 +63,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
       if (!timeline.impact(wall, state.w)) break;
       in_contact = by_impact = true;
     } else {
-      const Contact<Real> contact(walls, timeline.now(), state, wall);
+      const Contact<Real, Force> contact(walls, timeline.now(), state, wall);
       const auto left = contact.leave(timeline.remaining(), timeline.span());
       const Real begin = timeline.now();
       if (left) state = left->state;

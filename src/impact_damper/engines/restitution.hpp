@@ -28,8 +28,14 @@ namespace impact_damper {
 template <class Real, class Observer>
 Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
   require_arithmetic();
-  const System<Real> system(scene);
-  Timeline<Real, Observer> timeline(scene, system, options.budget, observer);
+  return with_system<Real>(
+      scene, [&](const auto& system) { return run_restitution(system, scene, options, observer); });
+}
+
+template <class Real, class Force, class Observer>
+Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
+                        Observer& observer) {
+  Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
   const Real nu = system.nu, e = system.e, tolerance = options.accumulation_tolerance;
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
@@ -44,7 +50,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
     const Real away = wall == Wall::left ? 1 : -1;
     const Real speed = away * state.w;
     if (speed < 0) return false;
-    const Flight<Real> flight(system, timeline.now(), state);
+    const Flight<Real, Force> flight(system, timeline.now(), state);
     const auto lead = flight.lead_of_y();
     const Real push = -away * lead[2];
     accumulation = 0;
@@ -66,7 +72,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
         ++observer.ledger().bounce_downs;
         observer.ledger().bounce_down_loss += double(loss);
       }
-      const Stuck<Real> stuck(system, timeline.now(), state.x, state.v + joined, wall);
+      const Stuck<Real, Force> stuck(system, timeline.now(), state.x, state.v + joined, wall);
       const Real begin = timeline.now() + accumulation;
       const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
       if (released) state = stuck.released(*released);
@@ -78,7 +84,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
       if (timeline.stopped()) break;
     }
 
-    const Flight<Real> flight(system, timeline.now(), state);
+    const Flight<Real, Force> flight(system, timeline.now(), state);
     // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4
     // y'''/|y''''|. Half of that is passed over, within which the sign of a y'' that is zero to rounding
     // would decide; but no more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of

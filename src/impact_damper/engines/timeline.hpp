@@ -27,16 +27,16 @@ class Clock {
   Real now_{0}, rounded_off_{0};
 };
 
-template <class Real, class Observer>
+template <class Real, class Force, class Observer>
 class Timeline {
  public:
-  Timeline(const Scene& scene, const System<Real>& system, const Budget& budget, Observer& observer)
+  Timeline(const Scene& scene, const System<Real, Force>& system, const Budget& budget, Observer& observer)
       : scene_(scene),
         system_(system),
         budget_(budget),
         observer_(observer),
         horizon_(horizon_of(scene, budget)),
-        span_(bounded_span(system.forcing)),
+        span_(bounded_span(system)),
         tracks_half_cycles_(observer.wants_half_cycles() || scene.until_amplitude.has_value()) {}
 
   const Real& now() const { return clock_.now(); }
@@ -165,7 +165,7 @@ class Timeline {
       row_peak_time_ = zero;
       from = *crossing;
       rising = true;
-      may_cross = !(duration < from + motion.one_zero_within(from));
+      may_cross = !motion.leaves_zero(from, end, duration);
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
@@ -189,7 +189,7 @@ class Timeline {
   }
 
   const Scene& scene_;
-  const System<Real>& system_;
+  const System<Real, Force>& system_;
   const Budget& budget_;
   Observer& observer_;
   Clock<Real> clock_;

@@ -16,8 +16,8 @@ namespace impact_damper {
 
 inline constexpr std::string_view run_schema = "impact-damper/run/1";
 
-// Read, a file takes a few times its length in memory, so that has a limit: a million and a half rows of
-// impacts, a million samples of the history.
+// Read, a file takes a few times its length in memory, so that has a limit: all that the default budgets
+// admit and the longest history, however long their numbers are.
 inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
 // The run as the text of its file. Throws NumericalError naming the column that holds a number which is

@@ -41,25 +41,24 @@ struct Arrival {
 template <class Real, std::size_t N>
 using Derivatives = std::array<Real, N>;
 
-// c_0 + c_1 s + c_2 s^2 + ..., an even number of terms: even and odd powers apart, half as long a chain of
-// operations that wait for each other.
+// c_0 + c_1 s + c_2 s^2 + ...: even and odd powers apart, half as long a chain of operations that wait for
+// each other.
 template <class Real, std::size_t N>
 Real sum(const std::array<Real, N>& c, const Real& s) {
-  static_assert(N % 2 == 0);
+  static_assert(N >= 2);
   const Real s_2 = s * s;
-  Real even = c[N - 2], odd = c[N - 1];
-  for (std::size_t n = N - 2; n > 0; n -= 2) {
-    even = c[n - 2] + s_2 * even;
-    odd = c[n - 1] + s_2 * odd;
+  Real highest = c[N - 1], next = c[N - 2];
+  for (std::size_t n = N - 1; n >= 2; n -= 2) {
+    highest = c[n - 2] + s_2 * highest;
+    if (n > 2) next = c[n - 3] + s_2 * next;
   }
-  return even + s * odd;
+  return N % 2 == 0 ? next + s * highest : highest + s * next;
 }
 // The terms of its derivative.
 template <class Real, std::size_t N>
-std::array<Real, N> slopes(const std::array<Real, N>& c) {
-  std::array<Real, N> d;
+std::array<Real, N - 1> slopes(const std::array<Real, N>& c) {
+  std::array<Real, N - 1> d;
   for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
-  d[N - 1] = 0;
   return d;
 }
 
@@ -130,7 +129,7 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
     const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
     if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
     t += step;
-    if (t > short_time && size * 64 < t) break;
+    if (t > short_time && size * 32 < t) break;
   }
   return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
 }
@@ -140,9 +139,10 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
 template <class Real>
 bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
                    const Real& fourth) {
-  const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
+  const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4,
+             off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
-  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) / 6;
+  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6];
   if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
     return false;
   if (after >= 0 && before >= 0 && middle > off) return true;
@@ -154,9 +154,9 @@ bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real&
 template <class Real>
 bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& slope1, const Real& h,
                 const Real& fourth) {
-  const Real quarter = h / 4, off = fourth * (h * h) * (h * h) / 144;
+  const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
-         (u0 + u1) / 2 + h * (slope0 - slope1) / 6 > off;
+         (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;
 }
 
 // A guess made good, where the series is so short a time the motion itself: u' at the wall.
@@ -168,12 +168,13 @@ struct SeriesLanding {
 template <class Real>
 SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
   const auto& [h, across, g, g1, g2] = guess;
-  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
   const Real hr = h * rate, hr_2 = hr * hr, tiny = std::numeric_limits<Real>::epsilon() / 16;
-  // What is left out: of u' |u^(8)| h^7/7!, of the shift its third power.
-  return {shift, g1 + shift * g2,
-          fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate) &&
-              absolute(shift) * 33554432 < h};
+  // What is left out of u': |u^(8)| h^7/7!.
+  if (!(fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate)))
+    return {0, g1, false};
+  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
+  // And of the shift, its third power.
+  return {shift, g1 + shift * g2, absolute(shift) * 33554432 < h};
 }
 
 }  // namespace impact_damper

@@ -1,129 +1,18 @@
 // Contact with a compliant wall: the full coupled system, in closed form.
 //
-// With q the overlap coordinate (y at the left wall, y - 1 at the right; q < 0 and q > 0 in contact),
-// K = omega_m^2 = k/nu and c = 2 omega_m zeta_m, equations (5)-(8) read
-//     x'' + 2 zeta x' + x = nu (c q' + K q) + f,      x'' + q'' + c q' + K q = 0.
-// Their characteristic polynomial P(s), of fourth degree, is factored once per scene into two real quadratics
-// (contact_factors.hpp): Q1 = s^2 + p s + b, slow (both masses moving together), and Q2 = s^2 + p2 s + b2,
-// fast (the wall giving way). A state is split into the part that lives in either, and each part moves by its
-// own oscillator's C and S (oscillator.hpp), critically damped or not.
-//
-// The split. Q2(d/dt) removes the fast part of a motion u and leaves (alpha d/dt + beta) u of the slow one,
-// alpha = p2 - p, beta = b2 - b; Q1(d/dt) the other way round, with the sign changed. With the resultant
-// R = beta^2 - alpha beta p + alpha^2 b, the inverse of alpha s + beta is
-//     (beta - alpha p - alpha s)/R modulo Q1,    (beta - alpha p2 - alpha s)/R modulo Q2.
-// Where digits could go: u'' is as large as the fast motion makes it, and what Q2 leaves of it would be its
-// rounding errors. So two coordinates are taken that the equations couple weakly: q, which the joined masses
-// hardly move, and the masses' centre X = x + nu/(1+nu) q, which the wall does not move. With J, H and D of
-// contact_factors.hpp they are J X = nu/(1+nu)^2 D q and H q = D X, and
-//     Q2 q = D X + (Q2 - H) q,    Q1 X = nu/(1+nu)^2 D q + (Q1 - J) X,
-// whose coefficients are all small and known to their own last digit. What remains of q and of X is fast
-// and slow, by subtraction, and x = X - nu/(1+nu) q. (The coupling is not weak where the primary mass's own
-// damper holds it faster than the wall does, zeta above some hundreds, or the wall is far softer than the
-// spring, k below 1: there energy ledgers were seen open by up to 1e-6.)
+// x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow part, both masses
+// moving together, and a fast one, the wall giving way (contact_system.hpp). A state is split into the two,
+// and each moves by its own oscillator's C and S (oscillator.hpp), critically damped or not.
 #pragma once
 
-#include "impact_damper/motion/contact_factors.hpp"
-#include "impact_damper/motion/rebound.hpp"
-#include "impact_damper/motion/swing.hpp"
+#include "impact_damper/motion/contact_system.hpp"
 
 namespace impact_damper {
 
-template <class Real>
-class ContactSystem {
- public:
-  ContactSystem(const System<Real>& system, const Real& zeta_m)
-      : nu(system.nu),
-        zeta(system.zeta),
-        stiffness(system.k / system.nu),
-        damping(2 * zeta_m * square_root(stiffness)),
-        forcing(system.forcing),
-        joined_(1 / (1 + nu)),
-        share_(nu / (1 + nu)) {
-    const auto& [p, b, p2, b2, dp, db, db2] = factors_ = factor_contact(nu, zeta, stiffness, damping);
-    slow = Oscillator<Real>(p / 2, b);
-    fast = Oscillator<Real>(p2 / 2, b2);
-    const Real alpha = p2 - p, beta = b2 - b, resultant = beta * (beta - alpha * p) + alpha * alpha * b;
-    alpha_ = alpha / resultant;
-    beta_ = beta / resultant;
-    slow_ = (beta - alpha * p) / resultant;
-    fast_ = (beta - alpha * p2) / resultant;
-    // What one unit of forcing accelerates: x'' by 1, q'' by -1.
-    split({0, 1, 0, -1}, drive_slow, drive_fast);
-    std::array<Touch<Real>, 3> touch;
-    touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
-    touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
-    touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
-    piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
-    slow_piece = slow.propagate(piece);
-    fast_piece = fast.propagate(piece);
-    if (!forcing)
-      rebound =
-          Rebound<Real>(slow, fast, share_, zeta, touch,
-                        [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
-  }
-
-  // u = slow + fast. Returns what the fast part moves the centre X by.
-  Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
-                     ContactState<Real>& fast_part) const {
-    const auto& [p, b, p2, b2, dp, db, db2] = factors_;
-    const Real dx = 2 * zeta * u.v + u.x;  // D x
-    const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
-    // So that rounding does not show where the secondary mass stands still, however heavy it is.
-    const Real X = joined_ * (u.x + nu * (u.x + u.q)), X1 = joined_ * (u.v + nu * (u.v + u.w));
-    const Real X2 = -joined_ * dx;
-
-    const Real r = 2 * zeta * X1 + X - dp * u.w + db2 * u.q;  // Q2 q and its derivative
-    const Real r1 = 2 * zeta * X2 + X1 - dp * q2 + db2 * u.w;
-    slow_part.q = slow_ * r - alpha_ * r1;
-    slow_part.w = beta_ * r1 + alpha_ * b * r;
-    fast_part.q = u.q - slow_part.q;
-    fast_part.w = u.w - slow_part.w;
-
-    const Real f = share_ * joined_ * (2 * zeta * u.w + u.q) + dp * X1 + db * X;  // Q1 X and its derivative
-    const Real f1 = share_ * joined_ * (2 * zeta * q2 + u.w) + dp * X2 + db * X1;
-    const Centre<Real> centre{alpha_ * f1 - fast_ * f, -(beta_ * f1 + alpha_ * b2 * f)};
-    fast_part.x = centre.x - share_ * fast_part.q;
-    fast_part.v = centre.v - share_ * fast_part.w;
-    slow_part.x = u.x - fast_part.x;
-    slow_part.v = u.v - fast_part.v;
-    return centre;
-  }
-
-  // Derivatives of x and q without forcing, from the equations themselves.
-  template <std::size_t N>
-  void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q) const {
-    x[0] = state.x;
-    x[1] = state.v;
-    q[0] = state.q;
-    q[1] = state.w;
-    for (std::size_t n = 2; n < N; ++n) {
-      const Real force = damping * q[n - 1] + stiffness * q[n - 2];
-      x[n] = nu * force - 2 * zeta * x[n - 1] - x[n - 2];
-      q[n] = -force - x[n];
-    }
-  }
-
-  Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
-  Forcing<Real> forcing;
-  Oscillator<Real> slow, fast;
-  ContactState<Real> drive_slow, drive_fast;
-
-  Rebound<Real> rebound;
-  // Both parts' motion for a time in which the fast one goes not far: a quarter of its swing.
-  Real piece;
-  Propagator<Real> slow_piece, fast_piece;
-
- private:
-  Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
-  ContactFactors<Real> factors_;
-  Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2, by the resultant
-};
-
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Contact {
  public:
-  Contact(const ContactSystem<Real>& system, const Real& begin, const State<Real>& start, Wall wall)
+  Contact(const ContactSystem<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : system_(system),
         begin_(begin),
         start_(start),
@@ -167,7 +56,7 @@ class Contact {
   ContactState<Real> fast_at(const Real& t) const {
     return move(system_.fast, parts().fast, system_.drive_fast, t);
   }
-  const ContactSystem<Real>& system() const { return system_; }
+  const ContactSystem<Real, Force>& system() const { return system_; }
 
   // Towards zero: how deep the secondary mass is in the wall.
   Outlook<Real> depth(const Real& t, const Real& span) const {
@@ -184,11 +73,15 @@ class Contact {
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
   Real one_zero_within(const Real& from) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
     const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
     return c.fast.left(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
+  }
+  // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return t < from + one_zero_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
   }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
@@ -198,7 +91,7 @@ class Contact {
   }
   // |x| at a turn.
   Real height(const Real& t) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (!c.forcing && parts_ && c.slow.rings()) {
       const auto& [slow, fast] = *parts_;
       const Real height = c.slow.height(slow.x, slow.v, t);
@@ -215,7 +108,7 @@ class Contact {
   // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
   // rounding errors would decide where one is zero.
   std::array<Real, 4> leads_of_x() const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     const auto f = c.forcing.template derivatives<2>(begin_);
     const Real force = c.damping * start_.w + c.stiffness * (start_.y - wall_);
     const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
@@ -244,20 +137,44 @@ class Contact {
   }
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, where that is
-  // when the slow part's does: where what is left of the fast one is less than a rounding error, from `from`
-  // on or, in a contact's beginning, from halfway there on, and was smaller than the slow part before. That
-  // is exp(-a t) times the arc of a sine, above its chord: half of what it began with is left halfway.
+  // about when the slow part does, F. Nothing where that is not proved.
+  //
+  // The proof. The slow part u is exp(-a t) times the arc of a sine, and so above exp(-a F) times its chord.
+  // What is left of the fast part only decays, and is less than that chord until a time, and what is left
+  // then until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from
+  // there on, by a bound on u'', and once; and a step of Newton's from F finds where.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
-    const auto slow = derivatives<3>(c.slow, parts().slow.x, parts().slow.v);
-    const auto fast = derivatives<3>(c.fast, parts().fast.x, parts().fast.v);
-    const Real u = sign * slow[order], u1 = sign * slow[order + 1], f = fast[order], f1 = fast[order + 1];
-    const Real fall = c.slow.fall(u, u1, from), quiet = from > 0 ? from : Real(fall / 2);
-    const Real kept = c.slow.kept(quiet);
-    const Real size = absolute(u) + absolute(u1) / c.slow.root_b();
-    if (!(c.fast.left(f, f1, quiet) < std::numeric_limits<Real>::epsilon() / 32 * kept * size)) return {};
-    return from > 0 || 2 * c.fast.left(f, f1, Real(0)) < kept * u ? std::optional(fall) : std::nullopt;
+    const auto slow = derivatives<5>(c.slow, parts().slow.x, parts().slow.v);
+    const auto fast = derivatives<5>(c.fast, parts().fast.x, parts().fast.v);
+    const auto left = [&](std::size_t n, const Real& t) {
+      return c.fast.left(fast[order + n], fast[order + n + 1], t);
+    };
+    const Real u = sign * slow[order], u1 = sign * slow[order + 1];
+    const Real fall = c.slow.fall(u, u1, from), kept = c.slow.kept(fall);
+    const Real nothing =
+        std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
+    if (from > 0) return left(0, from) < nothing ? std::optional(fall) : std::nullopt;
+
+    Real quiet{0}, rest = left(0, quiet);
+    for (int i = 0; i < 2; ++i) {
+      if (!(rest < kept * u)) return {};
+      quiet = fall - fall * rest / (kept * u);
+      rest = left(0, quiet);
+      if (rest < nothing) return fall;
+    }
+    const ContactState<Real> slow_then = slow_at(fall), fast_then = fast_at(fall);
+    const auto u_then = derivatives<3>(c.slow, slow_then.x, slow_then.v);
+    const auto f_then = derivatives<3>(c.fast, fast_then.x, fast_then.v);
+    const Real slope = absolute(u_then[order + 1]);
+    const Real second = c.slow.left(slow[order + 2], slow[order + 3], Real(0));
+    const Real within = fall - quiet + 2 * rest / slope;
+    if (!(2 * (second * within + left(1, quiet)) < slope)) return {};
+    const Real shift = -(u_then[order] + f_then[order]) / (u_then[order + 1] + f_then[order + 1]);
+    const Real enough = std::numeric_limits<Real>::epsilon() / 32 * fall;
+    if (!((second + left(2, quiet)) * (shift * shift) < enough * slope)) return {};
+    return fall + shift;
   }
 
   // The end of a contact that lasts: the fast motion dies away, and the mass leaves at h, when the slow one
@@ -269,7 +186,7 @@ class Contact {
   // sides). (2) Where by h it is less than a rounding error, this is the end; else (3) the end is corrected,
   // and proved by the bound again.
   std::optional<typename Rebound<Real>::End> settle() const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
@@ -306,7 +223,7 @@ class Contact {
   }
   std::optional<typename Rebound<Real>::End> settle_after(const Real& late, Real h,
                                                           const Real& slow_fourth) const {
-    const ContactSystem<Real>& c = system_;
+    const ContactSystem<Real, Force>& c = system_;
     const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
     const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth, last = h;
     for (int correction = 0; correction < 4; ++correction) {
@@ -337,11 +254,10 @@ class Contact {
                                 const Overlap& now) {
     return {p.c * now.q + p.s * now.w, p.v * now.w - oscillator.b() * p.s * now.q};
   }
-  // A bound on |u''''| from here on: its size, which no damping raises.
+  // A bound on |u''''| from here on.
   static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
     const auto d = derivatives<6>(oscillator, u, u1);
-    const Real scaled = d[5] / oscillator.root_b();
-    return square_root(Real(d[4] * d[4] + scaled * scaled));
+    return oscillator.size(d[4], d[5]);
   }
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
@@ -377,7 +293,7 @@ class Contact {
 
   // A displacement that is driven by `drive` and its velocity by `drive1` obeys the oscillator's equation
   // under (drive1 + 2 a drive) f + drive f'.
-  using Part = Instant<Real, 6>;
+  using Part = Instant<Real, 6, Force>;
   static Real on_f(const Oscillator<Real>& oscillator, const Real& drive, const Real& drive1) {
     return drive1 + 2 * oscillator.a() * drive;
   }
@@ -401,7 +317,7 @@ class Contact {
             fast.transient(n)};
   }
 
-  const ContactSystem<Real>& system_;
+  const ContactSystem<Real, Force>& system_;
   Real begin_;
   State<Real> start_;
   Real wall_, inward_;

@@ -1,4 +1,4 @@
-// The contact's characteristic polynomial P(s) (contact.hpp) as a product of two real quadratics.
+// The contact's characteristic polynomial P(s) (contact_system.hpp) as a product of two real quadratics.
 //
 // P = J H - g D^2: J = s^2 + j1 s + j0 is the two masses joined (the stuck regime), H = s^2 + h1 s + h0 the
 // wall between them, and what couples the two, D = 2 zeta s + 1, g = nu/(1+nu)^2, is weak if the wall is

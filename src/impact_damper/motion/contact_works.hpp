@@ -54,8 +54,8 @@ struct RateParts {
   Wave<Real> force;                  // F of slow
 };
 
-template <class Real>
-RateParts<Real> rate_parts(const ContactSystem<Real>& walls, const ContactState<Real>& slow,
+template <class Real, class Force>
+RateParts<Real> rate_parts(const ContactSystem<Real, Force>& walls, const ContactState<Real>& slow,
                            const ContactState<Real>& fast, Real ContactState<Real>::*u,
                            Real ContactState<Real>::*u1, const Real& time) {
   // A part obeys u'' + 2 a u' + b u = on_f f + on_f1 f'.
@@ -82,16 +82,16 @@ RateParts<Real> rate_parts(const ContactSystem<Real>& walls, const ContactState<
 }
 
 // As the works of any motion (energy.hpp), at a cost that does not grow with how long the wall rings.
-template <class Real>
-Works<Real> works_of(const System<Real>& system, const Contact<Real>& contact, const Real& begin,
-                     const Real& duration, const Real& wall_damping) {
-  const ContactSystem<Real>& walls = contact.system();
+template <class Real, class Force>
+Works<Real> works_of(const System<Real, Force>& system, const Contact<Real, Force>& contact,
+                     const Real& begin, const Real& duration, const Real& wall_damping) {
+  const ContactSystem<Real, Force>& walls = contact.system();
   const Oscillator<Real>&slow = walls.slow, &fast = walls.fast;
   const Real square = walls.forcing ? walls.forcing.frequency * walls.forcing.frequency : Real(0);
   const bool apart = fast.b() > 64 * square && (!slow.rings() || fast.rate() > 8 * slow.rate());
   const bool lasts = fast.rate() * duration > 200;
   if (!(fast.rings() && apart && lasts)) {
-    return works_of<Real, Contact<Real>>(system, contact, begin, duration, wall_damping);
+    return works_of<Contact<Real, Force>>(system, contact, begin, duration, wall_damping);
   }
   using State = ContactState<Real>;
   const auto x_rate = [&](const State& slow_part, const State& fast_part, const Real& t) {

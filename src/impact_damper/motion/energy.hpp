@@ -12,8 +12,8 @@ namespace impact_damper {
 
 // Energy of a state, by K epsilon^2; `depth` is how deep the secondary mass is in a compliant wall.
 // Kinetic energy with the cross term that the paper's sum of squares drops: m is carried along with x'.
-template <class Real>
-Energy energy_of(const System<Real>& system, const State<Real>& s, const Real& depth) {
+template <class Real, class Force>
+Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const Real& depth) {
   Energy energy;
   const Real z1 = s.v + s.w;
   energy.kinetic = double((s.v * s.v + system.nu * z1 * z1) / 2);
@@ -47,9 +47,9 @@ inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1
 // length panel(t); wall_damping is nu c in contact, else 0. As exact as Gauss's 16 points are over a panel
 // (Oscillator::panel: to rounding), as long as there are no more than 65536 panels: then they get longer, and
 // what swings so often averages out.
-template <class Real, class Rates, class Panel>
-Works<Real> integrated_works(const System<Real>& system, Rates&& rates, Panel&& panel, const Real& begin,
-                             const Real& duration, const Real& wall_damping) {
+template <class Real, class Force, class Rates, class Panel>
+Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, Panel&& panel,
+                             const Real& begin, const Real& duration, const Real& wall_damping) {
   Works<Real> works;
   Real from{0};
   const Real least = duration / 65536;
@@ -78,8 +78,8 @@ Works<Real> integrated_works(const System<Real>& system, Rates&& rates, Panel&& 
   return works;
 }
 
-template <class Real, class Motion>
-Works<Real> works_of(const System<Real>& system, const Motion& motion, const Real& begin,
+template <class Motion, class Real, class Force>
+Works<Real> works_of(const System<Real, Force>& system, const Motion& motion, const Real& begin,
                      const Real& duration, const Real& wall_damping) {
   if (system.zeta == 0 && !system.forcing && wall_damping == 0) return {};
   const auto rates = [&](const Real& t) {

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -66,6 +67,10 @@ Real certified_step(const Jet<Real>& jet, const Real& most) {
     const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
     if (parabola < high) high = parabola;
   }
+  // From zero on quartering is exact, so many at once come to the same number: the root may be 1e300 times
+  // nearer.
+  const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
+  while (low == 0 && p(high * much_nearer) < 0) high *= much_nearer;
   // Wherever p is still positive lies before the root.
   Real nearer = low + (high - low) / 4;
   while (p(nearer) < 0) {

@@ -6,10 +6,10 @@
 
 namespace impact_damper {
 
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Flight {
  public:
-  Flight(const System<Real>& system, const Real& begin, const State<Real>& start)
+  Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : swing_(system.free, system.forcing, begin, start.x, start.v),
         start_(start),
         wall_(start.y > Real(0.5) ? 1 : 0),
@@ -48,7 +48,7 @@ class Flight {
 
   // y and its first three derivatives at the beginning, and a bound on the fourth from there on.
   Derivatives<Real, 4> lead_of_y() const {
-    const auto x = swing_.template derivatives<4>(start_.x, start_.v, Real(0));
+    const auto x = swing_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
   Real fourth_of_y(const Real& span) const { return swing_.beginning().bound(4, span); }
@@ -59,6 +59,9 @@ class Flight {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return swing_.keeps_course(end.v, t);
   }
+  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
+    return swing_.leaves_zero(from, t);
+  }
   Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
@@ -68,7 +71,7 @@ class Flight {
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     return swing_.outlook_at(order, sign, t, span);
   }
-  typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
+  typename Swing<Real, Force>::Beginning leads_of_x() const { return swing_.beginning(); }
   Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
@@ -86,11 +89,16 @@ class Flight {
   State<Real> state_of(const Place& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
   }
+  // Of u, by those of -away x, with which all but the first two agree.
   template <std::size_t N>
-  Derivatives<Real, N> derivatives_of_u(const Place& place, const Derivatives<Real, N>& x) const {
-    Derivatives<Real, N> u{place.u, place.u1};
-    for (std::size_t n = 2; n < N; ++n) u[n] = -away_ * x[n];
-    return u;
+  static Derivatives<Real, N> derivatives_of_u(const Place& place, Derivatives<Real, N> opposite_x) {
+    opposite_x[0] = place.u;
+    opposite_x[1] = place.u1;
+    return opposite_x;
+  }
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives_of_opposite_x(const Place& place, const Real& t) const {
+    return swing_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
   }
   // By both ends of a time h, or by those of its halves, and so on.
   template <std::size_t N>
@@ -102,9 +110,8 @@ class Flight {
     const Real half = h / 2;
     const Place middle = from_wall(begin + half);
     return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
-           stays_between_walls(
-               derivatives_of_u(middle, swing_.template derivatives<4>(middle.x, middle.v, begin + half)),
-               Real(begin + half), to, half, fourth, halvings - 1);
+           stays_between_walls(derivatives_of_u(middle, derivatives_of_opposite_x<4>(middle, begin + half)),
+                               Real(begin + half), to, half, fourth, halvings - 1);
   }
   // By guess and proof (arrival.hpp), in a few pieces; nothing where that does not come to an end.
   [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
@@ -112,9 +119,9 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto x = swing_.template instant<8>(here.x, here.v, begin);
-      const auto u = derivatives_of_u(here, x.derivatives());
-      const Real fourth = x.bound(4, span);
+      const auto [opposite_x, fourth] =
+          swing_.template lead<8>(-away_ * here.x, -away_ * here.v, begin, -away_, span);
+      const auto u = derivatives_of_u(here, opposite_x);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
                                const Real& u1) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
@@ -138,13 +145,13 @@ class Flight {
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto x_there = swing_.template derivatives<6>(there.x, there.v, begin + h);
+        const auto x_there = derivatives_of_opposite_x<6>(there, begin + h);
         const auto u_there = derivatives_of_u(there, x_there);
         const bool across = there.u > Real(0.5);
         const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4) {
           const auto [x1, v1] = moved(x_there, shift);
-          return reached(across, h + shift, x1, v1, moved(u_there, shift).u1);
+          return reached(across, h + shift, -away_ * x1, -away_ * v1, moved(u_there, shift).u1);
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
         if (correction == 5 || !(near || beyond)) break;
@@ -158,7 +165,7 @@ class Flight {
     return {};
   }
 
-  Swing<Real> swing_;
+  Swing<Real, Force> swing_;
   State<Real> start_;
   Real wall_, away_;
 };

@@ -50,6 +50,18 @@ struct Forcing {
   }
 };
 
+// None, known when compiled: what scenes without forcing need not ask is not there.
+template <class Real>
+struct NoForcing {
+  Real amplitude{0}, frequency{1};
+  explicit constexpr operator bool() const { return false; }
+
+  template <std::size_t N>
+  std::array<Real, N> derivatives(const Real&) const {
+    return {};
+  }
+};
+
 // Displacement and velocity, from rest, of an oscillator under f.
 template <class Real>
 struct DrivenResponse {
@@ -65,6 +77,7 @@ class Oscillator {
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
     root_b_ = square_root(b);
+    over_root_b_ = 1 / root_b_;
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
@@ -97,6 +110,11 @@ class Oscillator {
     const Real size =
         absolute(u) + (underdamped_ ? Real(along / omega_) : Real(along * (t + 1 / slow_rate_)));
     return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
+  }
+  // The size of a free motion with u and u', which no damping raises: a bound on u from then on.
+  Real size(const Real& u, const Real& u1) const {
+    const Real scaled = u1 * over_root_b_;
+    return square_root(Real(u * u + scaled * scaled));
   }
   // At least so much of a free motion's swing is left after a time t: a bound on exp(-a t), cheaply where
   // near.
@@ -149,7 +167,8 @@ class Oscillator {
   }
 
   // Response, from rest at time `begin`, after a time t. `p` is propagate(t).
-  DrivenResponse<Real> respond(const Forcing<Real>& forcing, const Real& begin, const Real& t,
+  template <class Force>
+  DrivenResponse<Real> respond(const Force& forcing, const Real& begin, const Real& t,
                                const Propagator<Real>& p) const {
     if (t == 0) return {};
     const auto [sin, cos] = sin_cos(forcing.frequency * begin);
@@ -218,7 +237,8 @@ class Oscillator {
     return p;
   }
 
-  DrivenResponse<Real> respond_shortly(const Forcing<Real>& forcing, const Real& sin, const Real& cos,
+  template <class Force>
+  DrivenResponse<Real> respond_shortly(const Force& forcing, const Real& sin, const Real& cos,
                                        const Real& t) const {
     const Real at = 2 * a_ * t, bt = b_ * t * t, phase = forcing.frequency * t;
     // d_n, f_n: terms of order t^n of the response and of the force times t^2.
@@ -276,7 +296,7 @@ class Oscillator {
   Real omega_{1};      // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
-  Real root_b_{1}, half_period_{0};
+  Real root_b_{1}, over_root_b_{1}, half_period_{0};
 };
 
 // u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.
@@ -303,12 +323,12 @@ std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& 
 
 // An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
 // from there on.
-template <class Real, std::size_t N>
+template <class Real, std::size_t N, class Force = Forcing<Real>>
 class Instant {
  public:
   Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
-          const Real& on_f1, const Forcing<Real>& forcing, const Real& time)
-      : root_b_(oscillator.root_b()), frequency_(forcing.frequency) {
+          const Real& on_f1, const Force& forcing, const Real& time)
+      : oscillator_(oscillator), forcing_(forcing) {
     if (!forcing) {
       d_ = impact_damper::derivatives<N>(oscillator, u, u1);
       return;
@@ -318,12 +338,13 @@ class Instant {
     // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
     // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the
     // other.
-    const Real re = oscillator.b() - frequency_ * frequency_, im = 2 * oscillator.a() * frequency_;
+    const Real frequency = forcing.frequency;
+    const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
     const Real h2 = re * re + im * im;
-    const Real on_sin = (re * on_f + im * on_f1 * frequency_) / h2;
-    const Real on_cos = (re * on_f1 - im * on_f / frequency_) / h2;
+    const Real on_sin = (re * on_f + im * on_f1 * frequency) / h2;
+    const Real on_cos = (re * on_f1 - im * on_f / frequency) / h2;
     for (std::size_t n = 0; n < N; ++n) steady_[n] = on_sin * f[n] + on_cos * f[n + 1];
-    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency_ * frequency_));
+    const Real size = square_root(Real(on_f * on_f + on_f1 * on_f1 * frequency * frequency));
     force_ = absolute(forcing.amplitude) * size;
     steady_size_ = force_ / square_root(h2);
   }
@@ -335,31 +356,31 @@ class Instant {
   // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per
   // time. Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
   Real bound(std::size_t n, const Real& span) const {
-    const Real free = size_of(d_[n], d_[n + 1]);
-    if (force_ == 0) return free;
+    const Real free = oscillator_.size(d_[n], d_[n + 1]);
+    if (!forcing_) return free;
     Real power{1};
-    for (std::size_t i = 0; i < n; ++i) power *= frequency_;
-    const Real growing = free + force_ * power * span / root_b_, steady = steady_size_ * power + transient(n);
+    for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
+    const Real growing = free + force_ * power * span / oscillator_.root_b(),
+               steady = steady_size_ * power + transient(n);
     return steady < growing ? steady : growing;  // growing where steady is NaN
   }
   // The steady state that the forcing keeps up, and a bound on it.
   const Real& steady(std::size_t n) const { return steady_[n]; }
   Real steady_bound(std::size_t n) const {
     Real size = steady_size_;
-    for (std::size_t i = 0; i < n; ++i) size *= frequency_;
+    for (std::size_t i = 0; i < n; ++i) size *= forcing_.frequency;
     return size;
   }
   // What of u^(n) is not the steady state, at most, from here on.
-  Real transient(std::size_t n) const { return size_of(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]); }
-
- private:
-  Real size_of(const Real& u, const Real& u1) const {
-    const Real scaled = u1 / root_b_;
-    return square_root(Real(u * u + scaled * scaled));
+  Real transient(std::size_t n) const {
+    return oscillator_.size(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]);
   }
 
+ private:
+  const Oscillator<Real>& oscillator_;
+  Force forcing_;
   std::array<Real, N> d_, steady_{};
-  Real root_b_, frequency_, force_{0}, steady_size_{0};
+  Real force_{0}, steady_size_{0};
 };
 
 }  // namespace impact_damper

@@ -71,9 +71,6 @@ class Rebound {
       const Real root_b = square_root(o.b()), z = o.a() / root_b;
       return Real(root_b * (z + square_root(Real(1 + z * z))));
     };
-    const auto size = [](const Oscillator<Real>& o, const Real& u, const Real& u1) {
-      return Real(square_root(Real(u * u + u1 * u1 / o.b())));
-    };
     const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& [s, f, fast_centre] = start[i];
@@ -102,9 +99,9 @@ class Rebound {
       }
       const Real along = (f.w + fast.a() * f.q) / omega;
       fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
-      slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * size(slow, s.q, s.w);
-      const Real slow_x = slow_rate * slow_rate * size(slow, s.x, s.v);
-      const Real fast_x = fast_rate * fast_rate * size(fast, f.x, f.v);
+      slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * slow.size(s.q, s.w);
+      const Real slow_x = slow_rate * slow_rate * slow.size(s.x, s.v);
+      const Real fast_x = fast_rate * fast_rate * fast.size(f.x, f.v);
       second_of_x_[i] = slow_x + fast_x;
       third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
     }
@@ -126,7 +123,7 @@ class Rebound {
       if (const auto end = end_within<few>(start, s, few_)) return end;
     if (size < more_.s)
       if (const auto end = end_within<more>(start, s, more_)) return end;
-    return end_within<many>(start, s, many_);
+    return size < many_.s ? end_within<many>(start, s, many_) : std::nullopt;
   }
   // Bounds on the second and third derivative of x in it.
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {

@@ -5,10 +5,10 @@
 
 namespace impact_damper {
 
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Stuck {
  public:
-  Stuck(const System<Real>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
+  Stuck(const System<Real, Force>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
       : swing_(system.stuck, {system.forcing.amplitude / (1 + system.nu), system.forcing.frequency}, begin, x,
                v),
         start_{x, v, wall == Wall::left ? Real(0) : Real(1), Real(0)},
@@ -35,6 +35,9 @@ class Stuck {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return swing_.keeps_course(end.v, t);
   }
+  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
+    return swing_.leaves_zero(from, t);
+  }
   Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
@@ -44,12 +47,12 @@ class Stuck {
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
     return swing_.outlook_at(order, sign, t, span);
   }
-  typename Swing<Real>::Beginning leads_of_x() const { return swing_.beginning(); }
+  typename Swing<Real, Force>::Beginning leads_of_x() const { return swing_.beginning(); }
   Real panel(const Real& t) const { return swing_.panel(t); }
   Real resolution() const { return 1; }
 
  private:
-  Swing<Real> swing_;
+  Swing<Real, Force> swing_;
   State<Real> start_;
   Real push_;
 };

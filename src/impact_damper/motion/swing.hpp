@@ -13,7 +13,7 @@
 namespace impact_damper {
 
 // The scene's numbers in the engine's scalar type.
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 struct System {
   explicit System(const Scene& scene)
       : nu(scene.mass_ratio),
@@ -25,14 +25,20 @@ struct System {
         stuck(zeta / (1 + nu), 1 / (1 + nu)) {}
 
   Real nu, e, zeta, k;
-  Forcing<Real> forcing;
+  Force forcing;
   Oscillator<Real> free;   // equation (3)
   Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
 };
 
+// Calls `then` with the scene's numbers, whose type tells whether there is a forcing.
+template <class Real, class Then>
+auto with_system(const Scene& scene, Then&& then) {
+  return scene.force_amplitude == 0 ? then(System<Real, NoForcing<Real>>(scene)) : then(System<Real>(scene));
+}
+
 // A quadrature panel (Oscillator::panel), no longer than the forcing allows.
-template <class Real>
-Real panel_under(const Forcing<Real>& forcing, const Real& panel) {
+template <class Real, class Force>
+Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
 }
 
@@ -54,10 +60,10 @@ bool keeps_sign(const Real& u0, const Real& u1, const Real& second, const Real& 
 }
 
 // x of a single oscillator under the forcing, with what bounds it.
-template <class Real>
+template <class Real, class Force = Forcing<Real>>
 class Swing {
  public:
-  Swing(const Oscillator<Real>& oscillator, const Forcing<Real>& forcing, const Real& begin, const Real& x0,
+  Swing(const Oscillator<Real>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
         const Real& v0)
       : oscillator_(oscillator), forcing_(forcing), begin_(begin), x0_(x0), v0_(v0) {}
 
@@ -84,16 +90,32 @@ class Swing {
   }
 
   template <std::size_t N>
-  Instant<Real, N> instant(const Real& x, const Real& v, const Real& t) const {
+  Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
   }
+  // The same of `times` x; x and v are already that many times what they are.
   template <std::size_t N>
-  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t) const {
+  Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t, const Real& times) const {
     if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
-    return impact_damper::derivatives<N>(oscillator_, x, v, Real(1), Real(0),
+    return impact_damper::derivatives<N>(oscillator_, x, v, times, Real(0),
                                          forcing_.template derivatives<N + 1>(begin_ + t));
   }
-  using Beginning = Instant<Real, 6>;
+  // And a bound on the fourth for a time `span` from t on.
+  template <std::size_t N>
+  struct Lead {
+    Derivatives<Real, N> derivatives;
+    Real fourth;
+  };
+  template <std::size_t N>
+  Lead<N> lead(const Real& x, const Real& v, const Real& t, const Real& times, const Real& span) const {
+    if (!forcing_) {
+      const auto d = impact_damper::derivatives<N>(oscillator_, x, v);
+      return {d, oscillator_.size(d[4], d[5])};
+    }
+    const Instant<Real, N, Force> now{oscillator_, x, v, times, Real(0), forcing_, begin_ + t};
+    return {now.derivatives(), now.bound(4, span)};
+  }
+  using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
 
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
@@ -107,13 +129,15 @@ class Swing {
   }
   // From any time on, a time in which x has one zero at most, and so has each of its derivatives.
   Real one_zero_within() const { return forcing_ ? Real(0) : oscillator_.half_period(); }
+  // Whether x, zero at `from`, is proved to have no other zero until t.
+  bool leaves_zero(const Real& from, const Real& t) const { return t < from + one_zero_within(); }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return search_fall<Real>([&](const Real& t) { return outlook_at(order, sign, t, span); }, from, until,
                                span, Real(1));
-    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     const Real u = sign * x[order], u1 = sign * x[order + 1];
     if (u == 0 && u1 == 0) return {};
     if (!(from > 0) && u <= 0 && u1 < 0) return from < until ? std::optional(from) : std::nullopt;
@@ -129,7 +153,7 @@ class Swing {
   // |x'| where that turns, if in closed form; x there is -2a/b times x'.
   std::optional<Real> speed_at_turn(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
-    const auto x = derivatives<4>(x0_, v0_, Real(0));
+    const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     return oscillator_.height(x[1], x[2], t);
   }
   Real per_speed() const { return 2 * oscillator_.a() / oscillator_.b(); }
@@ -150,14 +174,14 @@ class Swing {
 
  private:
   const Oscillator<Real>& oscillator_;
-  Forcing<Real> forcing_;
+  Force forcing_;
   Real begin_, x0_, v0_;
 };
 
 // How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
-template <class Real>
-Real bounded_span(const Forcing<Real>& forcing) {
-  return forcing ? Real(1) : std::numeric_limits<Real>::infinity();
+template <class Real, class Force>
+Real bounded_span(const System<Real, Force>& system) {
+  return system.forcing ? Real(1) : std::numeric_limits<Real>::infinity();
 }
 
 }  // namespace impact_damper

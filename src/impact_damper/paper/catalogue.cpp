@@ -42,7 +42,7 @@ Record read_record(ObjectReader& scene) {
     AmplitudeWindow window;
     const bool is_read = item.required("amplitude", window.amplitude, amplitudes);
     item.required("length", window.length, amplitudes);
-    item.required("count", window.count, within(2, 1e6));
+    item.required("count", window.count, within(2, double(most_samples)));
     if (is_read && !(window.amplitude < before)) {
       item.refuse("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
                                    number_text(window.amplitude));
