@@ -25,7 +25,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  fuzz kills lint sanitize coverage same-bits reference clean
+  fuzz kills lint sanitize coverage mutation same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -136,6 +136,9 @@ sanitize:  ## the tests once more, under clang's address and undefined-behaviour
 
 coverage: sanitize  ## the same; then which lines of the library they ran: at least 95 % of them
 	@$(alone) tests/checks/coverage $(BUILD)/sanitize
+
+mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
+	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
 same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
 	@$(alone) cmake --build $(BUILD) --target same-bits

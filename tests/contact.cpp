@@ -150,6 +150,36 @@ Impact impact_of(const Scene& scene, Calibration calibration) {
 
 }  // namespace
 
+TEST_CASE("the first three derivatives of x at a contact's beginning are those of its motion") {
+  reference::Random random(13);
+  for (int n = 0; n < 500; ++n) {
+    const Scene scene = random_scene(random);
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const bool at_rest = random.chance(0.2);  // then the force's own jerk may be all there is
+    const double x = at_rest ? 0 : random.uniform(-6, 6), v = at_rest ? 0 : random.uniform(-6, 6);
+    const double w = at_rest ? 0 : random.uniform(-6, 0), begin = at_rest ? 0 : random.uniform(0, 10);
+    const Contact<double> contact(walls, begin, {x, v, 0, w}, Wall::left);
+    // From velocities a short time before and behind; the next derivatives are larger by the fastest rate.
+    const double rate = std::max({1.0, walls.fast.rate(), scene.force_frequency}), h = 1e-7 / rate;
+    const std::array<double, 4> start{x, v, 0, w};
+    const Quad before = moved(walls, start, begin, -h)[1], behind = moved(walls, start, begin, h)[1];
+    const double x2 = double((behind - before) / (2 * Quad(h)));
+    const double x3 = double((behind - 2 * Quad(v) + before) / (Quad(h) * h));
+    const double size =
+        std::abs(x) + (1 + scene.damping_ratio) * std::abs(v) + std::abs(scene.force_amplitude) +
+        scene.mass_ratio * (walls.damping * std::abs(w) + walls.stiffness * std::abs(w) / rate);
+    const std::array<double, 4> leads = contact.leads_of_x();
+    CAPTURE(n);
+    CHECK(leads[0] == x);
+    CHECK(leads[1] == v);
+    CHECK(std::abs(leads[2] - x2) <= 1e-10 * size);
+    CHECK(std::abs(leads[3] - x3) <= 1e-6 * size * rate * (1 + scene.mass_ratio));
+    if (at_rest && scene.force_amplitude != 0)
+      CHECK(leads[3] == doctest::Approx(scene.force_amplitude * scene.force_frequency));
+  }
+}
+
 TEST_CASE("a single impact delivers the restitution of the effective damping ratio zeta_m sqrt(1 + nu)") {
   for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
     for (double e : {0.2, 0.6, 0.9, 1.0}) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "impact_damper/files/file_output.hpp"
+
 using namespace impact_damper;
 
 namespace {
@@ -239,4 +241,13 @@ TEST_CASE("what cannot be read is said to be so") {
   CHECK_THROWS_AS(JsonDocument::read("no such file.json", kind), IoError);
   CHECK_THROWS_WITH_AS(JsonDocument::read(std::filesystem::temp_directory_path(), kind),
                        doctest::Contains("is a directory"), IoError);
+}
+
+TEST_CASE("a file may have just the length that is admitted, and not a byte more") {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "impact-damper-length-test";
+  write_file(file, "12345");
+  CHECK(read_text(file, {"thing", 5}) == "12345");
+  CHECK_THROWS_WITH_AS(read_text(file, {"thing", 4}),
+                       doctest::Contains("too long, admitted are 4 bytes for a thing, got 5"), InputError);
+  std::filesystem::remove(file);
 }

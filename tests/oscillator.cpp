@@ -192,3 +192,19 @@ TEST_CASE("the bound on a motion holds and is reached") {
     if (a == 0 && f0 == 0 && span * std::sqrt(b) > 3.2) CHECK(largest >= 0.99 * bound);
   }
 }
+
+TEST_CASE("what is kept of a damped swing is never more, and what is left never less, than it is") {
+  reference::Random random(8);
+  for (int n = 0; n < 2000; ++n) {
+    const double a = random.log_uniform(1e-3, 10), b = random.log_uniform(0.01, 100);
+    const double u = random.uniform(-1, 1), u1 = random.uniform(-3, 3), t = random.log_uniform(1e-3, 10);
+    const Oscillator<double> oscillator(a, b);
+    CHECK(oscillator.kept(t) <= std::exp(-a * t) * (1 + 1e-14));
+    CHECK(oscillator.kept(t) >= std::exp(-a * t) / 2);
+    const double left = oscillator.left(u, u1, t);
+    for (int i = 0; i <= 100; ++i) {
+      const auto p = oscillator.propagate(t * (1 + i / 10.0));
+      CHECK(std::abs(p.c * u + p.s * u1) <= left * (1 + 1e-14));
+    }
+  }
+}

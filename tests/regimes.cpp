@@ -79,6 +79,14 @@ TEST_CASE("an impact that slips across a zero crossing is not missed") {
   CHECK(once.for_good == std::nullopt);
 }
 
+TEST_CASE("the release, less than a half cycle, makes no impact failure") {
+  // Its row is among no three that are looked at: neither for the first missed impact nor for good.
+  CHECK(impact_failure(rows_with_impacts({0, 0, 1, 2, 1, 1, 1})).first_missed == std::nullopt);
+  CHECK(impact_failure(rows_with_impacts({0, 0, 0, 1, 0})).first_missed == amplitude_of(2));
+  CHECK(impact_failure(rows_with_impacts({0, 1, 0, 1, 0})).for_good == amplitude_of(2));
+  CHECK(impact_failure(rows_with_impacts({0, 0, 0, 0, 0})).for_good == amplitude_of(1));
+}
+
 TEST_CASE("an impact missed in a chaotic range is no failure if regular impacting follows") {
   std::vector<std::int64_t> impacts{1, 1, 0, 1, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 0, 0, 0};
   CHECK(impact_failure(rows_with_impacts(impacts)).first_missed == amplitude_of(14));

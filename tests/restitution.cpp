@@ -169,6 +169,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("nothing jumps where a stuck mass is released") {
+  int released = 0;
+  for (const Scene& scene : many_scenes()) {
+    const Run run = simulate(scene, Restitution{}, everything());
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, run.contacts->end.size()); ++i) {
+      const double begin = run.contacts->begin[i], end = run.contacts->end[i], h = 1e-6;
+      if (end + h >= run.end_time || end - begin < 1e-3) continue;
+      const History seen =
+          *simulate(scene, Restitution{}, everything({{end - h, end, 2}, {end + h, end + 2 * h, 2}})).history;
+      ++released;
+      // From before to after along the tangent, but for h^2 times the acceleration, which the motion's size
+      // bounds.
+      const double size = std::abs(seen.x[0]) + (1 + 2 * scene.damping_ratio) * std::abs(seen.v[0]) +
+                          std::abs(scene.force_amplitude);
+      CHECK(std::abs(seen.x[2] - seen.x[0] - 2 * h * seen.v[0]) <= 4 * h * h * size + 1e-14);
+      CHECK(std::abs(seen.v[2] - seen.v[0]) <= 4 * h * size);
+      CHECK(std::abs(seen.y[2] - seen.y[0]) <= 4 * h * h * size);
+    }
+  }
+  CHECK(released > 10);
+}
+
 TEST_CASE("0 <= y <= 1 always, energy never rises unforced, and the ledger closes") {
   for (const Scene& scene : many_scenes()) {
     CAPTURE(scene.mass_ratio);
@@ -321,4 +343,19 @@ TEST_CASE("the forced solution with two symmetric impacts per cycle holds for te
   // Stable: only the rounding of omega t, 6e4 at the end, remains.
   CHECK(worst < 1e-10);
   CHECK(std::abs(run.energy->residual) < 1e-12 * 1e4);
+}
+
+TEST_CASE("the clock of many motions is right to its last two digits") {
+  // What is left are the roundings of what is added, not of the sum.
+  constexpr double last_two = 0x1p-50;
+  Clock<double> clock;
+  long double sum = 0;
+  for (int n = 1; n <= 200000; ++n) {
+    const double duration = 1.0 / (1 + n % 97);
+    const long double next = sum + duration;
+    CHECK(std::abs(clock.after(duration) - next) <= last_two * next);
+    clock.advance(duration);
+    sum = next;
+  }
+  CHECK(std::abs(clock.now() - sum) <= last_two * sum);
 }

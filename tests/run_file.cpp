@@ -172,6 +172,16 @@ TEST_CASE("every bit of a number survives the file") {
   }
 }
 
+TEST_CASE("a run with energies has a loss for each impact, none less and none more") {
+  for (const std::size_t losses : {2, 4}) {
+    Run run = full_run();
+    run.energy->impact_loss.resize(losses);
+    CHECK(
+        problems(run_text(run)) ==
+        Lines{"r.json: /energy: must hold a loss for each of the 3 impacts, got " + std::to_string(losses)});
+  }
+}
+
 TEST_CASE("a number that is not finite is never written") {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

@@ -1,0 +1,190 @@
+// The measures that read run files, on runs made by hand: a decay in half cycles of length pi with whatever
+// amplitudes, impacts and contacts a test wants, so that each number can be worked out on paper.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/paper/measures.hpp"
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// n half cycles, row i with amplitude(i), its peak at i pi and a zero crossing half of pi later.
+Run decay(int n, const std::function<double(int)>& amplitude) {
+  Scene scene;
+  scene.until_time = 0.1;
+  Record record;
+  record.impacts = record.contacts = true;
+  Run run = simulate(scene, Exact{}, record);
+  run.scene.until_time = run.end_time = n * pi;
+  HalfCycles& rows = run.half_cycles.emplace();
+  for (int i = 0; i < n; ++i) {
+    rows.zero_crossing.push_back((i + 0.5) * pi);
+    rows.peak_time.push_back(i * pi);
+    rows.amplitude.push_back(amplitude(i));
+    rows.impacts.push_back(0);
+  }
+  return run;
+}
+Run linear_decay(int n, double from, double by) {
+  return decay(n, [=](int i) { return from - by * i; });
+}
+
+// In a row, at so many degrees of its half cycle.
+void add_impact(Run& run, std::size_t row, double phase, double velocity = -1) {
+  Impacts& impacts = *run.impacts;
+  impacts.time.push_back(run.half_cycles->zero_crossing[row - 1] + phase / 180 * pi);
+  impacts.wall.push_back(velocity < 0 ? Wall::left : Wall::right);
+  impacts.relative_velocity.push_back(velocity);
+  impacts.phase_deg.push_back(phase);
+  impacts.amplitude.push_back(run.half_cycles->amplitude[row]);
+  ++run.half_cycles->impacts[row];
+}
+void add_stuck(Run& run, std::size_t row, double from, double to) {
+  const double begin = run.half_cycles->zero_crossing[row - 1];
+  run.contacts->begin.push_back(begin + from / 180 * pi);
+  run.contacts->end.push_back(begin + to / 180 * pi);
+  run.contacts->wall.push_back(Wall::left);
+}
+
+double measured(const std::string& name, std::map<std::string, double> numbers,
+                const std::vector<Run>& scenes) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "impact-damper-measures-of-runs";
+  std::filesystem::create_directories(folder);
+  MeasureCall call{name, {}, std::move(numbers)};
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    call.scenes.push_back("scene" + std::to_string(i));
+    write_file(folder / (call.scenes.back() + ".json"), run_text(scenes[i]));
+  }
+  Runs runs(folder, {.members = 1});
+  const double value = measure(runs, call).median;
+  std::filesystem::remove_all(folder);
+  return value;
+}
+
+}  // namespace
+
+TEST_CASE("measures of the loss factor are what they are for amplitudes that fall evenly") {
+  // A = 6 - 0.05 i at t = i pi: eta = -2 A'/A = (0.1/pi) / A exactly, at A = 5.75, 5.70, ..., 0.3.
+  const Run even = linear_decay(120, 6, 0.05);
+  const double c = 0.1 / pi, nu = even.scene.mass_ratio;
+  const auto of = [&](const std::string& name, const std::map<std::string, double>& numbers) {
+    return measured(name, numbers, {even});
+  };
+  CHECK(of("product_mid_range", {{"from", 1}, {"to", 5}}) == doctest::Approx(c / nu));
+  CHECK(of("product_half_range_percent", {{"from", 1}, {"to", 5}}) < 1e-9);
+  CHECK(of("loss_slope", {{"from", 1}, {"to", 5}}) == doctest::Approx(-1));
+  CHECK(of("largest_loss", {}) == doctest::Approx(c / 0.3));
+  CHECK(of("largest_loss_amplitude", {}) == doctest::Approx(0.3));
+  // The median of the last three is that at 0.35. Averaged over 18 half cycles the last is that at 0.5.
+  CHECK(of("tail_loss_ratio", {{"last", 3}}) == doctest::Approx(0.3 / 0.35));
+  CHECK(of("smoothing_ratio", {}) == doctest::Approx(0.3 / 0.5));
+  // Within a factor of 1.51 of eta at A = 3: from 1.9868 to 4.53.
+  CHECK(of("loss_near_span", {{"eta", c / 3}, {"factor", 1.51}, {"from", 0.5}, {"to", 5.5}}) ==
+        doctest::Approx(4.5 / 2));
+  CHECK(of("loss_near_span", {{"eta", c / 3}, {"factor", 1.51}, {"from", 2.48}, {"to", 4.02}}) ==
+        doctest::Approx(4 / 2.5));
+  // A eta_s in proportion to nu^1/2.
+  Run heavy = linear_decay(60, 6, 0.1);
+  heavy.scene.mass_ratio = 4 * nu;
+  CHECK(measured("mass_ratio_exponent", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(0.5));
+  CHECK(measured("product_ratio", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(2));
+}
+
+TEST_CASE(
+    "the half range is half the range by the middle, for amplitudes that fall evenly in the logarithm") {
+  // eta is constant, so A eta_s / nu is as A; the fit makes the same error everywhere. From 1.0 to 4.0:
+  // exp(-0.02 i), 5 <= i, i = 21 (3.94) to 89 (1.01).
+  const Run run = decay(150, [](int i) { return 6 * std::exp(-0.02 * i); });
+  const double ratio = std::exp(0.02 * (89 - 21));
+  CHECK(measured("product_half_range_percent", {{"from", 1}, {"to", 4}}, {run}) ==
+        doctest::Approx(100 * (ratio - 1) / (ratio + 1)));
+}
+
+TEST_CASE("measures of the windows are what they are for impacts made by hand") {
+  // Two impacts in rows 10 to 29, one in rows 40 to 69, both in turn between them; none from row 80 on.
+  Run run = linear_decay(100, 6, 0.05);
+  for (std::size_t row = 10; row < 70; ++row) {
+    const bool two = row < 30 || (row < 40 && row % 2 == 0);
+    // One impact alternates between 87 and 134 degrees.
+    add_impact(run, row, row % 2 ? 87 : 134);
+    if (two) add_impact(run, row, 170);
+  }
+  for (std::size_t row = 71; row < 80; row += 2) add_impact(run, row, 90);
+  const auto of = [&](const std::string& name, const std::map<std::string, double>& numbers) {
+    return measured(name, numbers, {run});
+  };
+  const auto amplitude = [](double row) { return 6 - 0.05 * row; };
+  // One impact: from amplitude(39), as the row before row 40 has one too, down to amplitude(69).
+  const double upper = amplitude(39), lower = amplitude(69);
+  CHECK(of("window_distance", {{"impacts", 1}, {"amplitude", upper + 0.5}}) == doctest::Approx(0.5));
+  CHECK(of("window_distance", {{"impacts", 1}, {"amplitude", lower - 0.25}}) == doctest::Approx(0.25));
+  CHECK(of("window_distance", {{"impacts", 1}, {"amplitude", (upper + lower) / 2}}) == 0);
+  CHECK(of("windows_in_order", {{"most", 2}}) == 2);
+  CHECK(of("mixed_gaps", {{"most", 2}}) == 1);
+  CHECK(of("impacts_per_half_cycle", {{"amplitude", amplitude(29.5)}, {"half_cycles", 10}}) ==
+        doctest::Approx(1.5));
+  CHECK(of("rows_with_impacts", {{"amplitude", amplitude(29.5)}, {"half_cycles", 10}, {"impacts", 2}}) ==
+        doctest::Approx(0.5));
+  // Of rows 28 to 41 those with one and two in turn with the row before: 31 to 39.
+  CHECK(of("alternation", {{"from", amplitude(41.5)}, {"to", amplitude(27.5)}}) == doctest::Approx(9.0 / 14));
+  CHECK(of("phase_difference", {{"amplitude", amplitude(49.5)}, {"half_cycles", 6}}) == doctest::Approx(47));
+  CHECK(std::isnan(of("phase_difference", {{"amplitude", amplitude(19.5)}, {"half_cycles", 6}})));
+  // From row 70 on every other half cycle is without, and three in a row have two at most.
+  CHECK(of("first_missed", {}) == doctest::Approx(amplitude(70)));
+  CHECK(of("failure_for_good", {}) == doctest::Approx(amplitude(70)));
+  Run fewer = run;
+  for (std::size_t row = 30; row < 40; ++row) fewer.half_cycles->impacts[row] = 3;
+  CHECK(measured("impacts_ratio", {{"amplitude", amplitude(29.5)}, {"half_cycles", 10}}, {run, fewer}) ==
+        doctest::Approx(0.5));
+}
+
+TEST_CASE("measures of speeds and of stuck phases are what they are for contacts made by hand") {
+  // The fastest impact of a half cycle goes with A^2, after slower ones; the mass sticks for 20 A degrees.
+  Run run = linear_decay(60, 6, 0.05);
+  const auto& amplitude = run.half_cycles->amplitude;
+  for (std::size_t row = 1; row < 50; ++row) {
+    const double a = amplitude[row];
+    add_impact(run, row, 30, -0.1 * a);
+    add_impact(run, row, 30 + 10 * a, 0.5 * a * a);
+    if (row < 30) add_stuck(run, row, 40, 40 + 20 * a);
+  }
+  const std::map<std::string, double> range{{"from", 4.6}, {"to", 5.8}};
+  CHECK(measured("stuck_degrees_slope", range, {run}) == doctest::Approx(20));
+  CHECK(measured("bounce_down_degrees_slope", range, {run}) == doctest::Approx(10));
+  CHECK(measured("impact_speed_slope", {{"from", 4.6}, {"to", 5.8}, {"power", 0.5}}, {run}) ==
+        doctest::Approx(1.5));
+  CHECK(measured("stuck_share", {{"from", amplitude[39] - 0.01}, {"to", amplitude[20] + 0.01}}, {run}) ==
+        doctest::Approx(0.5));
+  CHECK(measured("bounce_down_end", {}, {run}) == doctest::Approx(amplitude[29]));
+  // A free wall struck at speed w gives way by w / omega_c, omega_c^2 = (1 + nu) k / nu.
+  const double nu = run.scene.mass_ratio, k = run.scene.wall_stiffness, fastest = 0.5 * std::pow(5.95, 2);
+  CHECK(measured("wall_overlap", {}, {run}) == doctest::Approx(fastest / std::sqrt((1 + nu) * k / nu)));
+}
+
+TEST_CASE("time is saved by the engine that is sooner at an amplitude") {
+  Scene scene;
+  scene.until_amplitude = 4;
+  Record record;
+  record.impacts = true;
+  const Run run = simulate(scene, Exact{}, record), rigid = simulate(scene, Restitution{}, Record{});
+  // The same decay with all its times doubled takes twice as long: minus a hundred percent saved, but for
+  // what the engines differ by.
+  Run slow = run;
+  for (auto* column : {&slow.half_cycles->zero_crossing, &slow.half_cycles->peak_time, &slow.impacts->time})
+    for (double& time : *column) time *= 2;
+  const double ours = run.half_cycles->peak_time.back(), theirs = rigid.half_cycles->peak_time.back();
+  CHECK(measured("time_saved_percent", {{"amplitude", 4}}, {slow}) ==
+        doctest::Approx(100 * (1 - 2 * ours / theirs)).epsilon(1e-9));
+}
