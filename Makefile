@@ -16,7 +16,8 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git python3 python3-jsonschema clang llvm lld libclang-rt-14-dev locales
+CHECK_PACKAGES := git python3 python3-jsonschema clang llvm lld libclang-rt-14-dev locales \
+  clang-tidy cppcheck gcovr valgrind
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
@@ -24,7 +25,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  fuzz kills mutation same-bits reference clean
+  fuzz kills lint sanitize coverage mutation same-bits reference clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -104,7 +105,7 @@ test: build  ## run every test
 	@$(alone) ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
-	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/fuzz
+	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
 
 bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
 	@$(alone) cmake --build $(BUILD) --target bench
@@ -128,6 +129,16 @@ check: build test  ## build, run every test, regenerate everything with all engi
 
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@nice tests/mutation/mutate.py --folder $(BUILD)/mutation
+
+lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)
+	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
+	@tests/checks/lint.py $(BUILD)
+
+sanitize:  ## the tests once more, under clang's address and undefined-behaviour sanitizers (minutes)
+	@$(alone) tests/checks/sanitize $(BUILD)/sanitize
+
+coverage: sanitize  ## the same; then which lines of the library they ran: at least 95 % of them
+	@$(alone) tests/checks/coverage $(BUILD)/sanitize
 
 same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
 	@$(alone) cmake --build $(BUILD) --target same-bits

@@ -1,6 +1,5 @@
 // What the bench concludes from its measurements: errors of chaotic decays, times at an error, orders,
 // targets; and what the peers are built on.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
 // What the bench's figures rest on besides the clock: counts, references, errors, spreads.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // What a process may do to its arithmetic, and that no engine runs then. The compiler's part:
 // tests/same_bits/.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/arithmetic.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,4 @@
 // The short ways to an event, guess and proof, closed form, table, against the certified search.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/motion/arrival.hpp"
 
 #include <doctest/doctest.h>

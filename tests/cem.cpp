@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/engines/cem.hpp"
 
 #include <doctest/doctest.h>
@@ -9,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
 #include "impact_damper/engines/recorder.hpp"

@@ -1,6 +1,5 @@
 // The component element method against the exact engine, which has no step: both run the same scene through
 // code that shares nothing but the names of its numbers.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // What the elementary functions owe to no measurement: special values, symmetries, and that every compiler
 // makes the same bits of them.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/analysis/ensemble.hpp"
 
 #include <doctest/doctest.h>

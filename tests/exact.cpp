@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/engines/exact.hpp"
 
 #include <doctest/doctest.h>
@@ -6,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 #include "impact_damper/engines/recorder.hpp"

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/files/file_output.hpp"
 
 #include <doctest/doctest.h>

@@ -1,10 +1,10 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/analysis/loss_factor.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 using namespace impact_damper;
 constexpr double pi = std::numbers::pi;

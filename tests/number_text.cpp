@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/files/number_text.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/motion/oscillator.hpp"
 
 #include <doctest/doctest.h>
@@ -56,7 +55,8 @@ const std::vector<double> times{1e-8, 1e-6, 1e-4, 0.01, 0.1, 0.49, 0.51, 0.9, 1.
 TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for short times, at any damping",
                    Real, double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
-  for (const auto& [a, b] : dampings) {
+  for (const auto& damping : dampings) {
+    const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     // C - 1 and S - t do not turn back while the slower of the two rates has not acted.
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : std::sqrt(b);
@@ -81,7 +81,8 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
 TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argument omega t lets them be", Real,
                    double, long double) {
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
-  for (const auto& [a, b] : dampings) {
+  for (const auto& damping : dampings) {
+    const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : a > 0 ? a : std::sqrt(b);
     for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4}) {

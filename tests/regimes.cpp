@@ -1,7 +1,8 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/analysis/regimes.hpp"
 
 #include <doctest/doctest.h>
+
+#include <stdexcept>
 
 #include "impact_damper/motion/wall.hpp"
 

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 // The catalogue, and the tables made from runs whose answer is known beforehand.
 #include "impact_damper/paper/series.hpp"
 

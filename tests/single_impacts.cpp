@@ -1,6 +1,5 @@
 // Both closed-form engines against the closed forms of the motion with one impact per half cycle, which are
 // exact as nu -> 0: at nu = 1e-4 the decay passes through that motion slowly enough to be held against them.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Each closed form against a small computation that does not use it: maps iterated, integrals stepped.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "impact_damper/analysis/theory.hpp"
 
 #include <doctest/doctest.h>

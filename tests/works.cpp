@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -55,7 +54,9 @@ LongContact random_contact(reference::Random& random) {
 TEST_CASE("a long contact's works are those of a quadrature that follows all its ringing") {
   reference::Random random(31);
   for (int n = 0; n < 200; ++n) {
-    const auto [scene, duration] = random_contact(random);
+    const LongContact drawn = random_contact(random);
+    const Scene& scene = drawn.scene;
+    const double duration = drawn.duration;
     const System<double> system(scene);
     const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const double begin = random.uniform(0, 10), root_k = std::sqrt(walls.stiffness);

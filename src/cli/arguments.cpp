@@ -18,7 +18,7 @@ std::optional<std::string> Arguments::text(const std::string& option) const {
 }
 
 std::optional<std::string> Arguments::file(const std::string& option) {
-  const std::optional<std::string> name = text(option);
+  std::optional<std::string> name = text(option);
   if (!name || !name->empty()) return name;
   refuse(option, "must be a file name, got \"\"");
   return std::nullopt;
@@ -113,8 +113,8 @@ Threads threads_of(Arguments& arguments) { return arguments.whole_number("--thre
 
 std::optional<Triple> parse_triple(std::string_view text) {
   const std::size_t first = text.find(':');
-  const std::size_t second = first == text.npos ? text.npos : text.find(':', first + 1);
-  if (second == text.npos) return std::nullopt;
+  const std::size_t second = first == std::string_view::npos ? first : text.find(':', first + 1);
+  if (second == std::string_view::npos) return std::nullopt;
   const auto a = parse_number(text.substr(0, first));
   const auto b = parse_number(text.substr(first + 1, second - first - 1));
   const auto count = parse_integer(text.substr(second + 1));

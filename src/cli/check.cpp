@@ -1,6 +1,5 @@
 // `check`: files read strictly, and nothing else done with them.
 #include <array>
-#include <functional>
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -16,12 +15,12 @@ namespace {
 
 struct Reader {
   std::string_view kind;
-  std::function<void(const std::string&)> read;
+  void (*read)(const std::string& file);
 };
-const std::array<Reader, 4> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
-                                     {"run", [](const std::string& file) { read_run(file); }},
-                                     {"catalogue", [](const std::string& file) { read_catalogue(file); }},
-                                     {"claims", [](const std::string& file) { read_claims(file); }}}};
+constexpr std::array<Reader, 4> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
+                                         {"run", [](const std::string& file) { read_run(file); }},
+                                         {"catalogue", [](const std::string& file) { read_catalogue(file); }},
+                                         {"claims", [](const std::string& file) { read_claims(file); }}}};
 
 // Not an option with many values: that would take "[]" for a list of none.
 std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
@@ -38,6 +37,7 @@ int check(const CLI::App& app) {
   Arguments arguments(app);
   const std::vector<std::string> files = files_of(app, arguments);
   std::vector<std::string_view> kinds;
+  kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
   if (!arguments.given("KIND")) arguments.refuse("KIND", "must be given: scene, run, catalogue or claims");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);

@@ -54,6 +54,7 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): without memory for a message there is none
 int main(int argc, char** argv) {
   cli::end_cleanly();
   CLI::App program{

@@ -51,7 +51,7 @@ std::string admitted_text(const Claim& claim) {
 }
 
 std::string ours_text(const Spread& ours) {
-  const std::string median = brief(ours.median);
+  std::string median = brief(ours.median);
   if (std::isnan(ours.median) || ours.low == ours.high) return median;
   return median + " (" + brief(ours.low) + " to " + brief(ours.high) + ")";
 }

@@ -50,7 +50,8 @@ function(plant name file from to)
   file(WRITE ${path} "${sound}")
 endfunction()
 
-run(${CMAKE_COMMAND} -S . -B build -G Ninja -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1)
+run(${CMAKE_COMMAND} -S . -B build -G Ninja -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O0
+    -DCMAKE_PROJECT_INCLUDE=${SOURCE}/tests/same_bits/fewer_units.cmake)
 verdicts(0 "no fault")
 
 plant("loss factor per cycle" analysis/loss_factor.cpp

@@ -1,13 +1,22 @@
-# Included by CMake right after project() (CMAKE_PROJECT_INCLUDE): the sources that spend their time on reading
-# the same large headers are compiled together. It halves the work of a build, and nothing but that.
+# Included by CMake right after project() (CMAKE_PROJECT_INCLUDE): sources that spend their time on reading the same
+# large headers are compiled together, by groups.txt. It takes away most of the work of a build, and nothing but that.
+set(groups_file ${CMAKE_CURRENT_LIST_DIR}/groups.txt)
 function(compile_together)
-  set_target_properties(impact-damper PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-  set_target_properties(impact_damper PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  foreach(group IN ITEMS "json;files/json_parser.cpp;files/json_reader.cpp"
-                         "eigen;analysis/theory_forced.cpp;motion/contact_factors.cpp")
-    list(POP_FRONT group name)
-    list(TRANSFORM group PREPEND ${PROJECT_SOURCE_DIR}/src/impact_damper/)
-    set_source_files_properties(${group} TARGET_DIRECTORY impact_damper PROPERTIES UNITY_GROUP ${name})
+  set_target_properties(impact_damper impact-damper PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${groups_file})
+  file(STRINGS ${groups_file} lines REGEX "^[a-z]+: ")
+  set(grouped)
+  foreach(line IN LISTS lines)
+    string(REGEX MATCH "^([a-z]+): (.*)$" line "${line}")
+    set(name ${CMAKE_MATCH_1})
+    separate_arguments(patterns UNIX_COMMAND "${CMAKE_MATCH_2}")
+    list(TRANSFORM patterns PREPEND ${PROJECT_SOURCE_DIR}/src/)
+    file(GLOB sources ${patterns})
+    if(grouped)
+      list(REMOVE_ITEM sources ${grouped})
+    endif()
+    list(APPEND grouped ${sources})
+    set_source_files_properties(${sources} TARGET_DIRECTORY impact_damper PROPERTIES UNITY_GROUP ${name})
   endforeach()
 endfunction()
 cmake_language(DEFER CALL compile_together)

@@ -11,10 +11,10 @@ namespace {
 
 // Steele, Lea and Flood's splitmix64: the standard library's distributions differ between libraries.
 std::uint64_t draw(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15u;
+  state += 0x9e3779b97f4a7c15U;
   std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
   return z ^ (z >> 31);
 }
 

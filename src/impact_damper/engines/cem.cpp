@@ -13,7 +13,7 @@ namespace {
 
 std::string rounded(double value) {
   char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
+  char* const end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
   return {text, end};
 }
 // At most `value`, so that whoever types it in is not refused.

@@ -1,6 +1,8 @@
 // The members of CemEngine (cem.hpp).
 #pragma once
 
+#include <type_traits>
+
 #include "impact_damper/engines/cem.hpp"
 
 namespace impact_damper {
@@ -84,14 +86,16 @@ std::int64_t CemEngine<Real, Observer>::steps_until(const Real& time) const {
 
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
-  const auto choose = [&]<Regime regime>() {
+  const auto choose = [&](auto in) {
+    constexpr Regime regime = in;
     if (forced_) {
       ledger_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
     } else {
       ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
     }
   };
-  wall_ ? choose.template operator()<Regime::contact>() : choose.template operator()<Regime::flight>();
+  wall_ ? choose(std::integral_constant<Regime, Regime::contact>())
+        : choose(std::integral_constant<Regime, Regime::flight>());
 }
 
 // Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer with forcing).

@@ -140,7 +140,7 @@ std::string json_token(std::string_view key) {
   return cut(token);
 }
 
-JsonProblems::JsonProblems(std::string file) : file_(cut(file, 1000)) {}
+JsonProblems::JsonProblems(const std::string& file) : file_(cut(file, 1000)) {}
 
 void JsonProblems::add(const std::string& pointer, std::string_view what) {
   if (++count_ > most_problems) return;

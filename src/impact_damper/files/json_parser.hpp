@@ -16,7 +16,7 @@ namespace impact_damper {
 // What a document collects while it is read: problems, and which keys of its objects are known.
 class JsonProblems {
  public:
-  explicit JsonProblems(std::string file);
+  explicit JsonProblems(const std::string& file);
 
   void add(const std::string& pointer, std::string_view what);
 

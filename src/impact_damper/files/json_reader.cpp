@@ -35,7 +35,7 @@ std::string described(const Json& value) {
       return std::to_string(value.get<std::uint64_t>());
     case Json::value_t::number_float: {
       const std::string text = number_text(value.get<double>());  // 3.0 must not read like the integer 3
-      return text.find_first_not_of("-0123456789") == text.npos ? text + ".0" : text;
+      return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
     }
     case Json::value_t::binary:
     case Json::value_t::discarded:
@@ -176,10 +176,10 @@ JsonDocument JsonDocument::read(const std::filesystem::path& file, const FileKin
   return parse(file.string(), read_text(file, kind));
 }
 
-JsonDocument JsonDocument::parse(std::string name, const std::string& text) {
+JsonDocument JsonDocument::parse(const std::string& name, const std::string& text) {
   JsonDocument document;
   document.value_ = std::make_unique<Json>();
-  document.problems_ = std::make_unique<JsonProblems>(std::move(name));
+  document.problems_ = std::make_unique<JsonProblems>(name);
   if (!parse_json(text, *document.value_, *document.problems_)) document.problems_->throw_if_any();
   return document;
 }

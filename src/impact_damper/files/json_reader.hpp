@@ -141,7 +141,7 @@ class JsonDocument {
   // much of it. A duplicate key is a problem among the others.
   static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
   // The same for a text in memory; `name` stands for the file in messages.
-  static JsonDocument parse(std::string name, const std::string& text);
+  static JsonDocument parse(const std::string& name, const std::string& text);
 
   ObjectReader root();  // reported unless it is an object
   // Throws InputError if anything was wrong; unknown keys come last, each with the nearest known name.

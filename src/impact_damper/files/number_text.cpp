@@ -66,17 +66,18 @@ std::optional<Decimal> shortest_decimal(std::uint64_t bits) {
   return Decimal{digits, q};
 }
 
-constexpr auto pairs_of_digits = [] {
+constexpr std::array<char, 200> make_pairs_of_digits() {
   std::array<char, 200> pairs{};
   for (std::size_t i = 0; i < pairs.size(); ++i)
     pairs[i] = static_cast<char>('0' + (i % 2 ? i / 2 % 10 : i / 20));
   return pairs;
-}();
+}
+constexpr std::array<char, 200> pairs_of_digits = make_pairs_of_digits();
 
 // Four and eight digits, zeros in front; by halves, which do not wait for each other.
 void write_four(char* at, std::uint32_t number) {
-  std::copy_n(pairs_of_digits.data() + 2 * (number / 100), 2, at);
-  std::copy_n(pairs_of_digits.data() + 2 * (number % 100), 2, at + 2);
+  std::copy_n(&pairs_of_digits[2 * std::size_t(number / 100)], 2, at);
+  std::copy_n(&pairs_of_digits[2 * std::size_t(number % 100)], 2, at + 2);
 }
 void write_eight(char* at, std::uint32_t number) {
   write_four(at, number / 10'000);

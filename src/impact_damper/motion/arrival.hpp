@@ -120,7 +120,8 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
     c[n] = factor * u[n];
     factor *= over[n + 1];
   }
-  const auto c1 = slopes(c), c2 = slopes(c1);
+  const auto c1 = slopes(c);
+  const auto c2 = slopes(c1);
   Real g, g1, g2;
   for (int i = 0;; ++i) {
     g = sum(c, t);
@@ -139,10 +140,12 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
 template <class Real>
 bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
                    const Real& fourth) {
-  const Real &u0 = from[0], &slope0 = from[1], quarter = h / 4,
-             off = fourth * (h * h) * (h * h) * (Real(1) / 144);
+  const Real& u0 = from[0];
+  const Real& slope0 = from[1];
+  const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
-  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6];
+  const auto& over = reciprocals<Real>;
+  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) * over[6];
   if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
     return false;
   if (after >= 0 && before >= 0 && middle > off) return true;

@@ -58,12 +58,12 @@ Remainder remainder(double x) {
   const auto word = [&](int i) { return from[i] << shift | from[i + 1] >> 1 >> (63 - shift); };
   const Unsigned third = Unsigned(m) * word(2), second = Unsigned(m) * word(1) + (third >> 64);
   const Unsigned fraction = ((Unsigned(m * word(0)) << 64) + second);
-  const unsigned quarters = unsigned((fraction + (Unsigned(1) << 125)) >> 126);
-  const Unsigned left = fraction - (Unsigned(quarters) << 126);
+  const unsigned turned = unsigned((fraction + (Unsigned(1) << 125)) >> 126);
+  const Unsigned left = fraction - (Unsigned(turned) << 126);
   const bool negative = left >> 127;
   const Unsigned size = upper_product(negative ? -left : left, two_pi);
   const double angle = double(size), unit = negative ? -0x1p-125 : 0x1p-125;
-  return {quarters, angle * unit, double(Integer(size - Unsigned(angle))) * unit};
+  return {turned, angle * unit, double(Integer(size - Unsigned(angle))) * unit};
 }
 
 // a + b, and what that rounds off.
@@ -111,7 +111,7 @@ double exponential_beyond(double x) {
   if (x < -746) return 0;
   // Scaled down or up before, so that the last product alone meets the limits of the range.
   const auto [power, scale, d, d_rest] = exponential_parts(x);
-  const double value = from_bits(bits(power.value) + scale + (x > 0 ? -64 : 64) * exponent_unit);
+  const double value = from_bits(bits(power.value) + scale + std::uint64_t(x > 0 ? -64 : 64) * exponent_unit);
   return raised(value, d, power.rest) * (x > 0 ? 0x1p64 : 0x1p-64);
 }
 

@@ -46,14 +46,14 @@ constexpr Fixed arc(Fixed x, int sign) {
   return sum;
 }
 
-constexpr auto make_circle() {
+constexpr auto make_circle() noexcept {
   // sin and cos of 1/16 by their series, of the others by turning on.
   Fixed sin = 0, cos = 0, term = one;
   for (int n = 1; term != 0; n += 2) {
     cos += term;
-    term = term / (16 * n);
+    term = term / (16 * Fixed(n));
     sin += term;
-    term = -term / (16 * (n + 1));
+    term = -term / (16 * Fixed(n + 1));
   }
   std::array<Circle, 256> all{};
   Fixed s = 0, c = one;
@@ -74,7 +74,7 @@ constexpr auto make_circle() {
   return all;
 }
 
-constexpr auto make_arc_tangent() {
+constexpr auto make_arc_tangent() noexcept {
   std::array<ArcTangent, 65> all{};
   Fixed angle = 0;
   for (int k = 0; k < 65; ++k) {
@@ -85,7 +85,7 @@ constexpr auto make_arc_tangent() {
     at.a0_rest = rest(angle, at.a0);
     // a1 = 1/(1 + c^2), and by the equation of the derivative, (1 + t^2) a' = 1:
     // (1 + c^2) (n + 1) a_(n+1) + 2 c n a_n + (n - 1) a_(n-1) = 0.
-    const Fixed a1 = one / (64 * 64 + k * k) * (64 * 64);
+    const Fixed a1 = one / (4096 + Fixed(k) * k) * 4096;
     at.a1_short = head(a1, 25);
     at.a1_rest = rest(a1, at.a1_short);
     Fixed before = 0, now = a1;
@@ -101,7 +101,7 @@ constexpr auto make_arc_tangent() {
 
 constexpr Fixed ln_2 = 2 * arc(one / 3, 1);
 
-constexpr auto make_power_of_two() {
+constexpr auto make_power_of_two() noexcept {
   Fixed step = 0, term = one;
   for (int n = 1; term != 0; ++n) {
     step += term;
@@ -117,7 +117,7 @@ constexpr auto make_power_of_two() {
   return all;
 }
 
-constexpr auto make_logarithms() {
+constexpr auto make_logarithms() noexcept {
   std::array<Logarithm, 128> all{};
   for (int i = 0; i < 128; ++i) {
     // The middle of the interval in units of 1/512: 128 steps of 1/128 from 11/8 of 1/2 on, where m >= 1;

@@ -122,8 +122,8 @@ class Flight {
       const auto [opposite_x, fourth] =
           swing_.template lead<8>(-away_ * here.x, -away_ * here.v, begin, -away_, span);
       const auto u = derivatives_of_u(here, opposite_x);
-      const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
-                               const Real& u1) -> std::optional<Arrival<Real>> {
+      const auto reached = [&, fourth = fourth](bool across, const Real& h, const Real& x1, const Real& v1,
+                                                const Real& u1) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};

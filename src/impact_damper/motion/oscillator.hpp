@@ -41,6 +41,7 @@ struct Forcing {
 
   template <std::size_t N>
   std::array<Real, N> derivatives(const Real& time) const {
+    static_assert(N >= 2);
     const auto [sin, cos] = sin_cos(frequency * time);
     std::array<Real, N> f;
     f[0] = amplitude * sin;

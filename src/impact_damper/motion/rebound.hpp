@@ -163,7 +163,8 @@ class Rebound {
     std::array<Real, terms> q = combine<terms>(q_, start);
     q[1] -= left_ * w;
     Real left_w;
-    const auto q1 = slopes(q), q2 = slopes(q1);
+    const auto q1 = slopes(q);
+    const auto q2 = slopes(q1);
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
       const Real g = sum(q, s), g1 = sum(q1, s), g2 = sum(q2, s), newton = -g / g1;

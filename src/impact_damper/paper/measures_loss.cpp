@@ -81,6 +81,7 @@ Spread collapse(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     std::vector<Curve> curves;
+    curves.reserve(group.size());
     for (const Run* run : group) curves.push_back(loss_curve(*run, which, from, to));
     return spread_percent(curves, from, to);
   });

@@ -20,7 +20,7 @@ double time_below(const Run& run, double amplitude) {
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
 
-std::vector<Run> again(Runs& runs, const Scene& scene, const Engine& engine) {
+std::vector<Run> again(const Runs& runs, const Scene& scene, const Engine& engine) {
   return simulate_ensemble(scene, engine, Record{}, runs.options());
 }
 
@@ -28,6 +28,7 @@ std::vector<Run> again(Runs& runs, const Scene& scene, const Engine& engine) {
 // release.
 Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs, double from, double to) {
   std::vector<double> values;
+  values.reserve(ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i)
     values.push_back(spread_percent({loss_curve(ours[i], LossOrdinate::amplitude_times, from, to),
                                      loss_curve(theirs[i], LossOrdinate::amplitude_times, from, to)},
@@ -50,6 +51,7 @@ Spread time_saved(Runs& runs, const MeasureCall& call) {
     theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
   std::vector<double> values;
+  values.reserve(ours.size());
   for (const Run& run : ours) values.push_back(100 * (1 - time_below(run, amplitude) / reference));
   return spread_of(values);
 }
@@ -62,6 +64,7 @@ Spread later_release(Runs& runs, const MeasureCall& call) {
   higher.until_amplitude = number(call, "amplitude") / 2;
   const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
   std::vector<double> values;
+  values.reserve(ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i)
     values.push_back(time_below(theirs[i], number(call, "amplitude")) /
                      time_below(ours[i], number(call, "amplitude")));

@@ -47,7 +47,7 @@ std::string equation(const Scene& scene, Varied varied) {
 // Three digits, for reading.
 std::string rounded(double value) {
   char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 3).ptr;
+  char* const end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 3).ptr;
   return {digits, end};
 }
 
