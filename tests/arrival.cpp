@@ -241,3 +241,64 @@ TEST_CASE("a free motion's derivatives fall through zero where the certified sea
   }
   CHECK(fell > 10000);
 }
+
+TEST_CASE("x crosses zero and turns in a contact where the certified search finds it") {
+  reference::Random random(16);
+  int fell = 0, lasting = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Scene scene = scene_of(random, false);
+    scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 0.3);
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    // Pressed on the wall by x, and on its way to zero or to a turn.
+    const State<double> start{-random.log_uniform(1e-2, 30), signed_log(random, 1e-2, 30), 0,
+                              -random.log_uniform(1e-6, 1)};
+    const Contact<double> contact(walls, 0.0, start, Wall::left);
+    const auto end = contact.leave(100, infinite);
+    if (!end) continue;
+    const std::size_t order = n % 2;
+    const double sign = order == 0 ? -1 : start.v > 0 ? 1 : -1;
+    const auto found = contact.falls(order, sign, 0, end->time, infinite);
+    const auto expected =
+        search_fall<double>([&](double t) { return contact.derivative_of_x(order, sign, t, infinite); }, 0.0,
+                            end->time, infinite, contact.resolution());
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++fell;
+    lasting += *found > 10 * walls.fast.half_period();
+    // Off by what rounding makes of x or x', by their slope.
+    const auto slow = contact.slow_at(*expected), fast = contact.fast_at(*expected);
+    const double slope = std::abs(contact.derivative_of_x(order, sign, *expected, infinite).whole.g1);
+    const double size = std::abs(slow.x) + std::abs(fast.x) + std::abs(slow.v) + std::abs(fast.v) +
+                        std::abs(start.x) + std::abs(start.v) + scene.mass_ratio * std::abs(start.w);
+    CHECK(std::abs(*found - *expected) <= 16 * epsilon * *expected + 64 * epsilon * size / slope);
+  }
+  CHECK(fell > 2000);
+  CHECK(lasting > 1000);
+}
+
+TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
+  reference::Random random(17);
+  double second_reached = 0, third_reached = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Scene scene = scene_of(random, false);
+    const System<double> system(scene);
+    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    if (!walls.rebound) continue;
+    const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
+                              -random.log_uniform(1e-6, 30)};
+    const Contact<double> contact(walls, 0.0, start, Wall::left);
+    const double second = walls.rebound.second_of_x(start.x, start.v, start.w);
+    const double third = walls.rebound.third_of_x(start.x, start.v, start.w);
+    for (int i = 0; i <= 64; ++i) {
+      const auto now = contact.derivative_of_x(1, 1, i / 32.0 * walls.fast.half_period(), infinite).whole;
+      second_reached = std::max(second_reached, std::abs(now.g1) / second);
+      third_reached = std::max(third_reached, std::abs(now.g2) / third);
+    }
+  }
+  CHECK(second_reached <= 1 + 1e-12);
+  CHECK(third_reached <= 1 + 1e-12);
+  CHECK(second_reached > 0.5);
+  CHECK(third_reached > 0.5);
+}

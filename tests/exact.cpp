@@ -352,6 +352,14 @@ TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and n
   CHECK(run.contacts->begin[0] == 0);
   CHECK(run.contacts->end[0] == 1);
   CHECK(run.energy->contact_loss > 0);
+  Scene mirrored = pressed;
+  mirrored.x0 = 4;
+  mirrored.y0 = 1;
+  const Run other = simulate(mirrored, Exact{}, everything());
+  CHECK(other.impacts->time.empty());
+  REQUIRE(other.contacts->begin.size() == 1);
+  CHECK(other.contacts->wall[0] == Wall::right);
+  CHECK(other.energy->contact_loss == doctest::Approx(run.energy->contact_loss).epsilon(1e-12));
   Scene overlapping;
   overlapping.y0 = 1.01;
   overlapping.until_time = 0.2;

@@ -1,6 +1,5 @@
 // The measures that read run files, on runs made by hand: a decay in half cycles of length pi with whatever
 // amplitudes, impacts and contacts a test wants, so that each number can be worked out on paper.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -359,3 +359,22 @@ TEST_CASE("the clock of many motions is right to its last two digits") {
   }
   CHECK(std::abs(clock.now() - sum) <= last_two * sum);
 }
+
+TEST_CASE("where an impact throws x back, its height then is the half cycle's amplitude") {
+  Scene scene;
+  scene.mass_ratio = 1;
+  scene.restitution = 1;
+  scene.x0 = 0;
+  scene.v0 = 1;
+  scene.y0 = 0.5;
+  scene.w0 = -5;
+  scene.until_time = 1;
+  const Run run = simulate(scene, Restitution{}, everything());
+  REQUIRE(!run.impacts->time.empty());
+  REQUIRE(!run.half_cycles->amplitude.empty());
+  const double first = run.impacts->time[0];
+  CHECK(first < 0.2);
+  CHECK(run.half_cycles->amplitude[0] == doctest::Approx(std::sin(first)).epsilon(1e-14));
+  CHECK(run.half_cycles->peak_time[0] == first);
+  CHECK(run.impacts->amplitude[0] == run.half_cycles->amplitude[0]);
+}
