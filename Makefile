@@ -127,12 +127,6 @@ check: build test  ## build, run every test, regenerate everything with all engi
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
 
-<<<<<<< HEAD
-=======
-mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
-	@nice tests/mutation/mutate.py --folder $(BUILD)/mutation
-
->>>>>>> M
 lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
 	@tests/checks/lint.py $(BUILD)
@@ -142,12 +136,9 @@ sanitize:  ## the tests once more, under clang's address and undefined-behaviour
 
 coverage: sanitize  ## the same; then which lines of the library they ran: at least 95 % of them
 	@$(alone) tests/checks/coverage $(BUILD)/sanitize
-<<<<<<< HEAD
 
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
-=======
->>>>>>> M
 
 same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
 	@$(alone) cmake --build $(BUILD) --target same-bits
