@@ -51,6 +51,7 @@ Contender stepping(const std::string& name, Cem options, bool two_rates, const s
           [options, two_rates](const Scene& scene, double step) {
             Cem chosen = options;
             chosen.time_step = step;
+            chosen.max_steps = 1'000'000'000;  // the finest go beyond the usual budget
             if (two_rates) chosen.large_step = large_step(scene, step);
             return rows_of(simulate(scene, chosen, {.half_cycles = true}));
           },
