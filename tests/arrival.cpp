@@ -111,6 +111,27 @@ TEST_CASE("a function keeps its sign between two ends as long as the deepest par
   }
 }
 
+TEST_CASE("a motion moved on by its derivatives is the sum of their series") {
+  reference::Random random(18);
+  for (int n = 0; n < 1000; ++n) {
+    Derivatives<double, 6> d;
+    for (double& each : d) each = signed_log(random, 1e-3, 1e3);
+    const double t = signed_log(random, 1e-3, 10);
+    long double u = 0, u1 = 0, size = 0, size1 = 0, power = 1;  // power: t^k/k!
+    for (int k = 0; k < 5; ++k) {
+      u += d[k] * power;
+      u1 += d[k + 1] * power;
+      size += std::abs(d[k] * power);
+      size1 += std::abs(d[k + 1] * power);
+      power *= t / static_cast<long double>(k + 1);
+    }
+    const auto now = moved(d, t);
+    // Each term goes through a dozen roundings at most.
+    CHECK(std::abs(double(now.u - u)) <= 12 * epsilon * double(size));
+    CHECK(std::abs(double(now.u1 - u1)) <= 12 * epsilon * double(size1));
+  }
+}
+
 TEST_CASE("a flight meets the wall that the certified search finds, when it finds it") {
   reference::Random random(12);
   int met = 0;
