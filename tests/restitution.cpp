@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -377,4 +378,21 @@ TEST_CASE("where an impact throws x back, its height then is the half cycle's am
   CHECK(run.half_cycles->amplitude[0] == doctest::Approx(std::sin(first)).epsilon(1e-14));
   CHECK(run.half_cycles->peak_time[0] == first);
   CHECK(run.impacts->amplitude[0] == run.half_cycles->amplitude[0]);
+}
+
+TEST_CASE("x thrown back just as it comes to zero begins no half cycle by rounding") {
+  // Released from the left wall at x0 = 1, the secondary mass flies straight and is at the right one when x
+  // is zero; a heavy one turns the primary mass back there. Rounding puts x on either side.
+  for (int n = -4; n <= 4; ++n) {
+    for (double nu = 2; nu < 1e6; nu *= 1.1) {
+      Scene scene;
+      scene.mass_ratio = nu;
+      scene.restitution = 1;
+      scene.x0 = 1 + n * std::numeric_limits<double>::epsilon();
+      scene.until_time = 1.6;
+      const Run run = simulate(scene, Restitution{}, everything());
+      REQUIRE(run.impacts->time.size() == 1);
+      for (double amplitude : run.half_cycles->amplitude) CHECK(amplitude > 0.5);
+    }
+  }
 }
