@@ -58,7 +58,8 @@ Command scenes_command(CLI::App& program) {
       program.add_subcommand("scenes", "List the scenes of a folder, each with its numbers.");
   app->add_option("FOLDER", "folder of scene files (*.json); default data/scenes")->type_name("");
   app->footer(
-      "Columns are the keys of a scene file; everything is dimensionless (impact-damper run --help).\n\n"
+      "Columns are the keys of a dimensionless scene file; a scene in units is listed as what it makes\n"
+      "(impact-damper run --help).\n\n"
       "Examples:\n"
       "  impact-damper scenes\n"
       "  impact-damper scenes my/scenes");

@@ -84,7 +84,7 @@ def neighbours(bound):
 
 
 # Around every limit that a schema states, and what is a number like no other.
-BOUNDS = [0.0, 1e-3, 0.5, 1.0, 2.0, -10.0, 10.0, 18.0, 180.0, 1e3, 1e4, 1e6, -1e12, 1e12, 1e15]
+BOUNDS = [0.0, 1e-15, 1e-3, 0.5, 1.0, 2.0, -10.0, 10.0, 18.0, 180.0, 1e3, 1e4, 1e6, -1e12, 1e12, -1e15, 1e15]
 NUMBERS = [near for bound in BOUNDS for near in neighbours(bound)] + [
     0, -0.0, 1, -1, 2, 3, 8, 9, 17, 19, 1001, 10**6, 10**6 + 1, 2**63 - 1, 2**63, 2**64, 1.5, 1e300, sys.float_info.max]
 TEXTS = ["", "a", ".a", "a/b", "a b", "a\n", "a\u0000", "\u007f", "\u00e9", "a" * 8, "a" * 9, "a" * 64, "a" * 65, "\u03bd" * 4000,
@@ -157,7 +157,7 @@ def main():
     if unlisted:
         sys.exit(f"not in manifest.txt: {unlisted}")
 
-    own = {"scene": sorted((source / "data/scenes").glob("*.json")), "run": [], "catalogue": [source / "figures/catalogue.json"],
+    own = {"scene": sorted([*(source / "data/scenes").glob("*.json"), *(source / "data/examples").glob("*.json")]), "run": [], "catalogue": [source / "figures/catalogue.json"],
            "claims": [source / "data/claims.json"]}
     for engine in ("exact", "restitution", "cem"):
         fresh = folder / "fresh" / f"{engine}.json"

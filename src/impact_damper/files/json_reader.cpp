@@ -208,6 +208,10 @@ std::string ObjectReader::pointer_to(std::string_view key) const {
   return key.empty() ? pointer_ : pointer_ + '/' + json_token(key);
 }
 
+bool ObjectReader::holds(std::string_view key) const {
+  return object_ && object_->contains(std::string(key));
+}
+
 bool ObjectReader::has(std::string_view key) { return find(key) != nullptr; }
 
 bool ObjectReader::require(std::string_view key) {

@@ -108,7 +108,8 @@ class ObjectReader {
 
   // Every key that is there, sorted, and known from now on: for objects whose keys are data.
   std::vector<std::string> keys();
-  bool has(std::string_view key);  // makes it known
+  bool has(std::string_view key);          // makes it known
+  bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
 
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
   // is admitted and what was given. For checks that the reader cannot do.

@@ -1,17 +1,72 @@
 #include "impact_damper/files/scene_file.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper {
 namespace {
 
-Scene read_whole(JsonDocument document) {
-  ObjectReader object = document.root();
-  std::string description;
-  object.optional("description", description);
-  const Scene scene = read_scene_fields(object);
-  document.finish();
+// The given keys that only a scene in units has, and those that only a dimensionless one has.
+struct GivenKeys {
+  std::string in_units, dimensionless;
+};
+
+GivenKeys given_keys(const ObjectReader& object) {
+  GivenKeys given;
+  const auto add = [&](std::string& list, std::string_view key) {
+    if (object.holds(key)) list += (list.empty() ? "" : ", ") + std::string(key);
+  };
+  const auto is_in_both = [](std::string_view name) {
+    const auto field = std::ranges::find(unit_fields, name, &UnitField::name);
+    return field != unit_fields.end() && field->also_dimensionless;
+  };
+  for (const UnitField& field : unit_fields)
+    if (!field.also_dimensionless) add(given.in_units, field.name);
+  for (const SceneField& field : scene_fields)
+    if (!is_in_both(field.name)) add(given.dimensionless, field.name);
+  for (const std::string_view stop : {"until_time", "until_amplitude"}) add(given.dimensionless, stop);
+  return given;
+}
+
+SceneInUnits read_unit_fields(ObjectReader& object) {
+  SceneInUnits scene;
+  std::vector<std::string_view> unreadable;
+  for (const UnitField& field : unit_fields) {
+    if (!object.has(field.name)) continue;
+    // What cannot be read is neither missing nor a number that something can be made of.
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (!object.optional(field.name, value)) unreadable.push_back(field.name);
+    scene.*field.member = value;
+  }
+  for (const Problem& problem : problems_of(scene))
+    if (std::ranges::find(unreadable, problem.field) == unreadable.end())
+      object.refuse(problem.field, problem.message);
   return scene;
+}
+
+SceneFile read_whole(JsonDocument document) {
+  ObjectReader object = document.root();
+  SceneFile file;
+  object.optional("description", file.description);
+  const auto [in_units, without_units] = given_keys(object);
+  if (in_units.empty()) {
+    file.scene = read_scene_fields(object);
+    document.finish();
+    return file;
+  }
+  const SceneInUnits scene = read_unit_fields(object);
+  if (!without_units.empty()) {
+    for (const SceneField& field : scene_fields) object.has(field.name);
+    object.has("until_time"), object.has("until_amplitude");
+    object.refuse("",
+                  "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
+  }
+  document.finish();
+  file.scene = dimensionless(scene);
+  file.scales = scales_of(scene);
+  return file;
 }
 
 }  // namespace
@@ -29,12 +84,18 @@ Scene read_scene_fields(ObjectReader& object) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file) {
+SceneFile read_scene_file(const std::filesystem::path& file) {
   return read_whole(JsonDocument::read(file, scene_kind));
 }
 
-Scene parse_scene(const std::string& name, const std::string& text) {
+Scene read_scene(const std::filesystem::path& file) { return read_scene_file(file).scene; }
+
+SceneFile parse_scene_file(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text));
+}
+
+Scene parse_scene(const std::string& name, const std::string& text) {
+  return parse_scene_file(name, text).scene;
 }
 
 std::string scene_text(const Scene& scene) {

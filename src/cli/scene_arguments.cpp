@@ -1,0 +1,189 @@
+#include "scene_arguments.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+std::string option_of(std::string_view field) {
+  std::string name(field);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+NumberRange range_of(const SceneField& field) {
+  const double any = std::numeric_limits<double>::max();
+  // The limits that only keep squares finite are no news to anybody until they are passed.
+  return {field.least <= -1e12 ? -any : field.least, field.most >= 1e6 ? any : field.most,
+          field.least_is_admitted};
+}
+
+Budget budget_of(Arguments& arguments) {
+  Budget budget;
+  if (const auto most = arguments.whole_number("--max-impacts", at_least(0))) budget.max_impacts = *most;
+  if (const auto most = arguments.whole_number("--max-half-cycles", at_least(1)))
+    budget.max_half_cycles = *most;
+  if (const auto most = arguments.number("--max-time", NumberRange{0, 1e12, false})) budget.max_time = *most;
+  return budget;
+}
+
+// Options that only some engines have; with another they would be ignored, so they are refused.
+void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
+  struct Own {
+    const char* option;
+    std::vector<std::string_view> engines;
+  };
+  const std::vector<Own> owns{
+      {"--time-step", {Cem::name}},
+      {"--damper", {Cem::name}},
+      {"--locate", {Cem::name}},
+      {"--large-step", {Cem::name}},
+      {"--unstable", {Cem::name}},
+      {"--max-steps", {Cem::name}},
+      {"--calibration", {Exact::name, Cem::name}},
+      {"--accumulation-tolerance", {Restitution::name}},
+  };
+  for (const Own& own : owns) {
+    if (!arguments.given(own.option) || std::count(own.engines.begin(), own.engines.end(), engine) > 0)
+      continue;
+    std::string list;
+    for (const std::string_view name : own.engines) list += (list.empty() ? "" : " or ") + std::string(name);
+    arguments.refuse(own.option,
+                     "is an option of --engine " + list + ", got --engine " + std::string(engine));
+  }
+}
+
+}  // namespace
+
+SceneFile scene_of(Arguments& arguments) {
+  const std::optional<std::string> name = arguments.file("--scene");
+  SceneFile file = name ? read_scene_file(*name) : SceneFile{};
+  Scene& scene = file.scene;
+  bool all_read = true;
+  const auto override_with = [&](std::string_view field, auto& target) {
+    const std::optional<double> value = arguments.number(option_of(field));
+    if (value) target = *value;
+    if (!value && arguments.given(option_of(field))) all_read = false;
+  };
+  for (const SceneField& field : scene_fields) override_with(field.name, scene.*field.member);
+  override_with("until_time", scene.until_time);
+  override_with("until_amplitude", scene.until_amplitude);
+  if (!scene.until_time && !scene.until_amplitude) {
+    if (all_read)
+      arguments.refuse("--until-time",
+                       "it, --until-amplitude or both must be given: when is the run to stop?");
+    return file;
+  }
+  for (const Problem& problem : problems_of(scene))
+    arguments.refuse(option_of(problem.field), problem.message);
+  return file;
+}
+
+Engine engine_of(Arguments& arguments) {
+  const std::vector<std::string_view> names{Exact::name, Restitution::name, Cem::name};
+  const std::optional<std::size_t> chosen = arguments.word("--engine", names);
+  if (!chosen && arguments.given("--engine")) return {};  // refused; which options belong to it is unknown
+  const std::string_view name = names[chosen.value_or(0)];
+  refuse_foreign_options(arguments, name);
+
+  const Budget budget = budget_of(arguments);
+  const Calibration calibration = arguments.choice(
+      "--calibration", {Calibration::fixed_wall, Calibration::two_body}, Calibration::fixed_wall);
+  if (name == Exact::name) return Exact{calibration, budget};
+  if (name == Restitution::name) {
+    Restitution engine;
+    engine.budget = budget;
+    const auto tolerance = arguments.number("--accumulation-tolerance", NumberRange{0, 1e-3, false});
+    if (tolerance) engine.accumulation_tolerance = *tolerance;
+    return engine;
+  }
+  Cem engine;
+  engine.time_step = arguments.number("--time-step", above(0));
+  engine.damper = arguments.choice("--damper", {Damper::centred, Damper::lagged}, Damper::centred);
+  engine.locate = arguments.flag("--locate");
+  engine.large_step = arguments.number("--large-step", above(0));
+  engine.unstable = arguments.flag("--unstable");
+  engine.calibration = calibration;
+  if (const auto most = arguments.whole_number("--max-steps", at_least(1))) engine.max_steps = *most;
+  engine.budget = budget;
+  return engine;
+}
+
+Run simulate_as_asked(const Scene& scene, const Engine& engine, const Record& record) {
+  try {
+    return simulate(scene, engine, record);
+  } catch (const std::invalid_argument& error) {
+    std::istringstream lines(error.what());
+    std::string problems;
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t colon = std::min(line.find(':'), line.size());
+      problems += (problems.empty() ? "" : "\n") + option_of(line.substr(0, colon)) + line.substr(colon);
+    }
+    throw UsageError(problems);
+  }
+}
+
+void add_scene_options(CLI::App& app) {
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
+    app.add_option(name, help)->type_name(type)->group("Scene");
+  };
+  add("--scene", "FILE",
+      "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; options given beside it win, "
+      "and are dimensionless");
+  const Scene defaults;
+  for (const SceneField& field : scene_fields) {
+    add(option_of(field.name), "X",
+        std::string(field.meaning) + ";\n" + range_of(field).describe("a number") + ", default " +
+            number_text(defaults.*field.member));
+  }
+  add("--until-time", "T", "stop at this time; a number > 0");
+  add("--until-amplitude", "A",
+      "stop at the end of the first half cycle below this amplitude;\n"
+      "a number > 0. One of the two stops, or both, must be given");
+}
+
+void add_engine_options(CLI::App& app) {
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
+    return app.add_option(name, help)->type_name(type)->group("Engine");
+  };
+  const auto add_flag = [&](const std::string& name, const std::string& help) {
+    app.add_flag(name, help)->group("Engine");
+  };
+  add("--engine", "NAME",
+      "exact (default): compliant walls in closed form, no time step;\n"
+      "restitution: rigid walls, instantaneous impacts;\n"
+      "cem: the component element method, central differences");
+  add("--calibration", "HOW",
+      "exact, cem: fixed-wall (default), the paper's, delivers the\n"
+      "restitution to a primary mass held still; two-body to a free one");
+  add("--time-step", "H",
+      "cem: the fixed step, a number > 0 below the stability limit;\n"
+      "default a hundredth of an impact's duration, or of half the\n"
+      "primary mass's or the forcing's period where that is shorter");
+  add("--damper", "WHICH",
+      "cem: the velocity the wall's damper sees, centred (default)\n"
+      "or lagged (one step behind)");
+  add_flag("--locate", "cem: locate touch and release inside the step");
+  add("--large-step", "H",
+      "cem: steps of up to H, for instance 0.05, while no wall can be\n"
+      "met, the time step near contact only; a number > the time step\n"
+      "and < 2, with forcing at most half its period. Best with --locate");
+  add_flag("--unstable", "cem: run even with a step beyond the stability limit");
+  add("--accumulation-tolerance", "X",
+      "restitution: bounce-down jumps to its end once the relative\n"
+      "acceleration changes by less than this fraction in the rest of\n"
+      "it; a number > 0 and <= 0.001, default 1e-8");
+  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 200000");
+  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 200000");
+  add("--max-time", "T",
+      "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
+      "than "
+      "1 divided by its\nfrequency");
+  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 300000000");
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,115 @@
+#include "impact_damper/units.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/wording.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr double small = 1e-15, large = 1e15;
+constexpr double metres = 1e-3;  // per millimetre
+
+const UnitField* maker_of(const SceneInUnits& scene, std::string_view field) {
+  const UnitField* maker = nullptr;
+  for (const UnitField& each : unit_fields)
+    if (each.becomes == field && (!maker || scene.*each.member)) maker = &each;
+  return maker;
+}
+
+}  // namespace
+
+const std::array<UnitField, 16> unit_fields{{
+    {"mass", &SceneInUnits::mass, small, true, large, "kg", "", false, "mass M of the primary system"},
+    {"stiffness", &SceneInUnits::stiffness, small, true, large, "N/m", "", false,
+     "stiffness K of its spring"},
+    {"secondary_mass", &SceneInUnits::secondary_mass, small, true, large, "kg", "mass_ratio", false,
+     "mass of the loose mass"},
+    {"clearance", &SceneInUnits::clearance, small, true, large, "mm", "", false,
+     "free travel of the loose mass, epsilon"},
+    {"restitution", &SceneInUnits::restitution, 0, true, 1, "", "restitution", true,
+     "coefficient of restitution, e"},
+    {"damping", &SceneInUnits::damping, 0, true, large, "N s/m", "damping_ratio", false,
+     "viscous damping of the primary system"},
+    {"damping_ratio", &SceneInUnits::damping_ratio, 0, true, 1e6, "", "damping_ratio", true,
+     "the same by critical damping, zeta"},
+    {"contact_stiffness", &SceneInUnits::contact_stiffness, small, true, large, "N/m", "wall_stiffness",
+     false, "stiffness of the walls"},
+    {"initial_displacement", &SceneInUnits::initial_displacement, -large, true, large, "mm", "x0", false,
+     "initial displacement of the primary mass"},
+    {"initial_velocity", &SceneInUnits::initial_velocity, -large, true, large, "mm/s", "v0", false,
+     "initial velocity of the primary mass"},
+    {"secondary_displacement", &SceneInUnits::secondary_displacement, -large, true, large, "mm", "y0", false,
+     "initial distance of the loose mass from the left wall"},
+    {"secondary_velocity", &SceneInUnits::secondary_velocity, -large, true, large, "mm/s", "w0", false,
+     "initial velocity of the loose mass in the cavity"},
+    {"exciting_force", &SceneInUnits::exciting_force, -large, true, large, "N", "force_amplitude", false,
+     "amplitude of the exciting force"},
+    {"exciting_frequency", &SceneInUnits::exciting_frequency, 0, false, large, "Hz", "force_frequency", false,
+     "frequency of the exciting force"},
+    {"until_seconds", &SceneInUnits::until_seconds, 0, false, large, "s", "until_time", false,
+     "the run ends at this time"},
+    {"until_millimetres", &SceneInUnits::until_millimetres, 0, false, large, "mm", "until_amplitude", false,
+     "the run ends with the first half cycle of a lower amplitude"},
+}};
+
+double Scales::time() const { return std::sqrt(mass / stiffness); }
+double Scales::frequency() const { return 1 / (2 * std::numbers::pi * time()); }
+double Scales::velocity() const { return length / time(); }
+double Scales::force() const { return stiffness * (length * metres); }
+double Scales::energy() const { return force() * (length * metres); }
+double Scales::damping() const { return 2 * std::sqrt(stiffness * mass); }
+
+std::vector<Problem> problems_of(const SceneInUnits& scene) {
+  std::vector<Problem> problems;
+  for (const auto* needed : {"mass", "stiffness", "secondary_mass", "clearance"}) {
+    for (const UnitField& field : unit_fields) {
+      if (field.name == needed && !(scene.*field.member))
+        problems.push_back({needed, "missing, a value must be given in " + std::string(field.unit)});
+    }
+  }
+  for (const UnitField& field : unit_fields) {
+    const std::optional<double>& value = scene.*field.member;
+    const NumberRange range{field.least, field.most, field.least_is_admitted};
+    if (value && !range.admits(*value))
+      problems.push_back(
+          {std::string(field.name), range.describe("must be") + ", got " + number_text(*value)});
+  }
+  if (scene.damping && scene.damping_ratio)
+    problems.push_back({"damping", "either it or damping_ratio must be given, got both"});
+  if (!scene.until_seconds && !scene.until_millimetres)
+    problems.push_back({"until_seconds", "until_seconds, until_millimetres or both must be given"});
+  if (!problems.empty()) return problems;
+
+  for (const Problem& problem : problems_of(dimensionless(scene))) {
+    problems.push_back({std::string(maker_of(scene, problem.field)->name),
+                        "made dimensionless, as " + problem.field + ", " + problem.message});
+  }
+  return problems;
+}
+
+Scales scales_of(const SceneInUnits& scene) { return {*scene.mass, *scene.stiffness, *scene.clearance}; }
+
+Scene dimensionless(const SceneInUnits& scene) {
+  const Scales scales = scales_of(scene);
+  Scene made;
+  made.mass_ratio = *scene.secondary_mass / scales.mass;
+  made.restitution = scene.restitution.value_or(made.restitution);
+  if (scene.damping) made.damping_ratio = *scene.damping / scales.damping();
+  if (scene.damping_ratio) made.damping_ratio = *scene.damping_ratio;
+  if (scene.contact_stiffness) made.wall_stiffness = *scene.contact_stiffness / scales.stiffness;
+  made.x0 = scene.initial_displacement.value_or(0) / scales.length;
+  made.v0 = scene.initial_velocity.value_or(0) / scales.velocity();
+  made.y0 = scene.secondary_displacement.value_or(0) / scales.length;
+  made.w0 = scene.secondary_velocity.value_or(0) / scales.velocity();
+  made.force_amplitude = scene.exciting_force.value_or(0) / scales.force();
+  if (scene.exciting_frequency) made.force_frequency = *scene.exciting_frequency / scales.frequency();
+  if (scene.until_seconds) made.until_time = *scene.until_seconds / scales.time();
+  if (scene.until_millimetres) made.until_amplitude = *scene.until_millimetres / scales.length;
+  return made;
+}
+
+}  // namespace impact_damper

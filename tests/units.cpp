@@ -1,0 +1,149 @@
+#include "impact_damper/units.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// A mast of 40 kg at 20 rad/s, worked through by hand: every dimensionless number is a short decimal.
+SceneInUnits mast() {
+  SceneInUnits scene;
+  scene.mass = 40;
+  scene.stiffness = 16000;
+  scene.secondary_mass = 1.6;
+  scene.clearance = 10;
+  scene.restitution = 0.7;
+  scene.damping = 3.2;
+  scene.contact_stiffness = 4e8;
+  scene.initial_displacement = 60;
+  scene.initial_velocity = -50;
+  scene.secondary_displacement = 2.5;
+  scene.secondary_velocity = 20;
+  scene.exciting_force = 4;
+  scene.exciting_frequency = 3;
+  scene.until_seconds = 30;
+  scene.until_millimetres = 0.5;
+  return scene;
+}
+
+doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-14); }  // a few roundings
+
+}  // namespace
+
+TEST_CASE("a scene in units becomes the dimensionless one that is worked out by hand") {
+  const Scene scene = dimensionless(mast());
+  CHECK(scene.mass_ratio == near(0.04));
+  CHECK(scene.restitution == 0.7);
+  CHECK(scene.damping_ratio == near(0.002));  // 3.2 / (2 sqrt(16000 40)) = 3.2 / 1600
+  CHECK(scene.wall_stiffness == near(25000));
+  CHECK(scene.x0 == near(6));
+  CHECK(scene.v0 == near(-0.25));  // epsilon Omega_n = 10 mm 20/s
+  CHECK(scene.y0 == near(0.25));
+  CHECK(scene.w0 == near(0.1));
+  CHECK(scene.force_amplitude == near(0.025));                 // K epsilon = 160 N
+  CHECK(scene.force_frequency == near(0.942477796076937972));  // 3 2 pi / 20
+  CHECK(*scene.until_time == near(600));
+  CHECK(*scene.until_amplitude == near(0.05));
+  CHECK(problems_of(mast()).empty());
+}
+
+TEST_CASE("the scales are those of the primary system and the clearance") {
+  const Scales scales = scales_of(mast());
+  CHECK(scales.time() == near(0.05));
+  CHECK(scales.frequency() == near(3.18309886183790672));  // 20 / (2 pi)
+  CHECK(scales.length == 10);
+  CHECK(scales.velocity() == near(200));
+  CHECK(scales.force() == near(160));
+  CHECK(scales.energy() == near(1.6));  // 16000 N/m (0.01 m)^2
+  CHECK(scales.damping() == near(1600));
+}
+
+TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced and has the usual walls") {
+  SceneInUnits scene;
+  scene.mass = 2;
+  scene.stiffness = 50;
+  scene.secondary_mass = 0.1;
+  scene.clearance = 4;
+  scene.until_seconds = 1;
+  Scene expected;
+  expected.mass_ratio = 0.05;
+  expected.x0 = 0;
+  expected.until_time = 5;
+  CHECK(dimensionless(scene) == expected);
+}
+
+TEST_CASE("a motion in units obeys the equations with their units") {
+  // Until the loose mass meets a wall the primary mass is alone: M x'' + C x' + K x = F sin(2 pi f t). Its
+  // closed form in millimetres and seconds, from rest, against the run of the dimensionless scene.
+  SceneInUnits given = mast();
+  given.clearance = 1000;
+  given.secondary_displacement = 500;
+  given.secondary_velocity = 0;
+  given.until_millimetres.reset();
+  given.until_seconds = 2;
+  given.initial_velocity = 0;
+  given.initial_displacement = 0;
+  const Scales scales = scales_of(given);
+  Record record;
+  record.impacts = true;
+  record.history = {{0, 2 / scales.time(), 41}};
+  const Run run = simulate(dimensionless(given), Exact{}, record);
+  REQUIRE(run.impacts->time.empty());
+
+  const double m = 40, c = 3.2, k = 16000, force = 4, omega = 2 * M_PI * 3;
+  const double real = k - m * omega * omega, imaginary = c * omega,
+               square = real * real + imaginary * imaginary;
+  const double s = force * real / square, q = -force * imaginary / square;  // of sin and cos, steady state, m
+  const double decay = c / (2 * m), omega_d = std::sqrt(k / m - decay * decay);
+  const double a = -q, b = (-s * omega + a * decay) / omega_d;
+  for (std::size_t i = 0; i < run.history->time.size(); ++i) {
+    const double t = run.history->time[i] * scales.time();
+    const double x = s * std::sin(omega * t) + q * std::cos(omega * t) +
+                     std::exp(-decay * t) * (a * std::cos(omega_d * t) + b * std::sin(omega_d * t));
+    // Twelve digits of the largest, about 2 mm: both sides round.
+    CHECK(run.history->x[i] * scales.length == doctest::Approx(1000 * x).epsilon(1e-12).scale(2));
+  }
+}
+
+TEST_CASE("a scene file in units is read as the scene that its numbers make") {
+  const SceneFile file = parse_scene_file(
+      "mast.json",
+      R"({"description": "A mast", "mass": 40, "stiffness": 16000, "secondary_mass": 1.6, "clearance": 10,
+          "restitution": 0.7, "damping": 3.2, "contact_stiffness": 4e8, "initial_displacement": 60,
+          "initial_velocity": -50, "secondary_displacement": 2.5, "secondary_velocity": 20, "exciting_force": 4,
+          "exciting_frequency": 3, "until_seconds": 30, "until_millimetres": 0.5})");
+  CHECK(file.scene == dimensionless(mast()));
+  CHECK(file.scales == scales_of(mast()));
+  CHECK(file.description == "A mast");
+  CHECK(!parse_scene_file("s.json", R"({"restitution": 0.5, "until_time": 3})").scales);
+}
+
+TEST_CASE("keys of both kinds in one file are all named") {
+  CHECK_THROWS_WITH_AS(
+      parse_scene("s.json", R"({"mass": 1, "stiffness": 1, "secondary_mass": 1, "clearance": 1, "x0": 1,
+                                "until_seconds": 1, "until_amplitude": 1, "restitution": 1})"),
+      "s.json: must be either in units or dimensionless, got mass, stiffness, secondary_mass, clearance, "
+      "until_seconds beside x0, until_amplitude",
+      InputError);
+}
+
+TEST_CASE("no number in units that is admitted makes a scale of zero or infinity") {
+  for (const double mass : {1e-15, 1e15}) {
+    for (const double stiffness : {1e-15, 1e15}) {
+      for (const double length : {1e-15, 1e15}) {
+        const Scales scales{mass, stiffness, length};
+        for (const double scale : {scales.time(), scales.frequency(), scales.velocity(), scales.force(),
+                                   scales.energy(), scales.damping()}) {
+          CHECK(std::isnormal(scale));
+        }
+      }
+    }
+  }
+}
