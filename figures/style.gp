@@ -38,6 +38,6 @@ has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0
 # values at their ends, where those lie in the SVG (from its left, from its bottom), and which of x and y are logarithmic.
 # A script says `eval axes("A", "η", "xy")` after each plot.
 axes(x, y, logarithmic) = sprintf( \
-  "print sprintf('{\"x\": [\"%s\", %%.15g, %%.15g, %%g, %%g], \"y\": [\"%s\", %%.15g, %%.15g, %%g, %%g], \"log\": \"%s\"}', ".\
+  "print sprintf('{\"x\": [\"%s\", %%.10g, %%.10g, %%g, %%g], \"y\": [\"%s\", %%.10g, %%.10g, %%g, %%g], \"log\": \"%s\"}', ".\
   "GPVAL_X_MIN, GPVAL_X_MAX, GPVAL_TERM_XMIN, GPVAL_TERM_XMAX, ".\
   "GPVAL_Y_MIN, GPVAL_Y_MAX, GPVAL_TERM_YMIN, GPVAL_TERM_YMAX)", x, y, logarithmic)
