@@ -36,6 +36,7 @@ from differences import compare_files
 
 SOURCE = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
+VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 COMPILERS = ["g++", "clang++"]
 # Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
 FLAGS = {
@@ -190,7 +191,8 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
                 table = "-"
                 if engine != ENGINES[0]:
                     continue
-            call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name],
+            call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name,
+                  VERSION],
                  cwd=places.folder(surroundings), env=places.environment(features, surroundings))
 
 
