@@ -31,7 +31,7 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
         1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
     const double factor = 1 + options.step * (drawn & 1 ? steps : -steps);
     Scene shifted = scene;
-    (scene.x0 != 0 ? shifted.x0 : shifted.v0) *= factor;
+    (scene.x0 != 0 ? shifted.x0 : scene.v0 != 0 ? shifted.v0 : shifted.force_amplitude) *= factor;
     scenes.push_back(shifted);
   }
   return scenes;

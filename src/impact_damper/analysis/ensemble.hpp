@@ -22,7 +22,8 @@ struct EnsembleOptions {
 };
 
 // The scene itself, then members - 1 shifted ones: x0 (1 + step n), n drawn from the seed, never 0. With
-// x0 = 0 it is v0 that is shifted. Equal options give equal scenes on every machine.
+// x0 = 0 it is v0 that is shifted, and from rest in the middle the forcing's amplitude. Equal options give
+// equal scenes on every machine.
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options = {});
 
 // One run for each scene, in their order. Throws what simulate() throws for the first scene that fails.

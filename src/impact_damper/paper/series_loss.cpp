@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "impact_damper/analysis/ensemble.hpp"
@@ -72,24 +73,64 @@ struct LossCurve {
         kept(before_failure(run, loss, curve.loss_factor.half_cycles)) {}
 };
 
-// The extremes over an ensemble of the run's scene, `own` being the run's, where all members have a value.
-TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run& run, const LossCurve& own,
-                      const std::string& number, const Threads& threads) {
+// The closed forms for zeta = 0, with eta / nu for eta. They depend on no more than the restitution and how
+// far up they are drawn, so one serves all curves that differ in something else.
+struct ClosedForms {
+  double restitution, largest;
+  LossFactor one_impact, bounce_down;
+
+  ClosedForms(double e, double most) : restitution(e), largest(most) {
+    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e))) {
+      const auto motion = single_impact(e, amplitude);
+      if (!motion) continue;  // the fold itself, by rounding
+      one_impact.amplitude.push_back(amplitude);
+      one_impact.eta.push_back(motion->loss);
+    }
+    // Below 1/pi the far wall is not met before x returns to 0.
+    if (e > 0.95 || !(largest > 1 / std::numbers::pi) || !impact_damper::bounce_down(e, largest).sticks)
+      return;
+    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest);
+    for (const double amplitude : bounce_down.amplitude)
+      bounce_down.eta.push_back(impact_damper::bounce_down(e, amplitude).loss);
+  }
+};
+
+TableBlock theory_block(const std::string& name, const std::string& legend, LossFactor form,
+                        const Scene& scene, LossOrdinate which) {
+  for (double& eta : form.eta) eta *= scene.mass_ratio;
+  return {.name = name,
+          .notes = {"closed form for nu -> 0, zeta = 0"},
+          .columns = {{"amplitude", "peak amplitude A, by epsilon", form.amplitude},
+                      {legend, meaning(which), ordinate(form, scene, which)}}};
+}
+
+double largest_amplitude(const Run& run) { return std::ranges::max(run.half_cycles->amplitude); }
+
+// The run's own scene and engine, minutely differently released.
+std::vector<Run> neighbours(const FigureCurve& curve, const Run& run, const Threads& threads) {
   EnsembleOptions options;
   options.members = curve.ensemble;
-  const std::vector<Scene> scenes = ensemble_of(run.scene, options);
-  std::vector<LossCurve> members(scenes.size(), own);
-  for_each_index(curve.ensemble - 1, threads, [&](std::int64_t i) {
-    const auto n = static_cast<std::size_t>(i) + 1;
-    members[n] = LossCurve(figure, curve, simulate(scenes[n], run.engine, Record{}));
-  });
-  TableBlock block{.name = "band-" + number,
-                   .notes = {std::to_string(curve.ensemble) + " releases of scene " + curve.scene +
-                             ", x0 shifted by up to " + std::to_string(options.most_steps) + " times " +
-                             number_text(options.step) + " of it"},
-                   .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
-                               {"least", "ordinate of the ensemble", {}},
-                               {std::to_string(curve.ensemble) + " releases", "greatest ordinate", {}}}};
+  std::vector<Scene> scenes = ensemble_of(run.scene, options);
+  scenes.erase(scenes.begin());
+  return simulate_scenes(scenes, run.engine, Record{}, threads);
+}
+
+}  // namespace
+
+void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
+                    const std::vector<Run>& others, const std::string& number, Table& table) {
+  std::vector<LossCurve> members{LossCurve(figure, curve, run)};
+  for (const Run& other : others) members.emplace_back(figure, curve, other);
+  const LossCurve& own = members.front();
+  const std::string count = std::to_string(members.size());
+  const EnsembleOptions options;
+  TableBlock block{
+      .name = "band-" + number,
+      .notes = {count + " releases of scene " + curve.scene + ", x0 shifted by up to " +
+                std::to_string(options.most_steps) + " times " + number_text(options.step) + " of it"},
+      .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+                  {"least", "ordinate of the ensemble", {}},
+                  {count + " releases", "greatest ordinate", {}}}};
   const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
   const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
   // From the largest amplitude down: each member is then walked through once, its row being the first that
@@ -98,7 +139,7 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
   std::vector<std::size_t> row(members.size(), 0);
   std::vector<double> values(members.size());
   for (int k = last; k >= 0; --k) {
-    const double amplitude = amplitude_at(k, last, least, run.scene.x0);
+    const double amplitude = amplitude_at(k, last, least, largest_amplitude(run));
     bool all = true;
     for (std::size_t n = 0; n < members.size(); ++n) {
       const auto& [loss, ordinates, kept] = members[n];
@@ -118,39 +159,8 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Run&
     block.columns[2].values.push_back(spread.high);
   }
   for (TableColumn& column : block.columns) std::ranges::reverse(column.values);
-  return block;
+  table.blocks.push_back(std::move(block));
 }
-
-// The closed forms for zeta = 0, with eta / nu for eta. They depend on no more than the restitution and how
-// far up they are drawn, so one serves all curves that differ in something else.
-struct ClosedForms {
-  double restitution, largest;
-  LossFactor one_impact, bounce_down;
-
-  ClosedForms(double e, double largest_amplitude) : restitution(e), largest(largest_amplitude) {
-    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e))) {
-      const auto motion = single_impact(e, amplitude);
-      if (!motion) continue;  // the fold itself, by rounding
-      one_impact.amplitude.push_back(amplitude);
-      one_impact.eta.push_back(motion->loss);
-    }
-    if (e > 0.95 || !impact_damper::bounce_down(e, largest).sticks) return;
-    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest);
-    for (const double amplitude : bounce_down.amplitude)
-      bounce_down.eta.push_back(impact_damper::bounce_down(e, amplitude).loss);
-  }
-};
-
-TableBlock theory_block(const std::string& name, const std::string& legend, LossFactor form,
-                        const Scene& scene, LossOrdinate which) {
-  for (double& eta : form.eta) eta *= scene.mass_ratio;
-  return {.name = name,
-          .notes = {"closed form for nu -> 0, zeta = 0"},
-          .columns = {{"amplitude", "peak amplitude A, by epsilon", form.amplitude},
-                      {legend, meaning(which), ordinate(form, scene, which)}}};
-}
-
-}  // namespace
 
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
                     const std::string& number, const std::string& legend, const Threads& threads,
@@ -181,7 +191,8 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   block("curve-" + number, "", 0, kept);
   if (kept < values.size())
     block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
-  if (curve.ensemble > 0) table.blocks.push_back(band_block(figure, curve, source.run, own, number, threads));
+  if (curve.ensemble > 0)
+    add_band_block(figure, curve, source.run, neighbours(curve, source.run, threads), number, table);
 }
 
 void add_spread_block(const Figure& figure, Table& table) {
@@ -216,8 +227,9 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
     const Scene& scene = sources[i]->run.scene;
     // The closed forms are for zeta = 0 and for a rebound; below e = 1 only.
     if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
-    if (!forms || forms->restitution != scene.restitution || forms->largest != scene.x0)
-      forms.emplace(scene.restitution, scene.x0);
+    const double largest = largest_amplitude(sources[i]->run);
+    if (!forms || forms->restitution != scene.restitution || forms->largest != largest)
+      forms.emplace(scene.restitution, largest);
     const auto add = [&](const std::string& name, const std::string& legend, const LossFactor& form) {
       table.blocks.push_back(
           theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));

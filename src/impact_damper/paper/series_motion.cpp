@@ -48,9 +48,8 @@ double interpolated(const History& history, const std::vector<double>& column, d
 
 }  // namespace
 
-void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table) {
-  const auto [first, last] = find_window(figure, source);
-  const History& history = *source.run.history;
+void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table& table) {
+  const History& history = *run.history;
   const double begin = history.time[first], end = history.time[last];
 
   TableBlock motion{
@@ -68,8 +67,7 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
     const double row[] = {time, x, x + 1, x + y, y};
     for (std::size_t c = 0; c < 5; ++c) motion.columns[c].values.push_back(row[c]);
   };
-  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
-  const Impacts& all = *source.run.impacts;
+  const Impacts& all = *run.impacts;
   std::size_t next = static_cast<std::size_t>(std::ranges::lower_bound(all.time, begin) - all.time.begin());
   for (std::size_t i = first; i <= last; ++i) {
     for (; next < all.time.size() && all.time[next] <= history.time[i]; ++next) {
@@ -81,12 +79,10 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
     }
     add_motion(history.time[i], history.x[i], history.y[i]);
   }
-  if (impacts.columns[0].values.empty()) throw unusable(figure, source.file, "has no impact in the window");
   table.blocks.push_back(std::move(motion));
-  table.blocks.push_back(std::move(impacts));
+  if (!impacts.columns[0].values.empty()) table.blocks.push_back(std::move(impacts));
 
-  if (!source.run.contacts) throw unusable(figure, source.file, "holds no contacts");
-  const Contacts contacts = stuck_contacts(source.run);
+  const Contacts contacts = stuck_contacts(run);
   TableBlock stuck{.name = "stuck",
                    .columns = {{"begin", "of a stuck interval, by 1/Omega_n", {}},
                                {"end", "of it", {}},
@@ -98,6 +94,15 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
     stuck.columns[2].values.push_back(static_cast<double>(contacts.wall[i]));
   }
   if (!stuck.columns[0].values.empty()) table.blocks.push_back(std::move(stuck));
+}
+
+void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table) {
+  const auto [first, last] = find_window(figure, source);
+  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
+  if (!source.run.contacts) throw unusable(figure, source.file, "holds no contacts");
+  add_motion_parts(source.run, first, last, table);
+  if (std::ranges::find(table.blocks, "impacts", &TableBlock::name) == table.blocks.end())
+    throw unusable(figure, source.file, "has no impact in the window");
 }
 
 }  // namespace impact_damper

@@ -15,9 +15,7 @@ constexpr int theory_points = 120;
 
 TableColumn amplitude_column() { return {"amplitude", "peak amplitude of the half cycle, by epsilon", {}}; }
 
-TableBlock impacts_block(const Figure& figure, const FigureRun& source) {
-  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
-  const Impacts& impacts = *source.run.impacts;
+TableBlock impacts_block(const Impacts& impacts) {
   TableBlock block{
       .name = "impacts",
       .columns = {amplitude_column(),
@@ -27,7 +25,6 @@ TableBlock impacts_block(const Figure& figure, const FigureRun& source) {
     block.columns[0].values.push_back(*impacts.amplitude[i]);
     block.columns[1].values.push_back(*impacts.phase_deg[i]);
   }
-  if (block.columns[0].values.empty()) throw unusable(figure, source.file, "has no impact with a phase");
   return block;
 }
 
@@ -80,7 +77,8 @@ void add_row(TableBlock& block, double amplitude, double phase) {
   block.columns[1].values.push_back(phase);
 }
 
-void add_theory(const Scene& scene, Table& table) {
+void add_theory(const Run& run, Table& table) {
+  const Scene& scene = run.scene;
   const double e = scene.restitution;
   if (scene.damping_ratio != 0 || !(e > 0) || e > 0.95) return;
   TableBlock one = theory_block("one-impact", "one impact, equally spaced");
@@ -91,7 +89,7 @@ void add_theory(const Scene& scene, Table& table) {
   }
   table.blocks.push_back(std::move(one));
 
-  const double end = bounce_down_end(e), largest = scene.x0;
+  const double end = bounce_down_end(e), largest = std::ranges::max(run.half_cycles->amplitude);
   if (!(end < largest)) return;
   constexpr std::size_t bounces = 4;  // further ones crowd before the accumulation
   std::vector<TableBlock> blocks;
@@ -110,17 +108,28 @@ void add_theory(const Scene& scene, Table& table) {
 
 }  // namespace
 
+void add_phase_parts(const Run& run, Table& table) {
+  const auto add = [&](TableBlock block) {
+    if (!block.columns[0].values.empty()) table.blocks.push_back(std::move(block));
+  };
+  add(impacts_block(*run.impacts));
+  add(stuck_block(*run.half_cycles, stuck_phases(run)));
+  add(windows_block(run));
+  add_theory(run, table);
+}
+
 void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table) {
-  const HalfCycles& rows = half_cycles_of(figure, source);
-  table.blocks.push_back(impacts_block(figure, source));
+  half_cycles_of(figure, source);
+  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
   if (!source.run.contacts) throw unusable(figure, source.file, "holds no contacts");
-  TableBlock stuck = stuck_block(rows, stuck_phases(source.run));
-  if (stuck.columns[0].values.empty()) throw unusable(figure, source.file, "has no stuck interval");
-  table.blocks.push_back(std::move(stuck));
-  TableBlock windows = windows_block(source.run);
-  if (windows.columns[0].values.empty()) throw unusable(figure, source.file, "has no regular window");
-  table.blocks.push_back(std::move(windows));
-  add_theory(source.run.scene, table);
+  add_phase_parts(source.run, table);
+  const auto need = [&](std::string_view block, const std::string& what) {
+    if (std::ranges::find(table.blocks, block, &TableBlock::name) == table.blocks.end())
+      throw unusable(figure, source.file, "has no " + what);
+  };
+  need("impacts", "impact with a phase");
+  need("stuck", "stuck interval");
+  need("windows", "regular window");
 }
 
 }  // namespace impact_damper
