@@ -17,6 +17,7 @@ struct Command {
 
 Command check_command(CLI::App& program);
 Command figures_command(CLI::App& program);
+Command report_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command scenes_command(CLI::App& program);
 Command verify_command(CLI::App& program);

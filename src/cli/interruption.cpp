@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 
+#include "drawing.hpp"
 #include "impact_damper/files/file_output.hpp"
 
 namespace impact_damper::cli {
@@ -20,6 +21,7 @@ static_assert(std::atomic<const char*>::is_always_lock_free);
 // number: who waits for the program sees an exit code then, as documented.
 extern "C" void end(int signal) {
   remove_unfinished_file();
+  remove_drawing_board();
   const char* const text = what_is_left;
   if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) {
     // Nobody listens.

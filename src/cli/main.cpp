@@ -71,8 +71,9 @@ int main(int argc, char** argv) {
       "not admitted, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
 
   const std::array commands{
-      cli::run_command(program),    cli::scenes_command(program),  cli::verify_command(program),
-      cli::series_command(program), cli::figures_command(program), cli::check_command(program),
+      cli::run_command(program),    cli::report_command(program), cli::scenes_command(program),
+      cli::verify_command(program), cli::series_command(program), cli::figures_command(program),
+      cli::check_command(program),
   };
 
   const auto head = [&] {

@@ -9,6 +9,7 @@
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/run_file.hpp"
+#include "impact_damper/simulate.hpp"
 #include "interruption.hpp"
 #include "scene_arguments.hpp"
 
@@ -109,7 +110,7 @@ int run(const CLI::App& app) {
     require_writable(*file);
     if_interrupted_say(left_as_it_was(*file));
   }
-  const Run result = simulate_as_asked(scene, engine, record);
+  const Run result = saying_options([&] { return simulate(scene, engine, record); });
   warn_of_missing_samples(result, record);
   const std::string text = run_text(result);
   if (file) {

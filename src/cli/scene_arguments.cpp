@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "impact_damper/files/number_text.hpp"
-#include "impact_damper/simulate.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -113,18 +112,14 @@ Engine engine_of(Arguments& arguments) {
   return engine;
 }
 
-Run simulate_as_asked(const Scene& scene, const Engine& engine, const Record& record) {
-  try {
-    return simulate(scene, engine, record);
-  } catch (const std::invalid_argument& error) {
-    std::istringstream lines(error.what());
-    std::string problems;
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t colon = std::min(line.find(':'), line.size());
-      problems += (problems.empty() ? "" : "\n") + option_of(line.substr(0, colon)) + line.substr(colon);
-    }
-    throw UsageError(problems);
+void refuse_as_options(const std::invalid_argument& problems) {
+  std::istringstream lines(problems.what());
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    text += (text.empty() ? "" : "\n") + option_of(line.substr(0, colon)) + line.substr(colon);
   }
+  throw UsageError(text);
 }
 
 void add_scene_options(CLI::App& app) {

@@ -7,7 +7,6 @@
 #include "arguments.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/scene_file.hpp"
-#include "impact_damper/run.hpp"
 
 namespace impact_damper::cli {
 
@@ -19,7 +18,15 @@ void add_engine_options(CLI::App& app);
 SceneFile scene_of(Arguments& arguments);
 Engine engine_of(Arguments& arguments);
 
-// simulate(); what the engine itself refuses is said of the options instead of the fields, as a UsageError.
-Run simulate_as_asked(const Scene& scene, const Engine& engine, const Record& record);
+// What simulate() refuses, naming fields, as a UsageError that names the options.
+[[noreturn]] void refuse_as_options(const std::invalid_argument& problems);
+template <class Simulate>
+auto saying_options(Simulate&& simulate_something) {
+  try {
+    return simulate_something();
+  } catch (const std::invalid_argument& problems) {
+    refuse_as_options(problems);
+  }
+}
 
 }  // namespace impact_damper::cli

@@ -1,6 +1,5 @@
 // `verify`: the claims, one by one, held against the runs.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -33,9 +32,7 @@ struct Verified {
 // Four significant digits, for people; the verdict file has all of them.
 std::string brief(double value) {
   if (std::isnan(value)) return "none";
-  char text[32];
-  const auto written = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4);
-  return {text, written.ptr};
+  return rounded_text(value, 4);
 }
 
 std::string admitted_text(const Claim& claim) {

@@ -131,6 +131,11 @@ std::string number_text(double value) {
   return text;
 }
 
+std::string rounded_text(double value, int digits) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+
 std::optional<double> parse_number(std::string_view text) {
   const std::optional<double> value = parse_whole<double>(text);
   if (!value || !std::isfinite(*value)) return std::nullopt;

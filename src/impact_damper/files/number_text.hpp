@@ -14,6 +14,9 @@ std::string number_text(double value);
 void append_number(std::string& text, double value);
 void append_number(std::string& text, std::int64_t value);
 
+// `value` to so many significant digits, for reading: "0.0788", "1.23e+06".
+std::string rounded_text(double value, int digits);
+
 // The finite number that the whole of `text` spells: no spaces, no leading '+', no "nan" or "inf", no
 // overflow, nothing behind it. Otherwise absent.
 std::optional<double> parse_number(std::string_view text);

@@ -1,7 +1,6 @@
 #include "impact_damper/paper/series.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <variant>
@@ -44,13 +43,6 @@ std::string equation(const Scene& scene, Varied varied) {
   return "";
 }
 
-// Three digits, for reading.
-std::string rounded(double value) {
-  char digits[32];
-  char* const end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 3).ptr;
-  return {digits, end};
-}
-
 // The engine in words, for the line under the title; each run has a step of its own.
 std::string engine_words(const std::vector<const FigureRun*>& runs) {
   if (std::holds_alternative<Exact>(runs[0]->run.engine)) return "exact engine";
@@ -62,7 +54,8 @@ std::string engine_words(const std::vector<const FigureRun*>& runs) {
   }
   if (steps.empty()) return "component element method";
   const auto [least, most] = std::ranges::minmax(steps);
-  return "component element method, step " + rounded(least) + (least < most ? " to " + rounded(most) : "");
+  return "component element method, step " + rounded_text(least, 3) +
+         (least < most ? " to " + rounded_text(most, 3) : "");
 }
 
 // The engine with all its options, for the header.

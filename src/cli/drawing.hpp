@@ -1,0 +1,35 @@
+// Figures drawn by gnuplot, from tables in memory to SVG in memory, with the program's own copies of the
+// scripts.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "impact_damper/report/drawings.hpp"
+
+namespace impact_damper::cli {
+
+// Throws IoError if there is no gnuplot in PATH, saying what to install. Before a long computation.
+void require_gnuplot();
+
+// A folder of its own in the system's folder for temporary files, holding what figures/draw needs; it goes
+// with this object, and with the program when that is interrupted. One at a time.
+class DrawingBoard {
+ public:
+  DrawingBoard();
+  ~DrawingBoard();
+  DrawingBoard(const DrawingBoard&) = delete;
+  DrawingBoard& operator=(const DrawingBoard&) = delete;
+
+  // The drawing as SVG. Throws IoError if there is no room for it, NumericalError if gnuplot refuses.
+  std::string draw(const Drawing& drawing);
+
+ private:
+  std::filesystem::path folder_;
+};
+
+// For a signal handler that ends the process: ends the drawing under way and removes the board's folder.
+void remove_drawing_board() noexcept;
+
+}  // namespace impact_damper::cli

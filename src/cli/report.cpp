@@ -1,0 +1,112 @@
+// `report`: a page about one scene of the user's own.
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include "commands.hpp"
+#include "drawing.hpp"
+#include "embedded.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/report/page.hpp"
+#include "interruption.hpp"
+#include "scene_arguments.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A line on stderr once a second, and none in the first two.
+Progress progress_on_stderr() {
+  const auto start = std::chrono::steady_clock::now();
+  return [start, told = start](const std::string& doing) mutable {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - start < std::chrono::seconds(2) || now - told < std::chrono::seconds(1)) return;
+    std::cerr << "report: " << doing << std::endl;
+    told = now;
+  };
+}
+
+std::string page_of(const Findings& findings, const std::vector<Drawing>& drawings,
+                    const std::map<std::string, std::string>& svgs) {
+  std::map<std::string, std::string_view> parts;
+  std::string_view frame;
+  for (const EmbeddedFile& file : embedded_files()) {
+    if (file.name == "own.html") frame = file.text;
+    if (file.name == "page.css" || file.name == "figures.js") parts[std::string(file.name)] = file.text;
+  }
+  return page_html(findings, drawings, svgs, frame, parts);
+}
+
+int report(const CLI::App& app) {
+  Arguments arguments(app);
+  const SceneFile file = scene_of(arguments);
+  const Engine engine = engine_of(arguments);
+  EnsembleOptions ensemble;
+  ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
+  ensemble.threads = threads_of(arguments);
+  const auto output = arguments.file("--output"), figures = arguments.file("--figures");
+  const std::string scene_name = arguments.text("--scene").value_or("");
+  arguments.refuse_overwriting("--output", output, {scene_name});
+  if (figures && !fs::is_directory(*figures))
+    arguments.refuse("--figures", "must be an existing folder, got " + in_quotes(*figures));
+  arguments.finish();
+  if (output) {
+    require_writable(*output);
+    if_interrupted_say(left_as_it_was(*output));
+  }
+  require_gnuplot();
+
+  const Subject subject{scene_name.empty() ? "a scene" : fs::path(scene_name).stem().string(),
+                        file.description, file.scene, file.scales, engine};
+  Progress progress = progress_on_stderr();
+  const Findings findings = saying_options([&] { return examine(subject, ensemble, progress); });
+  const std::vector<Drawing> drawings = drawings_of(findings);
+  std::map<std::string, std::string> svgs;
+  {
+    DrawingBoard board;
+    for (const Drawing& drawing : drawings) {
+      progress("drawing figure " + drawing.name);
+      svgs[drawing.name] = board.draw(drawing);
+    }
+  }
+  const std::string page = page_of(findings, drawings, svgs);
+  if (figures)
+    for (const auto& [name, svg] : svgs) write_file(fs::path(*figures) / (name + ".svg"), svg);
+  if (output) {
+    write_file(*output, page);
+  } else {
+    write_standard_output(page);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command report_command(CLI::App& program) {
+  CLI::App* const app = program.add_subcommand(
+      "report",
+      "Simulate a scene and write a page about it: decay, loss factor, regimes, energy, predictability.");
+  add_scene_options(*app);
+  add_engine_options(*app);
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
+    app->add_option(name, help)->type_name(type)->group("Output");
+  };
+  add("--members", "N",
+      "minutely different releases that are simulated, the scene's own\namong them; 1 to 100, default 16");
+  add("--figures", "FOLDER", "write each figure there as well, as SVG");
+  add("-o,--output", "FILE", "write the page there instead of to stdout");
+  add_threads_option(*app);
+  app->footer(
+      "The page is one HTML file that needs no other and no network. The scene is that of impact-damper "
+      "run;\n"
+      "given in kilograms, newtons per metre and millimetres, the page speaks in both. gnuplot must be "
+      "there.\n\n"
+      "Examples:\n"
+      "  impact-damper report --scene data/examples/mast.json -o mast.html\n"
+      "  impact-damper report --mass-ratio 0.05 --x0 3 --until-amplitude 0.05 -o mine.html");
+  return {app, [app] { return report(*app); }};
+}
+
+}  // namespace impact_damper::cli

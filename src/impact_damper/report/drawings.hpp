@@ -1,0 +1,34 @@
+// The tables that a report's figures draw, each with the script that draws it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "impact_damper/paper/table.hpp"
+#include "impact_damper/report/findings.hpp"
+
+namespace impact_damper {
+
+struct Drawing {
+  std::string name;    // of its files and of its place on the page: "decay"
+  std::string script;  // in figures/
+  std::string title;
+  Table table;
+  std::size_t every = 1;  // of the rows of its longest block only every so many are drawn
+};
+
+// What there is to draw of the findings, in the order of the page:
+//
+//   decay        "curve" (time, amplitude), "band" (time, least, greatest) if there is an ensemble
+//   loss         as the table of a figure of the loss factor (paper/series.hpp) with one curve; closed forms
+//   are
+//                those of zeta = 0, on which 2 zeta is put
+//   phase        as the table of the figure of phases, but for what the scene has nothing of
+//   begin, best  as the table of a figure of motion
+//   prediction   "curve" (amplitude, spread of the ensemble's amplitudes in percent)
+//
+// A scene in units has "scales" (s by 1/Omega_n, mm by epsilon) beside these.
+std::vector<Drawing> drawings_of(const Findings& findings);
+
+}  // namespace impact_damper

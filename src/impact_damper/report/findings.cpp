@@ -1,0 +1,204 @@
+#include "impact_damper/report/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr double two_periods = 4 * std::numbers::pi;
+constexpr std::int64_t window_samples = 1001;
+constexpr std::size_t least_rows = 12;  // two rows of the averaged loss factor
+
+// The amplitude that falls are counted from: a release on the way out has no height in its first row.
+std::optional<std::size_t> first_row(const HalfCycles& rows) {
+  if (rows.amplitude.empty()) return std::nullopt;
+  return rows.amplitude.size() > 1 && rows.amplitude[1] > rows.amplitude[0] ? 1 : 0;
+}
+
+std::optional<double> time_below(const HalfCycles& rows, double amplitude) {
+  const auto row = first_row_below(rows, amplitude);
+  if (!row) return std::nullopt;
+  return rows.peak_time[*row];
+}
+
+// What measure(run) is over all releases; absent where it is for one of them.
+template <class Measure>
+std::optional<Spread> over_all(const Findings& findings, Measure measure) {
+  std::vector<double> values;
+  const auto add = [&](const Run& run) {
+    const std::optional<double> value = measure(run);
+    if (value) values.push_back(*value);
+  };
+  add(findings.run);
+  for (const Run& other : findings.others) add(other);
+  if (values.size() != findings.others.size() + 1) return std::nullopt;
+  return spread_of(values);
+}
+
+void find_falls(Findings& findings) {
+  const HalfCycles& rows = *findings.run.half_cycles;
+  for (const double part : {0.5, 0.1, 0.01}) {
+    const double amplitude = part * *findings.first_amplitude;
+    const auto time = time_below(rows, amplitude);
+    if (!time) return;
+    findings.falls.push_back({part, amplitude, *time, over_all(findings, [&](const Run& run) {
+                                return time_below(*run.half_cycles, amplitude);
+                              })});
+  }
+}
+
+LossFactor loss_of(const Run& run) {
+  const auto is_height = [](double amplitude) { return amplitude > 0; };
+  if (!std::ranges::all_of(run.half_cycles->amplitude, is_height)) return {};
+  return averaged_loss_factor(*run.half_cycles);
+}
+
+std::size_t best_row(const LossFactor& loss) {
+  return static_cast<std::size_t>(std::ranges::max_element(loss.eta) - loss.eta.begin());
+}
+
+void find_best_damping(Findings& findings) {
+  findings.loss = loss_of(findings.run);
+  const LossFactor& loss = findings.loss;
+  if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
+  const std::size_t best = best_row(loss);
+  const auto over_losses = [&](const std::vector<double> LossFactor::*column) {
+    return over_all(findings, [&](const Run& run) -> std::optional<double> {
+      const LossFactor each = loss_of(run);
+      if (each.eta.empty()) return std::nullopt;
+      return (each.*column)[best_row(each)];
+    });
+  };
+  findings.best = {loss.eta[best], loss.amplitude[best], loss.time[best], over_losses(&LossFactor::eta),
+                   over_losses(&LossFactor::amplitude)};
+}
+
+void find_steady_state(Findings& findings) {
+  const std::vector<double>& all = findings.run.half_cycles->amplitude;
+  if (all.size() < least_rows) return;
+  const std::vector<double> last(all.end() - static_cast<std::ptrdiff_t>(all.size() / 4), all.end());
+  const auto [least, greatest] = std::ranges::minmax(last);
+  const double mean = std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size());
+  findings.steady = {least, mean, greatest, {}};
+  const Scene& scene = findings.subject.scene;
+  const double real = 1 - scene.force_frequency * scene.force_frequency;
+  const double imaginary = 2 * scene.damping_ratio * scene.force_frequency;
+  const double response = std::abs(scene.force_amplitude) / std::sqrt(real * real + imaginary * imaginary);
+  if (std::isfinite(response)) findings.steady->without_impacts = response;
+}
+
+void find_regimes(Findings& findings) {
+  const Run& run = findings.run;
+  findings.sticking_ends = end_of_bounce_down(run);
+  const Contacts stuck = stuck_contacts(run);
+  for (std::size_t i = 0; i < stuck.begin.size(); ++i) findings.stuck_time += stuck.end[i] - stuck.begin[i];
+  const std::vector<RegularWindow> windows = regular_windows(run);
+  for (const std::int64_t impacts : run.half_cycles->impacts)
+    findings.most_impacts = std::max(findings.most_impacts, impacts);
+  // Windows of many impacts are bounce-downs, in which their number means little.
+  constexpr std::int64_t few = 6;
+  for (std::int64_t impacts = few; impacts >= 1; --impacts)
+    if (const auto window = longest_window(windows, impacts)) findings.windows.push_back(*window);
+  findings.failure = impact_failure(run);
+}
+
+void find_spread(Findings& findings) {
+  std::size_t rows = findings.run.half_cycles->amplitude.size();
+  for (const Run& other : findings.others) rows = std::min(rows, other.half_cycles->amplitude.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::vector<double> amplitudes{findings.run.half_cycles->amplitude[row]};
+    for (const Run& other : findings.others) amplitudes.push_back(other.half_cycles->amplitude[row]);
+    const Spread all = spread_of(amplitudes);
+    findings.spread.push_back(all.median > 0 ? (all.high - all.low) / all.median : 0);
+    if (!findings.lost_row && findings.spread.back() > lost_spread) findings.lost_row = row;
+  }
+}
+
+// The windows in which the motion is shown: where it begins, and where it is worth a second look.
+std::vector<HistoryWindow> windows_of(const Findings& findings) {
+  const double end = findings.run.end_time;
+  if (!(end > 0)) return {};
+  const bool swings = !findings.run.half_cycles->amplitude.empty();
+  const double length = std::min(end, swings ? two_periods : end);
+  std::vector<HistoryWindow> windows{{0, length, window_samples}};
+  double from = end - two_periods;
+  if (!findings.forced()) {
+    if (!findings.best) return windows;
+    from = std::min(findings.best->time - two_periods / 2, from);
+  }
+  if (from >= length) windows.push_back({from, from + two_periods, window_samples});
+  return windows;
+}
+
+Run with_history(const Run& run, const std::vector<HistoryWindow>& windows) {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = windows;
+  return simulate(run.scene, run.engine, record);
+}
+
+void simulate_others(Findings& findings, const EnsembleOptions& options, const Progress& progress) {
+  const std::vector<Scene> scenes = ensemble_of(findings.subject.scene, options);
+  const auto batch = static_cast<std::ptrdiff_t>(number_of(options.threads));
+  for (auto next = scenes.begin() + 1; next < scenes.end();) {
+    progress("release " + std::to_string(next - scenes.begin() + 1) + " of " + std::to_string(scenes.size()));
+    const auto end = next + std::min(batch, scenes.end() - next);
+    std::ranges::move(simulate_scenes({next, end}, findings.run.engine, {}, options.threads),
+                      std::back_inserter(findings.others));
+    next = end;
+  }
+}
+
+}  // namespace
+
+double Findings::energy_to_impacts() const {
+  const EnergyLedger& ledger = *run.energy;
+  return std::accumulate(ledger.impact_loss.begin(), ledger.impact_loss.end(), 0.0) + ledger.contact_loss +
+         ledger.bounce_down_loss;
+}
+
+Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress) {
+  Findings findings;
+  findings.subject = subject;
+  progress("simulating the scene");
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  findings.run = simulate(subject.scene, subject.engine, record);
+  simulate_others(findings, ensemble, progress);
+
+  const HalfCycles& rows = *findings.run.half_cycles;
+  if (const auto first = first_row(rows)) {
+    findings.first_amplitude = rows.amplitude[*first];
+    findings.first_peak = rows.peak_time[*first];
+    findings.last_amplitude = rows.amplitude.back();
+    findings.last_peak = rows.peak_time.back();
+    if (findings.forced()) {
+      find_steady_state(findings);
+    } else {
+      find_falls(findings);
+      find_best_damping(findings);
+    }
+    find_regimes(findings);
+    find_spread(findings);
+  }
+
+  progress("recording the motion");
+  const std::vector<HistoryWindow> windows = windows_of(findings);
+  if (windows.empty()) return findings;
+  findings.run = with_history(findings.run, windows);
+  const std::vector<double>& time = findings.run.history->time;
+  const auto up_to = windows.size() > 1 ? windows[1].begin : std::numeric_limits<double>::infinity();
+  const auto second = static_cast<std::size_t>(std::ranges::lower_bound(time, up_to) - time.begin());
+  if (second > 1) findings.begin = {0, second - 1};
+  if (second + 1 < time.size()) findings.chosen = {second, time.size() - 1};
+  return findings;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,93 @@
+// What a report says of one scene, as numbers: its decay, its loss factor, its regimes, and how far all that
+// can be predicted. Dimensionless throughout; the page speaks of it in units as well.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/run.hpp"
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+struct Subject {
+  std::string name;         // "mast"
+  std::string description;  // may be empty
+  Scene scene;
+  std::optional<Scales> scales;  // if it was given in units
+  Engine engine;
+};
+
+// When the amplitude first was below a part of the first one: the peak of the first half cycle that is.
+struct Fall {
+  double part = 0;
+  double amplitude = 0;         // part times the first amplitude
+  double time = 0;              // of that peak, by 1/Omega_n
+  std::optional<Spread> times;  // over the ensemble; absent where some member does not get there
+};
+
+struct BestDamping {
+  double eta = 0;                          // largest averaged loss factor, per radian
+  double amplitude = 0;                    // at which it is met, by epsilon
+  double time = 0;                         // when, by 1/Omega_n
+  std::optional<Spread> etas, amplitudes;  // over the ensemble
+};
+
+// A forced motion's amplitudes in the last quarter of its half cycles, by epsilon.
+struct SteadyState {
+  double least = 0, mean = 0, greatest = 0;
+  std::optional<double>
+      without_impacts;  // |f0| / |1 - omega^2 + 2 i zeta omega|; absent where that is infinite
+};
+
+// A stretch of the recorded history: its samples, both included.
+struct MotionWindow {
+  std::size_t first = 0, last = 0;
+};
+
+struct Findings {
+  Subject subject;
+  Run run;                  // half cycles, impacts, contacts, energy; history in the windows below
+  std::vector<Run> others;  // minutely different releases: half cycles
+
+  std::optional<double> first_amplitude;  // of the first half cycle with a peak; the others if there is one
+  double last_amplitude = 0;
+  double first_peak = 0, last_peak = 0;  // their times
+  std::vector<Fall> falls;               // free motion: to a half, a tenth, a hundredth, as far as it got
+  std::optional<SteadyState> steady;     // forced motion with enough half cycles
+
+  LossFactor loss;  // free motion; empty where it is too short
+  std::optional<BestDamping> best;
+
+  std::optional<double> sticking_ends;  // amplitude, end of bounce-down
+  double stuck_time = 0;                // in all, by 1/Omega_n
+  std::vector<RegularWindow> windows;   // the longest of each number of impacts, most impacts first
+  ImpactFailure failure;
+  std::int64_t most_impacts = 0;  // in one half cycle
+
+  // Half cycle by half cycle, as far as every release has them: (greatest - least) / median of the amplitude.
+  std::vector<double> spread;
+  std::optional<std::size_t> lost_row;  // the first whose spread exceeds lost_spread
+
+  std::optional<MotionWindow> begin;   // from the release on; absent if the run ends where it begins
+  std::optional<MotionWindow> chosen;  // about the best damping; of a forced motion, its end
+
+  bool forced() const { return subject.scene.force_amplitude != 0; }
+  double energy_to_impacts()
+      const;  // by K epsilon^2, contacts that no impact began and bounce-downs among it
+};
+inline constexpr double lost_spread = 0.01;
+
+// Told now and then what is being done, for whoever waits.
+using Progress = std::function<void(const std::string& doing)>;
+
+// Simulates the subject, and ensemble.members - 1 others like it. Throws what simulate() throws.
+Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress);
+
+}  // namespace impact_damper

@@ -1,0 +1,22 @@
+// The page about one scene: its findings in sentences, tables and figures, as one HTML file that needs no
+// other. Every number in it is computed; each section that has nothing to tell of this scene says what is
+// missing.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/report/drawings.hpp"
+#include "impact_damper/report/findings.hpp"
+
+namespace impact_damper {
+
+// `svgs`: of each of the `drawings` its picture, by name. `frame` is the page with {{title}}, {{body}} and
+// the names of the `parts` that are put into it, as {{page.css}}.
+std::string page_html(const Findings& findings, const std::vector<Drawing>& drawings,
+                      const std::map<std::string, std::string>& svgs, std::string_view frame,
+                      const std::map<std::string, std::string_view>& parts);
+
+}  // namespace impact_damper

@@ -1,0 +1,18 @@
+// The sections of a report's page: what each says of the findings, as HTML. A part of page.hpp.
+#pragma once
+
+#include <string>
+
+#include "impact_damper/report/findings.hpp"
+
+namespace impact_damper {
+
+std::string summary_html(const Findings& findings);  // of the whole, a few sentences
+std::string scene_html(const Findings& findings);
+std::string decay_html(const Findings& findings);  // of a forced motion: its amplitudes
+std::string loss_html(const Findings& findings);
+std::string regimes_html(const Findings& findings);
+std::string energy_html(const Findings& findings);
+std::string prediction_html(const Findings& findings);
+
+}  // namespace impact_damper

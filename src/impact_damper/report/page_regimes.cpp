@@ -1,0 +1,79 @@
+// What a report's page says of the regimes that a motion passes through.
+#include <algorithm>
+#include <numeric>
+
+#include "impact_damper/report/page_parts.hpp"
+#include "impact_damper/report/speech.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::string paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
+
+std::string impacts_in_words(std::int64_t impacts) {
+  return count_html(impacts) + (impacts == 1 ? " impact" : " impacts") + " in every half cycle";
+}
+
+std::string regime_table(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  HtmlTable table{.caption = "Regimes found, by the amplitudes between which each lasts",
+                  .heads = {"Regime", "from", "to", "half cycles"},
+                  .rows = {}};
+  if (findings.sticking_ends && !findings.forced()) {
+    const std::vector<double>& amplitudes = findings.run.half_cycles->amplitude;
+    const auto last = std::ranges::find(amplitudes, *findings.sticking_ends);
+    table.rows.push_back({"bounces that end stuck to a wall", speech.length(*findings.first_amplitude),
+                          speech.length(*findings.sticking_ends), count_html(last - amplitudes.begin() + 1)});
+  }
+  for (const RegularWindow& window : findings.windows)
+    table.rows.push_back({impacts_in_words(window.impacts), speech.length(window.upper),
+                          speech.length(window.lower),
+                          count_html(static_cast<std::int64_t>(window.last - window.first + 1))});
+  return table.rows.empty() ? "" : table_html(table);
+}
+
+std::string sticking_sentence(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  if (!(findings.stuck_time > 0)) return "The loose mass never sticks to a wall. ";
+  const std::string share = "The loose mass is stuck to a wall for " +
+                            percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
+  if (findings.forced()) return share;
+  if (findings.sticking_ends)
+    return share + "Down to an amplitude of " + speech.length(*findings.sticking_ends) +
+           " its bounces on a wall die out before the primary mass has come back, half cycle after half "
+           "cycle; there "
+           "sticking ends. ";
+  return share + "It does so only now and then, or to the end of the run. ";
+}
+
+std::string failure_sentence(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  if (findings.forced()) return "";
+  if (findings.failure.first_missed)
+    return "Impacts begin to fail at an amplitude of " + speech.length(*findings.failure.first_missed) +
+           ": from there on a half cycle may pass without one" +
+           (findings.failure.for_good
+                ? ", and below " + speech.length(*findings.failure.for_good) + " they never recover. "
+                : ". ");
+  if (findings.failure.for_good)
+    return "From an amplitude of " + speech.length(*findings.failure.for_good) +
+           " on, to the end of the run, there are fewer impacts than half cycles. ";
+  return "Impacts do not begin to fail within this run. ";
+}
+
+}  // namespace
+
+std::string regimes_html(const Findings& findings) {
+  if (!findings.first_amplitude)
+    return paragraph("Without half cycles there are no regimes to tell apart; " +
+                     count_html(std::ssize(findings.run.impacts->time)) + " impacts were counted.");
+  if (findings.run.impacts->time.empty())
+    return paragraph(
+        "The loose mass never strikes a wall: the primary mass moves too little for that, or too slowly.");
+  std::string text = sticking_sentence(findings) + "There are up to " + count_html(findings.most_impacts) +
+                     " impacts in one half cycle. ";
+  if (findings.windows.empty()) text += "Their number is nowhere the same for eight half cycles in a row. ";
+  return paragraph(text + failure_sentence(findings)) + regime_table(findings);
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,159 @@
+// What a report's page says of the scene itself.
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/report/page_parts.hpp"
+#include "impact_damper/report/speech.hpp"
+
+namespace impact_damper {
+namespace {
+
+// One row: what it is, in units, dimensionless. Without scales the middle column goes.
+class SceneTable {
+ public:
+  explicit SceneTable(const Subject& subject) : scales_(subject.scales) {}
+
+  void row(const std::string& what, const std::string& symbol, double value, double scale,
+           const std::string& unit) {
+    std::vector<std::string> cells{what};
+    if (scales_) cells.push_back(unit.empty() ? "" : number_html(value * scale, 4) + ' ' + unit);
+    cells.push_back((symbol.empty() ? "" : "<i>" + symbol + "</i> = ") + number_html(value, 4));
+    table_.rows.push_back(std::move(cells));
+  }
+  // What only scales; a dimensionless scene has nothing to say about it.
+  void scale(const std::string& what, const std::string& symbol, double value, const std::string& unit) {
+    if (scales_)
+      table_.rows.push_back({what, number_html(value, 4) + ' ' + unit, "<i>" + symbol + "</i>, a scale"});
+  }
+  std::string html(const std::string& caption) {
+    table_.caption = caption;
+    table_.heads = {"Quantity"};
+    if (scales_) table_.heads.push_back("In units");
+    table_.heads.push_back("Dimensionless");
+    return table_html(table_);
+  }
+
+ private:
+  std::optional<Scales> scales_;
+  HtmlTable table_;
+};
+
+std::string scene_table(const Subject& subject) {
+  const Scene& scene = subject.scene;
+  const Scales scales = subject.scales.value_or(Scales{});
+  const bool rigid = std::holds_alternative<Restitution>(subject.engine);
+  SceneTable table(subject);
+  table.scale("Primary mass", "M", scales.mass, "kg");
+  table.scale("Stiffness", "K", scales.stiffness, "N/m");
+  table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
+  table.scale("Free travel of the loose mass", "ε", scales.length, "mm");
+  table.row("Loose mass", "ν", scene.mass_ratio, scales.mass, "kg");
+  table.row("Restitution", "e", scene.restitution, 1, "");
+  table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
+  if (!rigid) table.row("Stiffness of the walls", "k", scene.wall_stiffness, scales.stiffness, "N/m");
+  table.row("Initial displacement", "x", scene.x0, scales.length, "mm");
+  table.row("Initial velocity", "x′", scene.v0, scales.velocity(), "mm/s");
+  table.row("Loose mass, from the left wall", "y", scene.y0, scales.length, "mm");
+  table.row("Its velocity in the cavity", "y′", scene.w0, scales.velocity(), "mm/s");
+  if (scene.force_amplitude != 0) {
+    table.row("Exciting force, amplitude", "f", scene.force_amplitude, scales.force(), "N");
+    table.row("Its frequency", "ω", scene.force_frequency, scales.frequency(), "Hz");
+  }
+  if (scene.until_time) table.row("Ends at this time", "t", *scene.until_time, scales.time(), "s");
+  if (scene.until_amplitude)
+    table.row("Ends below this amplitude", "A", *scene.until_amplitude, scales.length, "mm");
+  return table.html(subject.scales ? "The scene, as it was given and as it is computed"
+                                   : "The scene, as it is computed");
+}
+
+std::string engine_sentence(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  std::string text = "<p>";
+  switch (findings.subject.engine.index()) {
+    case 0:
+      text +=
+          "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
+          "time step, "
+          "and no impact is missed.";
+      break;
+    case 1:
+      text += "The walls are rigid and impacts take no time; of infinitely many bounces the sum is taken.";
+      break;
+    default:
+      text +=
+          "The walls are springs with dampers, and the motion is followed by central differences with a "
+          "fixed step of " +
+          number_html(std::get<Cem>(findings.run.engine).time_step.value_or(0)) + " by 1/Ω.";
+  }
+  text += " It was followed for " + speech.time(findings.run.end_time) + ", ";
+  switch (findings.run.stop_reason) {
+    case StopReason::time:
+      text += "the time that was asked for";
+      break;
+    case StopReason::amplitude:
+      text += "until the amplitude was below the one asked for";
+      break;
+    case StopReason::impact_budget:
+      text += "until the admitted number of impacts was used up (<code>--max-impacts</code>)";
+      break;
+    case StopReason::half_cycle_budget:
+      text += "until the admitted number of half cycles was used up (<code>--max-half-cycles</code>)";
+      break;
+    case StopReason::time_budget:
+      text += "until the admitted time was used up (<code>--max-time</code>)";
+      break;
+    case StopReason::step_budget:
+      text += "until the admitted number of steps was used up (<code>--max-steps</code>)";
+      break;
+  }
+  return text + ".</p>\n";
+}
+
+// Numbers that are admitted, but are more often a slip than meant: a length in metres, a mass in grams.
+std::string second_looks(const Findings& findings) {
+  const Scene& scene = findings.subject.scene;
+  const Speech speech(findings.subject.scales);
+  const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
+  std::vector<std::string> looks;
+  if (reach > 1000)
+    looks.push_back("The primary mass begins with an amplitude of about " + speech.length(reach) +
+                    ": is the free travel given in millimetres?");
+  if (reach > 0 && reach < 1e-3)
+    looks.push_back("The free travel is " + number_html(1 / reach) +
+                    " times as long as the first amplitude: is it given in millimetres?");
+  if (scene.mass_ratio > 1)
+    looks.push_back("The loose mass is " + number_html(scene.mass_ratio) +
+                    " times as heavy as the primary mass.");
+  if (scene.wall_stiffness < 100 && !std::holds_alternative<Restitution>(findings.subject.engine))
+    looks.push_back(
+        "The walls are only " + number_html(scene.wall_stiffness) +
+        " times as stiff as the primary spring: an impact takes as long as a good part of a period.");
+  if (scene.damping_ratio >= 1)
+    looks.push_back("The primary mass is damped " + number_html(scene.damping_ratio) +
+                    " times critically: it creeps back and does not swing.");
+  if (looks.empty()) return "";
+  std::string html = "<p>Worth a second look:</p>\n<ul>\n";
+  for (const std::string& look : looks) html += "<li>" + look + "</li>\n";
+  return html + "</ul>\n";
+}
+
+}  // namespace
+
+std::string scene_html(const Findings& findings) {
+  const std::string scales =
+      findings.subject.scales
+          ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths by the free travel "
+            "ε, times in "
+            "periods 2π/Ω of the primary mass on its spring, velocities by εΩ, energies by Kε².</p>\n"
+          : "<p>Lengths are in free travels ε of the loose mass, times <i>t</i> in 1/Ω, Ω = √(K/M) being the "
+            "primary mass's "
+            "natural frequency, velocities in εΩ, energies in Kε². A scene file may give masses in kilograms "
+            "and lengths in "
+            "millimetres instead; this page then speaks of both.</p>\n";
+  return scene_table(findings.subject) + scales + engine_sentence(findings) + second_looks(findings);
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,105 @@
+#include "impact_damper/report/speech.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "impact_damper/files/number_text.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::string data_html(const std::string& exact, const std::string& shown) {
+  return "<data value=\"" + exact + "\">" + shown + "</data>";
+}
+
+// A hyphen is no minus, and "1e+06" is for programs.
+std::string typeset(std::string text) {
+  std::string power;
+  if (const std::size_t e = text.find('e'); e != std::string::npos) {
+    std::int64_t exponent = 0;
+    const std::size_t digits = text[e + 1] == '+' ? e + 2 : e + 1;
+    const bool negative = text[digits] == '-';
+    for (std::size_t i = digits + negative; i < text.size(); ++i) exponent = 10 * exponent + (text[i] - '0');
+    power = "×10<sup>" + std::string(negative ? "−" : "") + std::to_string(exponent) + "</sup>";
+    text.resize(e);
+  }
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text + power;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string number_html(double value, int digits) {
+  const double size = std::abs(value);
+  double power = 1;  // of ten: from here on the digits asked for are all before the point
+  for (int i = 0; i < digits; ++i) power *= 10;
+  const bool whole = size >= power && size < 1e6;
+  return data_html(number_text(value),
+                   typeset(rounded_text(whole ? std::round(value) : value, whole ? 7 : digits)));
+}
+
+std::string count_html(std::int64_t count) { return data_html(std::to_string(count), std::to_string(count)); }
+
+std::string percent_html(double part) { return number_html(100 * part) + " %"; }
+
+std::string Speech::both(double value, double scale, std::string_view unit, std::string_view by) const {
+  const std::string plain = number_html(value) + ' ' + std::string(by);
+  if (!scales_) return plain;
+  return number_html(value * scale) + ' ' + std::string(unit) + " (" + plain + ')';
+}
+
+std::string Speech::length(double value) const {
+  return both(value, scales_ ? scales_->length : 1, "mm", "ε");
+}
+
+std::string Speech::time(double value) const {
+  const std::string periods = number_html(value / (2 * std::numbers::pi)) + " periods";
+  if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
+  return number_html(value * scales_->time()) + " s (" + periods + ')';
+}
+
+std::string Speech::velocity(double value) const {
+  return both(value, scales_ ? scales_->velocity() : 1, "mm/s", "εΩ");
+}
+
+std::string Speech::energy(double value) const {
+  return both(value, scales_ ? scales_->energy() : 1, "J", "Kε²");
+}
+
+std::string table_html(const HtmlTable& table) {
+  std::string html = "<div class=\"wide\"><table>\n<caption>" + table.caption + "</caption>\n<thead><tr>";
+  for (const std::string& head : table.heads) html += "<th scope=\"col\">" + head + "</th>";
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      html += i == 0 ? "<th scope=\"row\">" + row[i] + "</th>" : "<td>" + row[i] + "</td>";
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,48 @@
+// Numbers as a page speaks of them: rounded for reading, with all digits in <data value="...">, and in
+// kilograms, millimetres and seconds as well where the scene was given so.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+// Text for HTML, safe in attributes too.
+std::string escaped(std::string_view text);
+
+// "1.23 × 10<sup>6</sup>" in <data>, with `digits` significant digits.
+std::string number_html(double value, int digits = 3);
+std::string count_html(std::int64_t count);
+std::string percent_html(double part);  // of 1: "12.3 %"
+
+class Speech {
+ public:
+  explicit Speech(const std::optional<Scales>& scales) : scales_(scales) {}
+
+  bool in_units() const { return scales_.has_value(); }
+  const Scales& scales() const { return *scales_; }
+
+  // Of a dimensionless number. In units these come first, the dimensionless number in brackets:
+  std::string length(double value) const;    // "60 mm (6 ε)", or "6 ε"
+  std::string time(double value) const;      // "12.3 s (39.2 periods)", or "39.2 periods (t = 246)"
+  std::string velocity(double value) const;  // "50 mm/s (0.25 εΩ)"
+  std::string energy(double value) const;    // "28.8 J (18 Kε²)"
+
+ private:
+  std::string both(double value, double scale, std::string_view unit, std::string_view by) const;
+  std::optional<Scales> scales_;
+};
+
+// A table with a caption; the first column heads its rows. Cells are HTML.
+struct HtmlTable {
+  std::string caption;
+  std::vector<std::string> heads;
+  std::vector<std::vector<std::string>> rows;
+};
+std::string table_html(const HtmlTable& table);
+
+}  // namespace impact_damper
