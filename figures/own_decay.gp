@@ -1,20 +1,15 @@
 # The peak amplitude over time, and how far minutely different releases part from it.
 load folder."/own.gp"
 eval require("curve", 3)
-eval spans("curve", 2)
+eval look("curve", 1)
+to = STATS_max
+eval look("curve", 2)
 logarithmic = STATS_min > 0 && STATS_max > 10 * STATS_min ? "y" : ""
-if (strlen(logarithmic)) {
-  set logscale y
-  set yrange [STATS_min / 1.2:STATS_max * 1.3]
-} else {
-  set yrange [0:STATS_max > 0 ? 1.1 * STATS_max : 1]
-}
 set xlabel "dimensionless time t"
 set ylabel "peak amplitude A"
-set xrange [0:*]
-set autoscale xfixmax
-eval units("x", "time")
-eval units("y", "length")
+eval axis("x", "time", 0, to, 0)
+eval strlen(logarithmic) ? axis("y", "length", STATS_min / 1.2, STATS_max * 1.3, 1) \
+                         : axis("y", "length", 0, STATS_max > 0 ? 1.1 * STATS_max : 1, 0)
 band = !has("band") ? "" : \
   'table index "band" using 1:2:3 with filledcurves lc rgb sky title columnheader(3),'
 eval 'plot '.band.'table index "curve" using 1:2 with lines ls 1 title columnheader(2)'

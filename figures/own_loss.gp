@@ -1,26 +1,23 @@
 # The averaged loss factor over amplitude, its ensemble, and the closed forms thinly beside it.
 load folder."/own.gp"
 eval require("curve-1", 10)
-eval spans("curve-1", 1)
+eval look("curve-1", 1)
 from = STATS_min / 1.15; to = STATS_max * 1.15
-eval spans("curve-1", 2)
-logarithmic = "x"
+eval look("curve-1", 2)
+logarithmic = STATS_min > 0 ? "xy" : "x"
 if (STATS_min > 0) {
-  logarithmic = "xy"
+  set logscale y
   set yrange [STATS_min / 1.5:STATS_max * 3]
 } else {
   set yrange [STATS_min - 0.1 * STATS_max:1.5 * STATS_max]
 }
-eval "set logscale ".logarithmic
-set xrange [from:to]
 set xlabel "peak amplitude A"
 set ylabel "loss factor η, per radian" offset 0.5,0
-eval units("x", "length")
-set rmargin at screen 0.97
+eval axis("x", "length", from, to, 1)
 optional(block, clause) = !has(block) ? "" : sprintf("table index '%s' using ", block).clause
 forms = optional("one-impact-1", '1:2 with lines ls 9 title "closed forms, ν → 0",').\
   optional("bounce-down-1", '1:2 with lines ls 9 notitle,')
 eval 'plot '.optional("band-1", '1:2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
-  optional("failed-1", '1:2 with points pt 7 ps 0.15 lc rgb black title "after impact failure",').\
+  optional("failed-1", '1:2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",').\
   'table index "curve-1" using 1:2 with lines ls 1 title columnheader(2)'
 eval axes("A", "η", logarithmic)

@@ -2,18 +2,17 @@
 load folder."/own.gp"
 eval require("motion", 10)
 stats table index "motion" using 1 name "time" nooutput
-eval spans("motion", 2)
+eval look("motion", 2)
 from = time_min; to = time_max
 reach = STATS_max > -STATS_min ? STATS_max : -STATS_min; reach = reach > 0 ? 1.15 * reach : 1
-eval spans("motion", 5)
+eval look("motion", 5)
 # A compliant wall is pressed in, and a mass may begin outside.
 below = STATS_min < -0.14 ? STATS_min * 1.05 : -0.14
 above = STATS_max > 1.14 ? 1 + (STATS_max - 1) * 1.05 : 1.14
 
 set multiplot
-set xrange [from:to]
 set lmargin at screen 0.115
-top = in_units ? 0.80 : 0.875
+top = in_units ? 0.795 : 0.875
 
 set tmargin at screen top
 set bmargin at screen 0.385
@@ -21,9 +20,17 @@ set format x ""
 set ytics ("0" 0, "0.5" 0.5, "1" 1)
 set yrange [below:above]
 set ylabel "relative displacement y" offset 1,0
-eval units("x", "time")
-eval in_units ? sprintf("set link y2 via %.17g*y inverse y/%.17g; set ytics nomirror; set y2tics; set y2label 'in mm' offset -0.5,0", \
-  scale_length, scale_length) : ""
+eval axis("x", "time", from, to, 0)
+unset mx2tics  # the legend is there
+if (in_units) {
+  set y2range [below * scale_length:above * scale_length]
+  set y2tics
+  set ytics nomirror
+  set y2label "in mm" offset -0.8,0
+  set rmargin at screen 0.90
+} else {
+  set rmargin at screen 0.975
+}
 set object 1 rectangle from from,below to to,0 fc rgb pale fs solid noborder behind
 set object 2 rectangle from from,1 to to,above fc rgb pale fs solid noborder behind
 set label 1 "right wall" at from,1.07 left offset 0.5,0 font ",11" textcolor rgb grey front
@@ -51,7 +58,11 @@ set format x "%g"
 set xlabel "dimensionless time t"
 set ylabel "cavity x" offset 1,0
 set yrange [-reach:reach]
-set ytics autofreq
+if (in_units) { set y2range [-reach * scale_length:reach * scale_length] }
+# Three marks each way at most, round ones: the panel is low.
+step(reach) = (power = 10 ** floor(log10(reach)), reach / power < 2 ? power : reach / power < 5 ? 2 * power : 5 * power)
+set ytics step(reach)
+if (in_units) { set y2tics step(reach * scale_length) }
 set arrow 3 from from,0 to to,0 nohead lc rgb grey lw 0.6
 plot table index "motion" using 1:2 with lines lc rgb black lw 1.4 notitle
 eval axes("t", "x", "")

@@ -1,19 +1,17 @@
 # When in its half cycle the mass strikes, over the half cycle's amplitude: one decay from right to left.
 load folder."/own.gp"
 eval require("impacts", 1)
-eval canvas(720, 560)
+eval canvas(720, 600)
 dark = "#BDBDBD"
-eval spans("impacts", 1)
+eval look("impacts", 1)
 from = STATS_min / 1.15; to = STATS_max * 1.15
-set logscale x
-set xrange [from:to]
 set xlabel "peak amplitude A of the half cycle"
 set ylabel "phase of impact in degrees"
 set yrange [0:180]
 set ytics 30
 set mytics 3
-eval units("x", "length")
-set key at graph 0.99, 0.15 right bottom maxrows 2
+eval axis("x", "length", from, to, 1)
+set key below horizontal maxrows 1 samplen 2 width -3 font ",12"
 stuck = !has("stuck") ? "" : \
   'table index "stuck" using 1:2:3 with filledcurves lc rgb dark title "stuck",'.\
   'table index "stuck" using 1:2:(0):($3-$2) with vectors nohead lc rgb dark lw 1 notitle,'

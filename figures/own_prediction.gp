@@ -1,16 +1,15 @@
 # How far releases part that differ by a millionth at most: of their amplitudes the spread, in percent of the median.
 load folder."/own.gp"
 eval require("curve", 3)
-eval spans("curve", 2)
+eval look("curve", 1)
+to = STATS_max
+eval look("curve", 2)
 set logscale y
 set format y "10^{%T}"
 set yrange [STATS_min / 3:STATS_max > 3 ? STATS_max * 3 : 10]
 set xlabel "dimensionless time t"
 set ylabel "spread of the amplitudes in percent"
-set xrange [0:*]
-set autoscale xfixmax
-eval units("x", "time")
-set rmargin at screen 0.97
+eval axis("x", "time", 0, to, 0)
 plot table index "curve" using 1:2 with lines ls 1 title "spread of all releases", \
      1 with lines ls 10 dt (6,4) title "one percent"
 eval axes("t", "spread in percent", "y")

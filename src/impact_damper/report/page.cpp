@@ -106,10 +106,10 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   const std::string name = escaped(subject.name);
   std::string body = "<header>\n<h1>Impact damper: " + name + "</h1>\n";
   if (!subject.description.empty()) body += "<p>" + escaped(subject.description) + "</p>\n";
-  body += "</header>\n<nav aria-label=\"Contents\"><ul>\n";
+  body += summary_html(findings) + "</header>\n<nav aria-label=\"Contents\"><ul>\n";
   for (const Section& section : sections)
     body += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
-  body += "</ul></nav>\n<main>\n" + summary_html(findings);
+  body += "</ul></nav>\n<main>\n";
   for (Section section : sections) {
     // Where there is no loss factor it has been said why.
     if (section.id == "loss" && svgs.contains("loss")) section.drawings = {"loss"};

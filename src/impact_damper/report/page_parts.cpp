@@ -16,6 +16,18 @@ std::string part_in_words(double part) {
   return part == 0.5 ? "half" : part == 0.1 ? "a tenth" : "a hundredth";
 }
 
+// What is read of a text with numbers in it: equal for numbers that differ in digits not shown.
+std::string shown(const std::string& html) {
+  std::string text;
+  bool in_tag = false;
+  for (const char c : html) {
+    if (c == '<') in_tag = true;
+    if (!in_tag) text += c;
+    if (c == '>') in_tag = false;
+  }
+  return text;
+}
+
 // An equivalent viscous damping ratio: that of an oscillator with this loss factor.
 std::string as_viscous(double eta) { return "a viscous damping ratio of " + percent_html(eta / 2); }
 
@@ -91,9 +103,13 @@ std::string decay_html(const Findings& findings) {
       table.rows.push_back(
           {part_in_words(fall.part), speech.length(fall.amplitude), speech.time(since(fall.time))});
       if (findings.others.empty()) continue;
-      table.rows.back().push_back(fall.times ? speech.time(since(fall.times->low)) + " to " +
-                                                   speech.time(since(fall.times->high))
-                                             : "not all get there");
+      if (!fall.times) {
+        table.rows.back().push_back("not all get there");
+        continue;
+      }
+      const std::string low = speech.time(since(fall.times->low)),
+                        high = speech.time(since(fall.times->high));
+      table.rows.back().push_back(shown(low) == shown(high) ? high : low + " to " + high);
     }
     html = table_html(table);
   }

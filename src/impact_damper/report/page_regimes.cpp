@@ -49,14 +49,16 @@ std::string sticking_sentence(const Findings& findings) {
 std::string failure_sentence(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (findings.forced()) return "";
-  if (findings.failure.first_missed)
-    return "Impacts begin to fail at an amplitude of " + speech.length(*findings.failure.first_missed) +
-           ": from there on a half cycle may pass without one" +
-           (findings.failure.for_good
-                ? ", and below " + speech.length(*findings.failure.for_good) + " they never recover. "
-                : ". ");
-  if (findings.failure.for_good)
-    return "From an amplitude of " + speech.length(*findings.failure.for_good) +
+  const auto& [missed, for_good] = findings.failure;
+  if (missed) {
+    const std::string text = "Impacts begin to fail at an amplitude of " + speech.length(*missed) +
+                             ": from there on a half cycle may pass without one";
+    if (!for_good) return text + ". ";
+    return text + (for_good == missed ? ", and they do not recover. "
+                                      : ", and below " + speech.length(*for_good) + " they do not recover. ");
+  }
+  if (for_good)
+    return "From an amplitude of " + speech.length(*for_good) +
            " on, to the end of the run, there are fewer impacts than half cycles. ";
   return "Impacts do not begin to fail within this run. ";
 }
