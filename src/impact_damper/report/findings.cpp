@@ -67,6 +67,8 @@ std::size_t best_row(const LossFactor& loss) {
 void find_best_damping(Findings& findings) {
   findings.loss = loss_of(findings.run);
   const LossFactor& loss = findings.loss;
+  const Scene& scene = findings.subject.scene;
+  if (scene.restitution == 1 && scene.damping_ratio == 0) return;  // energy only goes to and fro
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
   const std::size_t best = best_row(loss);
   const auto over_losses = [&](const std::vector<double> LossFactor::*column) {

@@ -21,16 +21,15 @@ std::string caption_of(const std::string& name) {
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss")
-    return "The loss factor over the amplitude, averaged over ten half cycles; a decay runs from right to "
-           "left. Pale: all "
-           "releases. Thin: closed forms for a light mass, with the primary system's own damping put on.";
+    return "The loss factor over the amplitude, averaged over half cycles; a decay runs from right to "
+           "left. Pale: all releases. Thin: closed forms for a light mass, with the primary system's own "
+           "damping put on.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the "
            "half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each half cycle.";
   if (name == "prediction")
-    return "Greatest less least amplitude of all releases, as a part of their median. It begins at a "
-           "millionth.";
+    return "Greatest less least amplitude of all releases, in percent of their median.";
   return "Above, the loose mass between the walls of its cavity; below, the displacement of the cavity.";
 }
 
@@ -59,7 +58,7 @@ std::string section_html(const Section& section, const std::vector<Drawing>& dra
     html += figure_html(drawing, svgs.at(drawing.name));
     drawn = true;
   }
-  if (!drawn) html += "<p>There is too little of it for a picture.</p>\n";
+  if (!drawn) html += "<p>There is no picture of it.</p>\n";
   return html + "</section>\n";
 }
 
@@ -95,8 +94,11 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
       {"regimes", "Regimes", regimes_html(findings), {}},
       {"phase",
        "Phase of the impacts",
-       "<p>The same regimes at a glance: branches where the motion is regular, clouds where it is "
-       "chaotic.</p>\n",
+       svgs.contains("phase")
+           ? "<p>The same regimes at a glance: branches where the motion is regular, clouds where it is "
+             "chaotic.</p>\n"
+           : "<p>A phase is counted from zero crossing to zero crossing, and no impact lies between "
+             "two.</p>\n",
        {"phase"}},
       {"motion", "The motion itself", "", {"begin", "best"}},
       {"energy", "Where the energy goes", energy_html(findings), {}},

@@ -73,8 +73,10 @@ std::string regimes_html(const Findings& findings) {
     return paragraph(
         "The loose mass never strikes a wall: the primary mass moves too little for that, or too slowly.");
   std::string text = sticking_sentence(findings) + "There are up to " + count_html(findings.most_impacts) +
-                     " impacts in one half cycle. ";
-  if (findings.windows.empty()) text += "Their number is nowhere the same for eight half cycles in a row. ";
+                     (findings.most_impacts == 1 ? " impact" : " impacts") + " in one half cycle. ";
+  if (findings.windows.empty())
+    text += "Their number is nowhere the same for " + count_html(RegimeOptions{}.window_half_cycles) +
+            " half cycles in a row. ";
   return paragraph(text + failure_sentence(findings)) + regime_table(findings);
 }
 

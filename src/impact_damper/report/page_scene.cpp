@@ -118,10 +118,10 @@ std::string second_looks(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
   std::vector<std::string> looks;
-  if (reach > 1000)
+  if (speech.in_units() && reach > 1000)
     looks.push_back("The primary mass begins with an amplitude of about " + speech.length(reach) +
                     ": is the free travel given in millimetres?");
-  if (reach > 0 && reach < 1e-3)
+  if (speech.in_units() && reach > 0 && reach < 1e-3)
     looks.push_back("The free travel is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
   if (scene.mass_ratio > 1)
