@@ -69,6 +69,7 @@ void find_best_damping(Findings& findings) {
   const LossFactor& loss = findings.loss;
   const Scene& scene = findings.subject.scene;
   if (scene.restitution == 1 && scene.damping_ratio == 0) return;  // energy only goes to and fro
+  if (findings.run.impacts->time.empty()) return;                  // the same at every amplitude
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
   const std::size_t best = best_row(loss);
   const auto over_losses = [&](const std::vector<double> LossFactor::*column) {

@@ -180,7 +180,7 @@ std::string loss_html(const Findings& findings) {
         "The loss factor is averaged over " + count_html(LossFactorOptions{}.half_cycles) +
         " half cycles, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph(
-      findings.subject.scene.restitution == 1
+      scene.restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
           : "The amplitude does not fall: there is no loss factor to speak of.");
 }

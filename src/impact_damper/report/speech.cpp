@@ -63,12 +63,12 @@ std::string number_html(double value, int digits) {
 
 std::string count_html(std::int64_t count) { return data_html(std::to_string(count), std::to_string(count)); }
 
-std::string percent_html(double part) { return number_html(100 * part) + " %"; }
+std::string percent_html(double part) { return number_html(100 * part) + "&nbsp;%"; }
 
 std::string Speech::both(double value, double scale, std::string_view unit, std::string_view by) const {
-  const std::string plain = number_html(value) + ' ' + std::string(by);
+  const std::string plain = number_html(value) + "&nbsp;" + std::string(by);
   if (!scales_) return plain;
-  return number_html(value * scale) + ' ' + std::string(unit) + " (" + plain + ')';
+  return number_html(value * scale) + "&nbsp;" + std::string(unit) + " (" + plain + ')';
 }
 
 std::string Speech::length(double value) const {
@@ -76,9 +76,9 @@ std::string Speech::length(double value) const {
 }
 
 std::string Speech::time(double value) const {
-  const std::string periods = number_html(value / (2 * std::numbers::pi)) + " periods";
+  const std::string periods = number_html(value / (2 * std::numbers::pi)) + "&nbsp;periods";
   if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
-  return number_html(value * scales_->time()) + " s (" + periods + ')';
+  return number_html(value * scales_->time()) + "&nbsp;s (" + periods + ')';
 }
 
 std::string Speech::velocity(double value) const {

@@ -1,0 +1,164 @@
+"""Pages about very different scenes: each is whole, says what is not there, and its numbers are those that an independent
+reading of a run of the same scene gives.
+
+    scenes.py PROGRAM EXAMPLE FOLDER
+"""
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from page import Page
+
+program, example, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+SECTIONS = ["scene", "decay", "loss", "regimes", "phase", "motion", "energy", "prediction", "made"]
+MEMBERS = "4"
+
+# Options of a scene, and what its page must say, by section; a figure's name stands for the figure.
+SCENES = {
+    "in units": (["--scene", str(example)], {"scene": "in brackets", "loss": "damped there as by|closed form"},
+                 ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "the paper's": (["--until-amplitude", "0.03"], {"regimes": "sticking ends", "prediction": "agree within"},
+                    ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "no impact": (["--x0", "0.3", "--damping-ratio", "0.01", "--until-time", "200"], {"regimes": "never strikes a wall",
+                  "phase": "no impact lies between", "energy": "There are no impacts", "loss": "viscous damping alone"},
+                  ["decay", "begin", "prediction"]),
+    "forced from rest": (["--x0", "0", "--force-amplitude", "0.05", "--until-time", "600"],
+                         {"decay": "would grow without end", "loss": "This motion is forced"},
+                         ["decay", "phase", "begin", "best", "prediction"]),
+    "overdamped": (["--damping-ratio", "3", "--until-time", "50"], {"decay": "not one whole half cycle",
+                   "loss": "Without half cycles", "prediction": "no amplitude", "scene": "times critically"}, ["begin"]),
+    "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound"},
+                ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "lossless": (["--restitution", "1", "--until-time", "100"], {"loss": "nothing is ever lost"},
+                 ["decay", "phase", "begin", "prediction"]),
+    "three half cycles": (["--until-time", "10"], {"loss": "too short for that"}, ["decay", "phase", "begin", "prediction"]),
+    "slip of the units": (["--scene", "slip.json"], {"scene": "is the free travel given in millimetres?"},
+                          ["decay", "loss", "phase", "begin", "prediction"]),
+    "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
+    "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
+               ["decay", "phase", "begin", "prediction"]),
+}
+faults = []
+
+
+def check(condition, fault):
+    if not condition:
+        faults.append(fault)
+        print("FAULT:", fault, file=sys.stderr)
+
+
+def near(a, b, digits=1e-9):
+    return abs(a - b) <= digits * max(abs(a), abs(b), 1e-300)
+
+
+def call(*words, code=0):
+    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
+    check(done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}")
+    return done
+
+
+def parabola(times, values):
+    """Value and slope at the middle of a least-squares parabola, by its normal equations."""
+    t0 = times[len(times) // 2]
+    rows = [[(t - t0) ** k for k in range(3)] for t in times]
+    a = [[sum(r[i] * r[j] for r in rows) for j in range(3)] + [sum(r[i] * v for r, v in zip(rows, values))] for i in range(3)]
+    for i in range(3):
+        a[i] = [each / a[i][i] for each in a[i]]
+        for j in range(3):
+            if j != i:
+                a[j] = [x - a[j][i] * y for x, y in zip(a[j], a[i])]
+    return a[0][3], a[1][3]
+
+
+def best_damping(rows):
+    times, amplitudes = rows["peak_time"], rows["amplitude"]
+    fits = [parabola(times[i - 5:i + 6], amplitudes[i - 5:i + 6]) for i in range(5, len(times) - 5)]
+    return max((-2 * slope / value, value) for value, slope in fits)
+
+
+def holds(page, section, value, what, digits=1e-9):
+    check(any(near(value, number, digits) for number in page.numbers[section]),
+          f"{name}: {section} does not have the {what}, {value}: {page.numbers[section]}")
+
+
+def compare(page, run, scales):
+    """The numbers of the page against those of a run, read anew. `scales` are (s, mm, J), or nothing."""
+    rows, energy = run["half_cycles"], run["energy"]
+    times, amplitudes = rows["peak_time"], rows["amplitude"]
+    impacts = sum(energy["impact_loss"]) + energy["contact_loss"] + energy["bounce_down_loss"]
+    for part, value in {"energy at the beginning": energy["initial"]["total"], "end": energy["final"]["total"],
+                        "loss to impacts": impacts, "viscous work": energy["viscous_work"]}.items():
+        holds(page, "energy", value, part, 1e-6 if part == "loss to impacts" else 1e-9)
+        if scales:
+            holds(page, "energy", value * scales[2], part + " in J", 1e-6)
+    if energy["impact_loss"]:
+        holds(page, "energy", len(energy["impact_loss"]), "number of impacts")
+    if not amplitudes:
+        return
+    if run["scene"]["force_amplitude"]:
+        last = amplitudes[-(len(amplitudes) // 4):]
+        for value in (min(last), max(last), sum(last) / len(last)):
+            holds(page, "decay", value, "amplitude in the last quarter")
+        return
+    if amplitudes[0] == max(amplitudes[:2]):
+        for part in (0.5, 0.1, 0.01):
+            below = next((t for t, a in zip(times, amplitudes) if a < part * amplitudes[0]), None)
+            if below is None:
+                break
+            holds(page, "decay", (below - times[0]) / (2 * math.pi), f"periods to {part}")
+            if scales:
+                holds(page, "decay", (below - times[0]) * scales[0], f"seconds to {part}")
+        if amplitudes[0] > amplitudes[-1]:
+            holds(page, "decay", 100 * math.log(amplitudes[0] / amplitudes[-1]) / (times[-1] - times[0]), "damping ratio", 1e-7)
+    if "loss" in drawn:
+        eta, amplitude = best_damping(rows)
+        holds(page, "loss", eta, "largest loss factor", 1e-6)  # the two ways of fitting round differently
+        holds(page, "loss", amplitude * (scales[1] if scales else 1), "its amplitude", 1e-6)
+    if rows["impacts"] and energy["impact_loss"]:
+        holds(page, "regimes", max(rows["impacts"]), "most impacts in a half cycle")
+
+
+shutil.rmtree(folder, ignore_errors=True)
+folder.mkdir(parents=True)
+given = json.loads(example.read_text())
+(folder / "slip.json").write_text(json.dumps({**given, "clearance": given["clearance"] / 1000, "until_seconds": 10,
+                                              "description": "1 < 2 & \"3\" {{title}}"}))
+for name, (options, words, drawn) in SCENES.items():
+    file = folder / f"{name.replace(' ', '-').replace(chr(39), '')}.html"
+    made = call("report", *options, "--members", MEMBERS, "-o", file.name)
+    check(made.stdout == "", f"{name}: says {made.stdout!r}")
+    if not file.exists():
+        continue
+    text = file.read_text(encoding="utf-8")
+    page = Page(text)
+    for fault in page.faults:
+        check(False, f"{name}: {fault}")
+    check([s for s in page.numbers if s] == SECTIONS, f"{name}: sections {list(page.numbers)}")
+    check(page.figures == [f"figure-{each}" for each in drawn], f"{name}: figures {page.figures}")
+    check(len(page.svgs) == len(drawn), f"{name}: {len(page.svgs)} drawings")
+    check("http" not in text.replace("http://www.w3.org/", ""), f"{name}: refers to the network")
+    check("{{" not in text.replace("{{title}}", "", "slip" in name), f"{name}: a place is left open")
+    for section, wanted in words.items():
+        for each in wanted.split("|"):
+            check(each in page.words.get(section, ""), f"{name}: {section} does not say {each!r}: {page.words.get(section)}")
+    for section in SECTIONS:
+        check(page.words[section].count(" ") > 5 or section == "motion", f"{name}: {section} is empty")
+    run = json.loads(call("run", *options, "--record", "half_cycles,impacts,energy").stdout)
+    scales = None
+    if "--scene" in options:
+        scene = json.loads((folder / options[1]).read_text())
+        mass, stiffness, length = scene["mass"], scene["stiffness"], scene["clearance"]
+        scales = (math.sqrt(mass / stiffness), length, stiffness * length * length * 1e-6)
+    compare(page, run, scales)
+
+    before = file.stat().st_mtime_ns
+    call("report", *options, "--members", MEMBERS, "--threads", "1", "-o", file.name)
+    check(file.read_text(encoding="utf-8") == text, f"{name}: other bytes with one thread")
+    check(file.stat().st_mtime_ns == before, f"{name}: written again, though nothing has changed")
+
+check("1 &lt; 2 &amp; &quot;3&quot; {{title}}" in (folder / "slip-of-the-units.html").read_text(), "a description is not kept as it is")
+print(f"{len(SCENES)} pages, {len(faults)} faults")
+sys.exit(bool(faults))
