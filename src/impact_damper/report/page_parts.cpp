@@ -175,6 +175,10 @@ std::string loss_html(const Findings& findings) {
         "energy below.");
   if (!findings.first_amplitude) return paragraph("Without half cycles there is no loss factor to read off.");
   if (findings.best) return paragraph(best_sentences(findings)) + paragraph(theory_sentences(findings));
+  const Scene& scene = findings.subject.scene;
+  if (findings.run.impacts->time.empty())
+    return paragraph("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
+                     number_html(2 * scene.damping_ratio) + ", at every amplitude.");
   if (findings.loss.eta.empty())
     return paragraph(
         "The loss factor is averaged over " + count_html(LossFactorOptions{}.half_cycles) +
