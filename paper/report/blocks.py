@@ -132,8 +132,7 @@ class Latex:
 {values.stamps[number]}~· {values.version}}}{{{rows}}}""")
 
     def picture(self, file: Path, words: str) -> str:
-        target = self.values.out / f"{file.stem}.pdf"
-        return raw("latex", rf"\widepicture{{{target}}}{{{latex(words)}}}")
+        return raw("latex", rf"\widepicture{{{file.stem}.pdf}}{{{latex(words)}}}")
 
     def claims(self) -> str:
         rows = "\n".join(rf"\texttt{{{latex(name)}}} & {latex(paper)} & {latex(ours)} & {verdict} \\"

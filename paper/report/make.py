@@ -9,6 +9,7 @@ tool fails; 2 usage.
 """
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -37,7 +38,7 @@ def converted(text: str, form: str, frame: str, values: Values, *options: str) -
     with tempfile.TemporaryDirectory() as folder:
         template = Path(folder) / "frame.txt"
         template.write_text(frame, encoding="utf-8")
-        return called(["pandoc", "--from=markdown-smart", f"--to={form}", "--toc", "--toc-depth=2", f"--template={template}",
+        return called(["pandoc", "--from=markdown", f"--to={form}", "--toc", f"--template={template}",
                        "-M", f"date={values.state['date']}", "-M", f"commit={values.state['commit']}",
                        "-M", f"version={values.version}", *options], input=text)
 
@@ -56,31 +57,36 @@ def put(text, file: Path):
 
 
 def html_of(text: str, values: Values) -> str:
-    page = SOURCE / "paper/page"
+    parts = SOURCE / "paper/page"
     frame = (HERE / "frame.html").read_text(encoding="utf-8")
     for name in ("page.css", "figures.js", "claims.js"):  # a dollar sign is pandoc's
-        frame = frame.replace(f"@{name}@", (page / name).read_text(encoding="utf-8").replace("$", "$$"))
-    return converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs")
+        frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
+    page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
+                     "--shift-heading-level-by=1", "--toc-depth=3")
+    return re.sub("<th(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
 def pdf_of(text: str, values: Values) -> bytes:
     frame = (HERE / "frame.tex").read_text(encoding="utf-8")
-    tex = converted(filled(text, values, Latex(values)), "latex", frame, values)
-    put(tex, values.out / "report.tex")
-    # Dates and identifiers in the PDF come from the commit, none from the clock or the folder.
+    # Dates in the PDF come from the commit; frame.tex keeps the folder out of it.
     environment = dict(os.environ, SOURCE_DATE_EPOCH=values.state["seconds"], FORCE_SOURCE_DATE="1", TZ="UTC", LC_ALL="C.UTF-8")
-    for svg in (SOURCE / "bench/results").glob("*.svg"):
-        called(["rsvg-convert", "--format=pdf", f"--output={values.out / svg.stem}.pdf", str(svg)], env=environment)
-    with tempfile.TemporaryDirectory() as work:
-        command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", f"-outdir={work}", "report.tex"]
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        for svg in (SOURCE / "bench/results").glob("*.svg"):
+            called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
+        (work / "report.tex").write_text(converted(filled(text, values, Latex(values)), "latex", frame, values))
+        command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
         if not shutil.which(command[0]):
             raise Mistake("latexmk is not installed: make deps-paper")
-        done = subprocess.run(command, cwd=values.out, env=environment, capture_output=True, text=True)
-        log = Path(work) / "report.log"
+        done = subprocess.run(command, cwd=work, env=environment, capture_output=True, text=True)
+        log = work / "report.log"
+        said = log.read_text(errors="replace") if log.exists() else done.stdout + done.stderr
         if done.returncode:
-            said = log.read_text(errors="replace") if log.exists() else done.stdout + done.stderr
             raise Mistake("LaTeX failed:\n" + said[said.find("\n!"):][:2000].strip())
-        return (Path(work) / "report.pdf").read_bytes()
+        wide = [line for line in said.split("\n") if line.startswith(("Overfull \\hbox", "LaTeX Warning"))]
+        if wide:
+            raise Mistake("LaTeX complains:\n" + "\n".join(wide))
+        return (work / "report.pdf").read_bytes()
 
 
 def main() -> int:

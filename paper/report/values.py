@@ -30,6 +30,8 @@ class Mistake(Exception):
 def significant(number: float, digits: int) -> str:
     """The number in Markdown; powers of ten and minus signs as people write them."""
     text = f"{number:.{digits}g}"
+    if "e" in text and 1e-5 <= abs(number) < 1e7:
+        text = f"{float(text):f}".rstrip("0").rstrip(".")
     if "e" in text:
         mantissa, exponent = text.split("e")
         return f"${mantissa}\\times10^{{{int(exponent)}}}$"
