@@ -72,9 +72,10 @@ def pdf_of(text: str, values: Values) -> bytes:
     environment = dict(os.environ, SOURCE_DATE_EPOCH=values.state["seconds"], FORCE_SOURCE_DATE="1", TZ="UTC", LC_ALL="C.UTF-8")
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        for svg in (SOURCE / "bench/results").glob("*.svg"):
+        form = Latex(values)
+        (work / "report.tex").write_text(converted(filled(text, values, form), "latex", frame, values))
+        for svg in form.pictures:
             called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
-        (work / "report.tex").write_text(converted(filled(text, values, Latex(values)), "latex", frame, values))
         command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
         if not shutil.which(command[0]):
             raise Mistake("latexmk is not installed: make deps-paper")
