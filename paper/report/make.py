@@ -63,7 +63,7 @@ def html_of(text: str, values: Values) -> str:
         frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
     page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
                      "--shift-heading-level-by=1", "--toc-depth=3")
-    return re.sub("<th(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
+    return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
 def pdf_of(text: str, values: Values) -> bytes:
