@@ -52,9 +52,8 @@ void read_cited_figure(ObjectReader& item, CitedFigure& figure, const std::strin
     const std::string_view engine = table_engines[figure.tables.size()];
     CitedTable& read = figure.tables.emplace_back();
     read.engine = engine;
-    table.word("engine", {engine});
-    table.require("engine");
-    sums_are_read = read_cited_file(table, read.content) && sums_are_read;
+    const bool in_order = table.require("engine") && table.word("engine", {engine});
+    sums_are_read = read_cited_file(table, read.content) && in_order && sums_are_read;
   }
   sums_are_read = read_cited_file(item.required_object("script"), figure.script) && sums_are_read;
   read_cited_file(item.required_object("picture"), figure.picture);
