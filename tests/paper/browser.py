@@ -117,7 +117,7 @@ class Report(unittest.TestCase):
                 })()""")
                 self.assertGreaterEqual(min(box), 0, f"{name}: the value stands within the window")
             if SCREENSHOTS and name == "desk":
-                self.page.screenshot(SCREENSHOTS / "hovered.png")
+                self.page.screenshot(SCREENSHOTS / "hovered.png", "#figure-8")
 
     def test_curves_are_switched(self):
         self.page.open(PAGE, WIDTHS["desk"])
@@ -199,7 +199,8 @@ class Report(unittest.TestCase):
                     colour = self.page.does(f'getComputedStyle(document.querySelector("main {what}")).color')
                     self.assertGreater(contrast(colour, back), 4.5, what)
                 if SCREENSHOTS:
-                    self.page.screenshot(SCREENSHOTS / f"{scheme}.png")
+                    for section in ("#figures", "#theory", ".claims"):
+                        self.page.screenshot(SCREENSHOTS / f"{scheme}-{section[1:]}.png", section)
 
     def test_it_prints(self):
         self.page.open(PAGE, 720, media="print")
