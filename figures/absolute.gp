@@ -15,3 +15,4 @@ plot table index "motion" using 1:2 with lines lc rgb black lw 2 title "cavity w
      table index "motion" using 1:3 with lines lc rgb black lw 2 notitle, \
      table index "motion" using 1:4 with lines lc rgb blue lw 1.6 dt (7,3.5) title "secondary mass", \
      table index "impacts" using 1:3 with points pt 7 ps 0.5 lc rgb vermillion title "impacts"
+eval axes("t", "displacement", "")

@@ -1,7 +1,8 @@
 from = 0.03
 styles = "2 1 3"
 theory = "2"
-set logscale y
+logarithmic = "xy"
 set yrange [0.04:10]
-set ylabel "specific loss factor η / ν"
+ordinate = "η / ν"
+set ylabel "specific loss factor ".ordinate
 load folder."/loss.gp"

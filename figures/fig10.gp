@@ -1,7 +1,8 @@
 from = 0.03
 styles = "1 2 3 4"
 theory = "1"
-set logscale y
+logarithmic = "xy"
 set yrange [4e-4:0.3]
-set ylabel "loss factor η"
+ordinate = "η"
+set ylabel "loss factor ".ordinate
 load folder."/loss.gp"

@@ -1,7 +1,8 @@
 from = 0.03
 styles = "1 2 3 4"
 theory = "1"
-set logscale y
+logarithmic = "xy"
 set yrange [0.04:10]
-set ylabel "(η − 2ζ) / ν"
+ordinate = "(η − 2ζ) / ν"
+set ylabel ordinate
 load folder."/loss.gp"

@@ -1,6 +1,8 @@
 from = 0.01
 styles = "2 1 3"
 theory = "1 2 3"
+logarithmic = "x"
 set yrange [0:2]
-set ylabel "A (η − 2ζ) / (ν (1 − e))"
+ordinate = "A (η − 2ζ) / (ν (1 − e))"
+set ylabel ordinate
 load folder."/loss.gp"

@@ -26,6 +26,7 @@ plot table index "stuck" using 1:2:3 with filledcurves lc rgb dark title "stuck"
      for [i=1:4] table index sprintf("bounce-%d", i) using 1:2 with lines ls 9 notitle, \
      table index "accumulation" using 1:2 with lines ls 9 title "closed forms, ν → 0", \
      table index "one-impact" using 1:2 with lines ls 9 notitle
+eval axes("A", "phase", "")
 
 unset title
 unset label
@@ -39,4 +40,5 @@ set xlabel "peak amplitude A of the half cycle"
 plot table index "impacts" using 1:2 with points pt 5 ps 0.25 lc rgb black, \
      table index "windows" using 2:(8):($3-$2):(0) with vectors nohead lc rgb green lw 4, \
      table index "one-impact" using 1:2 with lines ls 9
+eval axes("A", "phase", "")
 unset multiplot

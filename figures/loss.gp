@@ -1,6 +1,6 @@
 # Figures 8-14: curves of the averaged loss factor, the closed forms thinly beside them. The figure's script
-# sets `from` (of the amplitude axis), the ordinate's axis, `styles` (the line style of each curve) and `theory`
-# (the curves whose closed forms are drawn).
+# sets `from` (of the amplitude axis), `ordinate` and its axis, which axes are `logarithmic`, `styles` (the line style
+# of each curve) and `theory` (the curves whose closed forms are drawn).
 do for [i=1:words(styles)] { eval require(sprintf("curve-%d", i), 10) }
 do for [i in theory] { eval require("one-impact-".i, 10) }
 bounced = ""
@@ -9,7 +9,7 @@ failed = ""
 do for [i=1:words(styles)] { if (has(sprintf("failed-%d", i))) { failed = sprintf("%s %d", failed, i) } }
 
 set xlabel "peak amplitude A"
-set logscale x
+eval 'set logscale '.logarithmic
 set xrange [from:7]
 set xtics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "6" 6)
 do for [decade in "0.01 0.1 1"] {
@@ -40,3 +40,4 @@ eval 'plot '.spread.band.\
   '  with linespoints ls style_of(i) title columnheader(2),'.\
   'for [i in theory] table index "one-impact-".i using 1:2 with lines ls 9'.\
   '  title (i eq word(theory, 1) ? "closed forms, ν → 0" : "")'.bounce_down.behind_failure
+eval axes("A", ordinate, logarithmic)

@@ -29,6 +29,7 @@ stuck = !has("stuck") ? "" : \
   'table index "stuck" using 1:3:($2-$1):(0) with vectors nohead lc rgb orange lw 6 title "stuck",'
 eval 'plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6 notitle,'.stuck.\
   'table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion title "impacts"'
+eval axes("t", "y", "")
 
 unset key
 unset title
@@ -45,4 +46,5 @@ set yrange [-reach:reach]
 set ytics autofreq
 set arrow 3 from from,0 to to,0 nohead lc rgb grey lw 0.6
 plot table index "motion" using 1:2 with lines lc rgb black lw 1.4
+eval axes("t", "x", "")
 unset multiplot

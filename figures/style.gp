@@ -29,7 +29,15 @@ set tmargin at screen 0.875
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.
 require(block, least) = sprintf( \
   "do for [c=1:2] { stats table index '%s' using c nooutput;".\
-  " if (STATS_records < %d || STATS_invalid > 0) { print 'block %s is short or not finite'; exit status 1 } }", \
+  " if (STATS_records < %d || STATS_invalid > 0) { printerr 'block %s is short or not finite'; exit status 1 } }", \
   block, least, block)
 # Whether an optional block is there.
 has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0
+
+# For whoever reads values off the picture (see draw): a line of JSON says what the axes just plotted measure, the
+# values at their ends, where those lie in the SVG (from its left, from its bottom), and which of x and y are logarithmic.
+# A script says `eval axes("A", "η", "xy")` after each plot.
+axes(x, y, logarithmic) = sprintf( \
+  "print sprintf('{\"x\": [\"%s\", %%.10g, %%.10g, %%g, %%g], \"y\": [\"%s\", %%.10g, %%.10g, %%g, %%g], \"log\": \"%s\"}', ".\
+  "GPVAL_X_MIN, GPVAL_X_MAX, GPVAL_TERM_XMIN, GPVAL_TERM_XMAX, ".\
+  "GPVAL_Y_MIN, GPVAL_Y_MAX, GPVAL_TERM_YMIN, GPVAL_TERM_YMAX)", x, y, logarithmic)

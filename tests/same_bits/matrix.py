@@ -37,6 +37,7 @@ from differences import compare_files
 
 SOURCE = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
+VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 COMPILERS = ["g++", "clang++"]
 # Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero. Without [[gnu::flatten]] the
 # calls are other ones, and g++ compiles the engines in a tenth of the time.
@@ -192,7 +193,8 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
                 table = "-"
                 if engine != ENGINES[0]:
                     continue
-            call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name],
+            call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name,
+                  VERSION],
                  cwd=places.folder(surroundings), env=places.environment(features, surroundings))
 
 

@@ -1,6 +1,7 @@
 from = 0.03
 styles = "1"
 theory = "1"
-set logscale y
-set ylabel "loss factor η"
+logarithmic = "xy"
+ordinate = "η"
+set ylabel "loss factor ".ordinate
 load folder."/loss.gp"
