@@ -182,6 +182,7 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
 def draw_all(places: Places, features: str, surroundings, tables: Path, pictures: Path):
     """The pictures of all engines' tables, below `pictures`; `tables` are run_all's results."""
     shutil.rmtree(pictures, ignore_errors=True)
+    environment = places.environment(features, surroundings) | {"SVG_ONLY": "1"}  # what is compared
     for engine in ENGINES:
         (pictures / engine).mkdir(parents=True)
         for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]:
@@ -195,7 +196,7 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
                     continue
             call(["figures/draw", f"figures/{figure['script']}", table, figure["title"], pictures / engine / name,
                   VERSION],
-                 cwd=places.folder(surroundings), env=places.environment(features, surroundings))
+                 cwd=places.folder(surroundings), env=environment)
 
 
 def held_against(reference: Path, results: Path) -> list:
@@ -231,7 +232,7 @@ def main() -> int:
     if not own.exists():
         missing(f"{own} is missing: make build")
     compilers = [name for name in COMPILERS if name != "clang++" or not arguments.without_clang]
-    for tool in compilers + ["cmake", "ninja", "gnuplot", "rsvg-convert"] + ["ld.lld"] * ("clang++" in compilers):
+    for tool in compilers + ["cmake", "ninja", "gnuplot"] + ["ld.lld"] * ("clang++" in compilers):
         if not shutil.which(tool):
             missing(f"{tool} is missing: make deps-check installs it" +
                     ("; --without-clang leaves its half of the builds out" if tool in ("clang++", "ld.lld") else ""))
