@@ -64,6 +64,6 @@ step(reach) = (power = 10 ** floor(log10(reach)), reach / power < 2 ? power : re
 set ytics step(reach)
 if (in_units) { set y2tics step(reach * scale_length) }
 set arrow 3 from from,0 to to,0 nohead lc rgb grey lw 0.6
-plot table index "motion" using 1:2 with lines lc rgb black lw 1.4 notitle
+plot table index "motion" using 1:2 with lines lc rgb black lw 1.4 title "cavity"
 eval axes("t", "x", "")
 unset multiplot

@@ -9,6 +9,7 @@
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
+#include "impact_damper/paper/manifest.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -17,10 +18,11 @@ struct Reader {
   std::string_view kind;
   void (*read)(const std::string& file);
 };
-constexpr std::array<Reader, 4> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
+constexpr std::array<Reader, 5> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
                                          {"run", [](const std::string& file) { read_run(file); }},
                                          {"catalogue", [](const std::string& file) { read_catalogue(file); }},
-                                         {"claims", [](const std::string& file) { read_claims(file); }}}};
+                                         {"claims", [](const std::string& file) { read_claims(file); }},
+                                         {"manifest", [](const std::string& file) { read_manifest(file); }}}};
 
 // Not an option with many values: that would take "[]" for a list of none.
 std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
@@ -39,7 +41,8 @@ int check(const CLI::App& app) {
   std::vector<std::string_view> kinds;
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
-  if (!arguments.given("KIND")) arguments.refuse("KIND", "must be given: scene, run, catalogue or claims");
+  if (!arguments.given("KIND"))
+    arguments.refuse("KIND", "must be given: scene, run, catalogue, claims or manifest");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.refuse("FILE", "must be given, one or several");
@@ -65,11 +68,11 @@ int check(const CLI::App& app) {
 Command check_command(CLI::App& program) {
   CLI::App* const app =
       program.add_subcommand("check", "Read files strictly and say all that is wrong with them.");
-  app->add_option("KIND", "what they are: scene, run, catalogue or claims")->type_name("");
+  app->add_option("KIND", "what they are: scene, run, catalogue, claims or manifest")->type_name("");
   app->add_option("FILE", "one or several")->type_name("");
   app->allow_extras();
   app->footer(
-      "The same is checked whenever a file is read. data/schema/ holds JSON Schemas of all four kinds.\n\n"
+      "The same is checked whenever a file is read. data/schema/ holds JSON Schemas of all these kinds.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json");

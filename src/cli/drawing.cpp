@@ -68,12 +68,17 @@ Ended run(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  std::string svg_only = "SVG_ONLY=1";
+  std::vector<char*> surroundings{svg_only.data()};
+  for (char** each = environ; *each; ++each) surroundings.push_back(*each);
+  surroundings.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, channel[1], STDERR_FILENO);
   ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t process = 0;
-  const int failed = ::posix_spawn(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int failed =
+      ::posix_spawn(&process, arguments[0], &actions, nullptr, arguments.data(), surroundings.data());
   drawing_process = failed ? 0 : process;
   ::posix_spawn_file_actions_destroy(&actions);
   ::close(channel[1]);
@@ -138,7 +143,7 @@ std::string DrawingBoard::draw(const Drawing& drawing) {
   note(svg);
   write_file(table, to_text(drawing.table));
   const Ended ended = run({"/bin/sh", folder_ / "draw", folder_ / drawing.script, table, drawing.title, stem,
-                           std::string(provenance().version), "svg"});
+                           std::string(provenance().version)});
   if (ended.code == 5) throw IoError(ended.complaint);
   if (ended.code != 0)
     throw NumericalError("figure " + drawing.name + " cannot be drawn: " + ended.complaint);

@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   const std::array commands{
       cli::run_command(program),    cli::report_command(program), cli::scenes_command(program),
       cli::verify_command(program), cli::series_command(program), cli::figures_command(program),
-      cli::check_command(program),
+      cli::check_command(program),  cli::cite_command(program),
   };
 
   const auto head = [&] {

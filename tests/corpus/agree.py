@@ -20,7 +20,7 @@ except ImportError:
     sys.exit(77)
 
 program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-KINDS = ("scene", "run", "catalogue", "claims")
+KINDS = ("scene", "run", "catalogue", "claims", "manifest")
 
 
 def validator(kind):
@@ -157,8 +157,9 @@ def main():
     if unlisted:
         sys.exit(f"not in manifest.txt: {unlisted}")
 
-    own = {"scene": sorted([*(source / "data/scenes").glob("*.json"), *(source / "data/examples").glob("*.json")]), "run": [], "catalogue": [source / "figures/catalogue.json"],
-           "claims": [source / "data/claims.json"]}
+    own = {"scene": sorted([*(source / "data/scenes").glob("*.json"), *(source / "data/examples").glob("*.json")]),
+           "run": [], "catalogue": [source / "figures/catalogue.json"], "claims": [source / "data/claims.json"],
+           "manifest": [file for file in [source / "data/reference/manifest.json"] if file.exists()]}
     for engine in ("exact", "restitution", "cem"):
         fresh = folder / "fresh" / f"{engine}.json"
         subprocess.run([program, "run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",

@@ -21,7 +21,8 @@ refused() {
     exit 1
   fi
 }
-for kind in "65536 scene scene" "134217728 run run" "1048576 catalogue catalogue" "4194304 claims claims file"; do
+for kind in "65536 scene scene" "134217728 run run" "1048576 catalogue catalogue" "4194304 claims claims file" \
+  "1048576 manifest manifest"; do
   set -- $kind
   refused "$1" "$2" "$3${4:+ $4}" 1000000000 big.json
   head -c 1000000000 /dev/zero 2> head_error | refused "$1" "$2" "$3${4:+ $4}" more /dev/stdin || exit 1

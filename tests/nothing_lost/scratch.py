@@ -8,6 +8,7 @@ import argparse
 import ctypes
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -17,11 +18,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 
-CMAKE_LISTS = """cmake_minimum_required(VERSION 3.25)
-project(scratch NONE)
+VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+CMAKE_LISTS = f"""cmake_minimum_required(VERSION 3.25)
+project(scratch VERSION {VERSION} LANGUAGES NONE)
 add_executable(impact-damper IMPORTED GLOBAL)
-set_target_properties(impact-damper PROPERTIES IMPORTED_LOCATION "${PROJECT_BINARY_DIR}/src/impact-damper")
-add_subdirectory(figures ${PROJECT_BINARY_DIR}/figure-rules)
+set_target_properties(impact-damper PROPERTIES IMPORTED_LOCATION "${{PROJECT_BINARY_DIR}}/src/impact-damper")
+add_subdirectory(figures ${{PROJECT_BINARY_DIR}}/figure-rules)
 """
 # A make above this one shall not tell those below what to do.
 ENVIRONMENT = {name: value for name, value in os.environ.items()

@@ -4,9 +4,9 @@
     reference.py COMMITTED NEW      two folders like data/reference/, NEW by paper/refresh
 
 Every byte of tables and verdicts has to be the same, and of the figures where gnuplot is the one that drew the
-committed ones; another one rounds and writes in its own way, and then equal tables have to be enough. Exit code 1 if
-anything differs, with the first and the worst difference of each file, or if the committed files do not have their
-committed SHA-256 sums.
+committed ones; another one rounds and writes in its own way, and then equal tables have to be enough (the manifest has
+the figures' sums). Exit code 1 if anything differs, with the first and the worst difference of each file, or if the
+committed files do not have their committed SHA-256 sums.
 """
 import hashlib
 import sys
@@ -40,7 +40,7 @@ def differences(committed: Path, new: Path) -> list:
         print(f"The committed figures were drawn with {drawn_with[0]}, here is {drawn_with[1]}: their bytes are not "
               "compared, equal tables have to be enough.")
     for name in names_in(str(committed), str(new)):
-        if same_gnuplot or not name.endswith(".svg"):
+        if same_gnuplot or not name.endswith((".svg", "manifest.json")):
             difference = compare_files(name, str(committed / name), str(new / name))
             if difference:
                 found.append(str(difference))

@@ -163,6 +163,9 @@ class TheReferenceIsHeldAgainstTheNewOne(InAFolder):
             new = self.make(name, gnuplot)
             (new / "fig08.svg").write_text("<svg >\n")
             self.assertEqual(len(differences(old, new)), wanted)
+            (new / "fig08.svg").write_text("<svg>\n")
+            (new / "manifest.json").write_text('{"sha256": "ab"}')
+            self.assertEqual(len(differences(old, new)), wanted)
 
 
 class RenewingTheReference(InAFolder):

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Makes the report: BUILD/paper/report.html and, unless --html, BUILD/paper/report.pdf, both from text.md.
+
+    paper/report/make.py BUILD [--html] [--verdicts FILE] [--out FOLDER]
+
+BUILD holds the figures, tables and runs of the exact engine (make figures) and its verdicts (make verify). Equal
+results and commit, equal bytes. Files appear whole or not at all. Exit codes: 1 the text names what is not there, or a
+tool fails; 2 usage.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+from blocks import Html, Latex, filled  # noqa: E402
+from values import Mistake, Values  # noqa: E402
+
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
+
+
+def called(command: list, **options) -> str:
+    if not shutil.which(command[0]):
+        raise Mistake(f"{command[0]} is not installed: make deps-paper")
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    if done.returncode or done.stderr.strip():
+        raise Mistake(f"{command[0]} failed:\n{(done.stderr or done.stdout)[-3000:].strip()}")
+    return done.stdout
+
+
+def converted(text: str, form: str, frame: str, values: Values, *options: str) -> str:
+    """By pandoc, which complains on stderr and then exits 0."""
+    with tempfile.TemporaryDirectory() as folder:
+        template = Path(folder) / "frame.txt"
+        template.write_text(frame, encoding="utf-8")
+        return called(["pandoc", "--from=markdown", f"--to={form}", "--toc", f"--template={template}",
+                       "-M", f"date={values.state['date']}", "-M", f"commit={values.state['commit']}",
+                       "-M", f"version={values.version}", *options], input=text)
+
+
+def put(text, file: Path):
+    """Whole or not at all; equal bytes keep their time stamp."""
+    data = text if isinstance(text, bytes) else text.encode()
+    if file.exists() and file.read_bytes() == data:
+        return
+    part = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+    try:
+        part.write_bytes(data)
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def html_of(text: str, values: Values) -> str:
+    parts = SOURCE / "paper/page"
+    frame = (HERE / "frame.html").read_text(encoding="utf-8")
+    for name in ("page.css", "figures.js", "claims.js"):  # a dollar sign is pandoc's
+        frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
+    page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
+                     "--shift-heading-level-by=1", "--toc-depth=3")
+    return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
+
+
+def pdf_of(text: str, values: Values) -> bytes:
+    frame = (HERE / "frame.tex").read_text(encoding="utf-8")
+    # Dates in the PDF come from the commit; frame.tex keeps the folder out of it.
+    environment = dict(os.environ, SOURCE_DATE_EPOCH=values.state["seconds"], FORCE_SOURCE_DATE="1", TZ="UTC", LC_ALL="C.UTF-8")
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        form = Latex(values)
+        (work / "report.tex").write_text(converted(filled(text, values, form), "latex", frame, values))
+        for svg in form.pictures:
+            called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
+        command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+        if not shutil.which(command[0]):
+            raise Mistake("latexmk is not installed: make deps-paper")
+        done = subprocess.run(command, cwd=work, env=environment, capture_output=True, text=True)
+        log = work / "report.log"
+        said = log.read_text(errors="replace") if log.exists() else done.stdout + done.stderr
+        if done.returncode:
+            raise Mistake("LaTeX failed:\n" + said[said.find("\n!"):][:2000].strip())
+        wide = [line for line in said.split("\n") if line.startswith(("Overfull \\hbox", "LaTeX Warning"))]
+        if wide:
+            raise Mistake("LaTeX complains:\n" + "\n".join(wide))
+        return (work / "report.pdf").read_bytes()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Makes the report from paper/report/text.md.")
+    parser.add_argument("build", type=Path, help="build folder with figures and verdicts")
+    parser.add_argument("--html", action="store_true", help="no PDF: needs pandoc, but no LaTeX")
+    parser.add_argument("--verdicts", type=Path, help="default BUILD/verdicts-exact.json")
+    parser.add_argument("--out", type=Path, help="default BUILD/paper")
+    asked = parser.parse_args()
+    build = asked.build.resolve()
+    try:
+        values = Values(SOURCE, build, (asked.verdicts or build / "verdicts-exact.json").resolve())
+        values.out = (asked.out or build / "paper").resolve()
+        values.out.mkdir(parents=True, exist_ok=True)
+        text = (HERE / "text.md").read_text(encoding="utf-8")
+        put(html_of(text, values), values.out / "report.html")
+        if not asked.html:
+            put(pdf_of(text, values), values.out / "report.pdf")
+    except Mistake as mistake:
+        print(f"paper/report: {mistake}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

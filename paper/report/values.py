@@ -1,0 +1,166 @@
+"""The values that the report's text may name, {{NAME}}, and how they are written. None is computed here but by
+counting, picking and comparing; all come from what the program made:
+
+    CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
+    CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict
+    count.claims, count.reproduced, count.not-reproduced, count.corrected
+    scene.NAME.FIELD        a number of a scene, defaults among them; run.NAME.half_cycles, .impacts, .end_time
+    figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
+    figNN.BLOCK.N.peak      column N where column 2 is greatest
+    bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
+    study.NAME              percent of time saved, by a run of studies.json against its base, on the way to the
+                            amplitude study.until
+    stamp.NUMBER, version, commit, date, year
+
+{{NAME|3}} writes three significant digits, {{NAME|%}} a hundred times the value.
+"""
+import datetime
+import difflib
+import hashlib
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+
+class Mistake(Exception):
+    """What a reader of standard error can mend."""
+
+
+def significant(number: float, digits: int) -> str:
+    """The number in Markdown; powers of ten and minus signs as people write them."""
+    text = f"{number:.{digits}g}"
+    if "e" in text and 1e-5 <= abs(number) < 1e7:
+        text = f"{float(text):f}".rstrip("0").rstrip(".")
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        return f"${mantissa}\\times10^{{{int(exponent)}}}$"
+    return text.replace("-", "−")
+
+
+def blocks_of(table: Path) -> dict:
+    """Block -> its columns, each a list of numbers."""
+    blocks, name = {}, None
+    for part in table.read_text(encoding="utf-8").split("\n\n\n")[1:]:
+        lines = part.strip().split("\n")
+        name = lines[0].removeprefix("# ")
+        rows = [line.split() for line in lines if not line.startswith(("#", '"'))]
+        blocks[name] = [[float(cell) for cell in column] for column in zip(*rows)]
+    return blocks
+
+
+def of_column(values: list, by: list) -> dict:
+    return {"first": values[0], "last": values[-1], "least": min(values), "most": max(values), "count": len(values),
+            "peak": values[by.index(max(by))]}
+
+
+def git(source: Path, *arguments: str) -> str:
+    done = subprocess.run(["git", "-C", source, *arguments], capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def state_of(source: Path) -> dict:
+    """Commit and its date; SOURCE_DATE_EPOCH where there is no repository, as in an unpacked archive."""
+    commit, seconds = git(source, "rev-parse", "--short=12", "HEAD"), git(source, "log", "-1", "--format=%ct")
+    if commit and git(source, "status", "--porcelain"):
+        commit += " with changes"
+    moment = datetime.datetime.fromtimestamp(int(seconds or os.environ.get("SOURCE_DATE_EPOCH", 0)), datetime.timezone.utc)
+    return {"commit": commit or "unknown", "date": moment.strftime("%Y-%m-%d"), "year": moment.strftime("%Y"),
+            "seconds": str(int(moment.timestamp()))}
+
+
+def studies(source: Path, program: Path) -> dict:
+    """Times to the same amplitude by runs with one thing changed, against the base's."""
+    file = json.loads((source / "paper/report/studies.json").read_text(encoding="utf-8"))
+
+    def run(arguments: list) -> float:
+        done = subprocess.run([program, "run", *file["common"], *arguments], capture_output=True, text=True)
+        if done.returncode:
+            raise Mistake(f"studies.json: {' '.join(arguments)}: {done.stderr.strip()}")
+        return float(re.search(r'"end_time": ([^,]*),', done.stdout)[1])
+
+    base = run(file["base"])
+    values = {"study.until": float(file["common"][file["common"].index("--until-amplitude") + 1])}
+    for study in file["studies"]:
+        values[f"study.{study['name']}"] = 100 * (1 - run(study["arguments"]) / base)
+    return values
+
+
+class Values:
+    """All values by name. `table_of` gives a figure's table, `claims` and `verdicts` the files' entries by id."""
+
+    def __init__(self, source: Path, build: Path, verdicts_file: Path):
+        def read(file: Path):
+            if not file.exists():
+                raise Mistake(f"{file} is missing: make figures verify")
+            return json.loads(file.read_text(encoding="utf-8"))
+
+        self.source, self.build, self.out = source, build, build / "paper"
+        self.claims = {each["id"]: each for each in read(source / "data/claims.json")["claims"]}
+        self.verdicts = {each["claim"]: each for each in read(verdicts_file)["verdicts"]}
+        self.catalogue = read(source / "figures/catalogue.json")
+        self.figures = {each["figure"]: each for each in self.catalogue["figures"]}
+        self.bench = read(source / "bench/results/bench.json")
+        self.tables, self.stamps = {}, {}
+        self.state = state_of(source)
+        self.version = re.search(r"project\(impact-damper VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]
+        self.known = {"version": self.version, **{name: self.state[name] for name in ("commit", "date", "year")}}
+        self.used = set()
+
+        for name, claim in self.claims.items():
+            told = self.verdicts.get(name)
+            if not told:
+                raise Mistake(f"{verdicts_file} knows nothing of the claim {name}: make verify")
+            self.known |= {name: told["ours"], f"{name}.low": told["low"], f"{name}.high": told["high"],
+                           f"{name}.paper": claim["printed"], f"{name}.verdict": told["verdict"]}
+        self.known["count.claims"] = len(self.verdicts)
+        for verdict in ("reproduced", "not reproduced", "corrected"):
+            self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())
+        for each in self.catalogue["scenes"]:
+            run = read(build / f"runs/exact/{each['scene']}.json")
+            self.known |= {f"scene.{each['scene']}.{field}": number for field, number in run["scene"].items()}
+            self.known |= {f"run.{each['scene']}.half_cycles": len(run["half_cycles"]["amplitude"]),
+                           f"run.{each['scene']}.impacts": sum(run["half_cycles"]["impacts"]),
+                           f"run.{each['scene']}.end_time": run["end_time"]}
+        for number, figure in self.figures.items():
+            stem = stem_of(number)
+            table = build / f"series/exact/{stem}.dat"
+            stamped = source / "figures" / figure["script"] if figure["table"] == "drawing" else table
+            if not stamped.exists():
+                raise Mistake(f"{stamped} is missing: make figures")
+            self.stamps[number] = hashlib.sha256(stamped.read_bytes()).hexdigest()[:8]
+            self.known[f"stamp.{number}"] = f"{self.stamps[number]} · {self.version}"
+            if figure["table"] != "drawing":
+                for block, columns in blocks_of(table).items():
+                    for i, column in enumerate(columns):
+                        for what, value in of_column(column, columns[min(1, len(columns) - 1)]).items():
+                            self.known[f"{stem}.{block}.{i + 1}.{what}"] = value
+        for target in self.bench["targets"]:
+            name = re.sub(r"[^a-z0-9]+", "-", target["what"].lower()).strip("-")
+            self.known[f"bench.{name}"] = target["measured"]
+        self.known["bench.processor"] = self.bench["machine"]["processor"]
+        self.known["bench.commit"] = self.bench["provenance"]["commit"]
+        self.known["bench.yardstick"] = self.bench["yardstick"]["nanoseconds"]["median"]
+        self.known |= studies(source, build / "src/impact-damper")
+
+    def written(self, name: str, how: str = "") -> str:
+        """A value as Markdown."""
+        if name not in self.known:
+            near = difflib.get_close_matches(name, self.known, 1)
+            raise Mistake(f"no value is called {name}" + (f", did you mean {near[0]}?" if near else ""))
+        self.used.add(name)
+        value = self.known[name]
+        if isinstance(value, str):
+            return value
+        if value is None:
+            return "none"
+        if how == "%":
+            value, how = 100 * value, ""
+        if isinstance(value, int) and not how:
+            return str(value)
+        return significant(float(value), int(how or 4))
+
+
+def stem_of(number: str) -> str:
+    return f"fig{number:0>2}" if number.isdigit() else f"fig{number}"

@@ -1,0 +1,177 @@
+// `cite`: what to write into one's references, and from a figure or its stamp back to what it was made from.
+#include <algorithm>
+#include <filesystem>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/engine.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/paper/manifest.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+// In braces of its own a text is no list of names and keeps its capitals; each is a value or stands in one.
+std::string braced(std::string_view text) {
+  std::string value;
+  for (const char c : text) {
+    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) value += '\\';
+    value += c == '~'    ? "\\textasciitilde{}"
+             : c == '^'  ? "\\textasciicircum{}"
+             : c == '\\' ? "\\textbackslash{}"
+                         : std::string(1, c);
+  }
+  return '{' + value + '}';
+}
+
+// BibTeX takes what stands between entries for a comment, but for an @.
+std::string comment(std::string_view text) {
+  std::string line = "% " + std::string(text);
+  std::ranges::replace(line, '@', '?');
+  return line + '\n';
+}
+
+std::string entries(const Manifest& manifest, const std::string& note) {
+  std::string authors;
+  for (const std::string& author : manifest.authors)
+    authors += (authors.empty() ? "" : " and ") + braced(author);
+  std::string text = "@software{impact-damper-" + manifest.version + ",\n";
+  text += "  author = {" + authors + "},\n";
+  text += "  title = {" + braced(manifest.title) + "},\n";
+  text += "  version = {" + manifest.version + "},\n";
+  text += "  year = {" + std::to_string(manifest.year) + "}";
+  if (!note.empty()) text += ",\n  note = {" + braced(note) + "}";
+  text += "\n}\n@misc{impact-damper-paper,\n";
+  text += "  title = {" + braced(manifest.paper_title) + "},\n";
+  return text + "  note = {" + braced(manifest.paper_note) + "}\n}\n";
+}
+
+// Labels beside values, of which there may be several.
+std::string labelled(std::string_view label, const std::vector<std::string>& values) {
+  std::string lines;
+  for (const std::string& value : values) {
+    std::string head(lines.empty() ? label : "");
+    head.resize(9, ' ');
+    lines += comment("  " + head + value);
+  }
+  return lines;
+}
+
+std::string stamp_of(const Stamped& stamped) {
+  const auto& [figure, table] = stamped;
+  return (table ? table->content.sha256 : figure->script.sha256).substr(0, 8) + figure->stamp.substr(8);
+}
+
+std::string made_from(const Manifest& manifest, const Stamped& stamped) {
+  const CitedFigure& figure = *stamped.figure;
+  const CitedTable* const table = stamped.table;
+  const bool as_published = !table || table == figure.tables.data();
+  std::vector<std::string> scenes;
+  for (const CitedFile& scene : figure.scenes) scenes.push_back(scene.file);
+  const std::string picture = std::filesystem::path(figure.picture.file).filename().string();
+  const std::string folder = as_published ? "figures/" : "figures/" + table->engine + "/";
+
+  std::string text = comment("Figure " + figure.number + " of " + manifest.title + " " + manifest.version +
+                             ": " + figure.title);
+  text += labelled("stamp", {stamp_of(stamped)});
+  text += labelled("picture", {as_published ? figure.picture.file : "build/" + folder + picture});
+  if (table) text += labelled("table", {table->content.file, "by the " + table->engine + " engine"});
+  text += labelled("script", {figure.script.file});
+  text += labelled(
+      "SHA-256", {table ? table->content.sha256 + " of the table" : figure.script.sha256 + " of the script"});
+  text += labelled("scenes", scenes);
+  text += labelled("claims", figure.claims);
+  text += labelled("made by", {"cmake --preset release", "cmake --build build --target " + folder + picture});
+  return text;
+}
+
+// What a stamp that nothing here carries may come from.
+std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::string& file) {
+  std::vector<std::string_view> known;
+  for (const CitedFigure& figure : manifest.figures) {
+    if (figure.tables.empty()) known.push_back(std::string_view(figure.script.sha256).substr(0, 8));
+    for (const CitedTable& table : figure.tables)
+      known.push_back(std::string_view(table.content.sha256).substr(0, 8));
+  }
+  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version +
+                     ", got " + in_quotes(stamp.digits) +
+                     (stamp.version ? " of version " + *stamp.version : "");
+  if (const auto meant = nearest(stamp.digits, known)) text += ", did you mean " + std::string(*meant) + "?";
+  if (stamp.version && *stamp.version != manifest.version) {
+    text += "; version " + *stamp.version + " has a manifest of its own";
+  } else {
+    text += "; what was drawn from other data, such as one's own scene, is in no manifest";
+  }
+  return text;
+}
+
+int cite(Arguments arguments) {
+  const std::string file = arguments.file("--manifest").value_or("data/reference/manifest.json");
+  const std::optional<std::string> typed = arguments.text("--stamp");
+  if (arguments.given("--figure") && typed)
+    arguments.refuse("--stamp", "must be given without --figure, got both");
+  const std::optional<Stamp> stamp = typed ? parse_stamp(*typed) : std::nullopt;
+  if (typed && !stamp)
+    arguments.refuse("--stamp",
+                     "must be 8 to 64 hexadecimal digits, with or without a version behind them, such as "
+                     "\"1a2b3c4d · 0.1.0\", got " +
+                         in_quotes(*typed));
+  arguments.finish();
+
+  const Manifest manifest = read_manifest(file);
+  std::vector<std::string_view> numbers;
+  for (const CitedFigure& figure : manifest.figures) numbers.push_back(figure.number);
+  const std::optional<std::size_t> number = arguments.word("--figure", numbers);
+  std::vector<Stamped> figures;
+  if (stamp) figures = find_stamped(manifest, stamp->digits);
+  if (stamp && figures.empty()) arguments.refuse("--stamp", why_not(manifest, *stamp, file));
+  arguments.finish();
+  if (number) {
+    const CitedFigure& figure = manifest.figures[*number];
+    figures.push_back({&figure, figure.tables.empty() ? nullptr : figure.tables.data()});
+  }
+
+  std::string text;
+  if (const std::string_view version = provenance().version; version != manifest.version)
+    text += comment("The manifest " + file + " is of version " + manifest.version + ", this program of " +
+                    std::string(version) + ".");
+  if (stamp && stamp->version && *stamp->version != manifest.version)
+    text += comment("The stamp is of version " + *stamp->version + ": what it marks has the same bytes in " +
+                    manifest.version + ", the rest of the figure may have changed.");
+  std::string note;
+  for (const Stamped& each : figures) {
+    text += made_from(manifest, each);
+    note += (note.empty() ? "Figure " : "; figure ") + each.figure->number + ", stamp " + stamp_of(each);
+  }
+  text += entries(manifest, note);
+  write_standard_output(text);
+  return 0;
+}
+
+}  // namespace
+
+Command cite_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("cite", "Say how to cite the program, and what a figure was made from.");
+  app->add_option("--figure", "what this figure was made from, with which commands; 1 to 15, A or B")
+      ->type_name("NUMBER");
+  app->add_option("--stamp", "the same for the figure that carries this in its lower right corner")
+      ->type_name("TEXT");
+  app->add_option("--manifest", "what the figures were made from; default data/reference/manifest.json")
+      ->type_name("FILE");
+  app->footer(
+      "What is printed is BibTeX; the rest is a comment to it. A stamp is the beginning of the SHA-256 of "
+      "the "
+      "table\n"
+      "that is drawn (of the script where there is none) and the version: it holds for data, not for the "
+      "picture's\n"
+      "looks, and knows this version's tables by all engines, no others.\n\n"
+      "Examples:\n"
+      "  impact-damper cite >> references.bib\n"
+      "  impact-damper cite --figure 8\n"
+      "  impact-damper cite --stamp \"1a2b3c4d · 0.1.0\"");
+  return {app, [app] { return cite(Arguments(*app)); }};
+}
+
+}  // namespace impact_damper::cli

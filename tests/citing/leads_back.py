@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""From a picture back to its data: what `impact-damper cite` says of every stamp is held against the files themselves,
+and the commands that it prints are run and make the same picture again.
+
+    leads_back.py --program PROGRAM --new NEW --folder FOLDER
+                               NEW like the source folder, by paper/refresh; FOLDER is made anew, to work in
+"""
+import hashlib
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nothing_lost"))
+from scratch import SOURCE, arguments, make_tree  # noqa: E402
+
+options = arguments(__doc__.split("\n")[0])
+options.add_argument("--new", type=Path, required=True)
+options = options.parse_args()
+MANIFEST = options.new / "data/reference/manifest.json"
+faults = []
+
+
+def wanted(holds, what):
+    if not holds:
+        faults.append(what)
+
+
+def cite(*typed) -> str:
+    done = subprocess.run([options.program, "cite", "--manifest", MANIFEST, *typed], capture_output=True, text=True)
+    wanted(done.returncode == 0 and not done.stderr, f"cite {typed}: exit code {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+def rows(text: str, label: str) -> list:
+    """What stands beside a label of the comment, line by line."""
+    found, inside = [], False
+    for line in text.splitlines():
+        if re.match(r"%   \S", line):
+            inside = line[4:13].strip() == label
+        elif not line.startswith("%    "):
+            inside = False
+        if inside:
+            found.append(line[13:])
+    return found
+
+
+def commands(text: str) -> list:
+    return [line.split(" ") for line in rows(text, "made by")]
+
+
+def sum_of(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def bibtex_problems(text: str) -> list:
+    """Entries as BibTeX reads them: a type, a key, fields in balanced braces; no @ outside."""
+    found = []
+    entries = re.split(r"^(?=@)", text, flags=re.M)
+    for entry in entries[1:]:
+        if not re.match(r"@(software|misc)\{[\w.-]+,\n(  [a-z]+ = \{.*\},?\n)+\}\n\Z", entry):
+            found.append(f"no entry: {entry}")
+        depth = 0
+        for brace in re.findall(r"(?<!\\)[{}]", entry):
+            depth += 1 if brace == "{" else -1
+            if depth < 0:
+                found.append(f"braces: {entry}")
+        if depth or re.search(r"^  \w+ = .*\}\n  \w+ =", entry, re.M):
+            found.append(f"braces or commas: {entry}")
+    return found + ["an @ in a comment"] * ("@" in entries[0]) + ["not two entries"] * (len(entries) != 3)
+
+
+manifest = json.loads(MANIFEST.read_text())
+version = manifest["software"]["version"]
+figures = {figure["figure"]: figure for figure in manifest["figures"]}
+wanted(set(figures) == {"A", "B", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
+for number, figure in figures.items():
+    table, script = figure["tables"][:1], figure["script"]["file"]
+    stamped = options.new / table[0]["file"] if table else SOURCE / script
+    stamp = f"{sum_of(stamped)[:8]} · {version}"
+    picture = (options.new / figure["picture"]["file"]).read_text()
+    wanted(f">{stamp}</text>" in picture, f"figure {number}: its picture does not carry {stamp}")
+    text = cite("--figure", number)
+    wanted(rows(text, "stamp") == [stamp], f"figure {number}: stamp {rows(text, 'stamp')}, wanted {stamp}")
+    wanted(rows(text, "script") == [script], f"figure {number}: script")
+    wanted(rows(text, "scenes") == [each["file"] for each in figure["scenes"]], f"figure {number}: scenes")
+    wanted(not bibtex_problems(text), f"figure {number}: {bibtex_problems(text)}")
+    for typed in (stamp, stamp.upper(), stamp[:8], stamp[:8].upper(), f" {stamp[:8]}  {version} ", sum_of(stamped)):
+        wanted(cite("--stamp", typed) == text, f"--stamp {typed!r} does not say what --figure {number} says")
+    for other in figure["tables"][1:]:
+        text = cite("--stamp", other["sha256"][:8])
+        wanted(f"% Figure {number} of" in text and f"by the {other['engine']} engine" in text,
+               f"figure {number}: {other['engine']}")
+wanted(bibtex_problems("% a@b\n@misc{a,\n  title = {b}\n  note = {c}\n}\n"), "a faulty entry is not found out")
+
+# As in the folder of the sources: each command that is printed.
+tree = options.folder
+make_tree(tree, options.program.resolve())
+for typed in (("--figure", "5"), ("--figure", "A"), ("--stamp", figures["5"]["tables"][1]["sha256"][:8])):
+    text = cite(*typed)
+    for command in commands(text):
+        done = subprocess.run(command, cwd=tree, capture_output=True, text=True)
+        wanted(done.returncode == 0, f"{command}: {done.stdout}{done.stderr}")
+    [name] = rows(text, "picture")
+    made = tree / "build/figures" / Path(name).name if name.startswith("data/") else tree / name
+    wanted(f">{rows(text, 'stamp')[0]}</text>" in (made.read_text() if made.exists() else ""), f"{made}: its stamp")
+    if name.startswith("data/"):
+        wanted(made.exists() and made.read_bytes() == (options.new / name).read_bytes(), f"{name} is not made again")
+wanted(not list(tree.glob("build/figures/fig08.*")), "more than the figure asked for is made")
+
+for fault in faults:
+    print(fault)
+print(f"{len(figures)} figures, {len(faults)} faults")
+sys.exit(bool(faults))

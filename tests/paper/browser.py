@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+"""The report in a browser: what a reader sees, clicks and hears of it.
+
+    browser.py PAGE TABLES [SCREENSHOTS]
+
+PAGE is the report, TABLES the folder of the tables behind its figures. SCREENSHOTS, if given, is filled with pictures
+to look at. Exit codes: 1 a fault, 77 there is no Chromium.
+"""
+import json
+import re
+import sys
+import unittest
+from pathlib import Path
+
+import chromium
+
+PAGE, TABLES, SCREENSHOTS = None, None, None
+WIDTHS = {"phone": 390, "desk": 1280}
+FIGURES = ["A", "B", *map(str, range(1, 16))]
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of "rgb(r, g, b)", WCAG 2.1."""
+    parts = [float(part) / 255 for part in re.findall(r"[\d.]+", colour)[:3]]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    light, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.page = chromium.Page()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.page.__exit__()
+
+    def tearDown(self):
+        said, self.page.messages = self.page.messages, []
+        self.assertEqual(said, [], "the browser's console is empty")
+
+    def each_width(self):
+        for name, width in WIDTHS.items():
+            with self.subTest(name):
+                self.page.open(PAGE, width)
+                yield name
+
+    def test_it_asks_for_nothing_outside(self):
+        text = re.sub(r"<script>.*?</script>", "", PAGE.read_text(encoding="utf-8"), flags=re.S)
+        outside = re.findall(r"""(?:src|href|action|data)\s*=\s*["'](?!#|data:,)[^"']*|url\((?!#)[^)]*|@import[^;]*""", text)
+        self.assertEqual(outside, [])
+
+    def test_every_figure_is_drawn(self):
+        for _ in self.each_width():
+            drawn = self.page.does("""[...document.querySelectorAll("figure.plot")].map(figure => {
+              const box = figure.querySelector("svg").getBoundingClientRect();
+              return [figure.id, box.width, box.height, figure.querySelectorAll("svg path").length];
+            })""")
+            self.assertEqual(sorted(each[0] for each in drawn), sorted(f"figure-{number}" for number in FIGURES))
+            for name, width, height, paths in drawn:
+                self.assertGreater(width, 300, name)
+                self.assertGreater(height, 150, name)
+                self.assertGreater(paths, 10, name)
+        alike = self.page.does("""(() => {
+          const seen = new Set(), twice = [];
+          for (const {id} of document.querySelectorAll("[id]")) seen.has(id) ? twice.push(id) : seen.add(id);
+          return twice;
+        })()""")
+        self.assertEqual(alike, [], "no two things have one name")
+
+    def test_every_link_lands(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        lost = self.page.does("""[...document.querySelectorAll("a[href]")].map(a => a.getAttribute("href"))
+          .filter(href => !(href.startsWith("#") && document.getElementById(href.slice(1))))""")
+        self.assertEqual(lost, [])
+        self.assertGreater(self.page.does('document.querySelectorAll("a[href]").length'), 30)
+
+    def test_nothing_is_wider_than_the_window(self):
+        for name in self.each_width():
+            width = WIDTHS[name]  # a telephone's browser would widen the page, and with it innerWidth
+            self.assertEqual(self.page.does("document.documentElement.scrollWidth"), width)
+            wide = self.page.does(f"""[...document.querySelectorAll("main *")].filter(each =>
+              !each.closest(".wide, pre, svg, math") && each.getBoundingClientRect().right > {width} + 1)
+              .map(each => each.tagName + each.className)""")
+            self.assertEqual(wide, [])
+            if SCREENSHOTS:
+                self.page.screenshot(SCREENSHOTS / f"{name}.png")
+
+    def test_the_value_under_the_cursor_is_the_tables(self):
+        block = (TABLES / "fig08.dat").read_text(encoding="utf-8").split("# curve-2\n")[1].split("\n\n\n")[0]
+        rows = [tuple(map(float, line.split())) for line in block.split("\n") if line and line[0].isdigit()]
+        for name in self.each_width():
+            for amplitude, eta in (rows[50], rows[250], rows[-30]):
+                x, y = self.page.does(f"""(() => {{
+                  const svg = document.querySelector("#figure-8 svg");
+                  svg.scrollIntoView({{block: "center"}});
+                  const {{axes: [{{x, y}}]}} = JSON.parse(svg.querySelector("metadata").textContent);
+                  const part = ([, low, high], value) => Math.log(value / low) / Math.log(high / low);
+                  const at = new DOMPoint(x[3] + (x[4] - x[3]) * part(x, {amplitude}), svg.viewBox.baseVal.height
+                    - y[3] - (y[4] - y[3]) * part(y, {eta})).matrixTransform(svg.getScreenCTM());
+                  return [at.x, at.y];
+                }})()""")
+                self.page.moves(x, y)
+                told = self.page.does('document.querySelector("#figure-8 .reading").textContent')
+                found = re.fullmatch(r"ν = 2 %: A = ([\d.]+), η = ([\d.]+)", told)
+                self.assertTrue(found, told)
+                # A pixel of a phone is two hundredths of the ordinate's range, which is logarithmic over 2.9 decades.
+                self.assertAlmostEqual(float(found[1]) / amplitude, 1, delta=0.03)
+                self.assertAlmostEqual(float(found[2]) / eta, 1, delta=0.05)
+                box = self.page.does("""(() => {
+                  const {left, right} = document.querySelector("#figure-8 .reading").getBoundingClientRect();
+                  return [left, %d - right];
+                })()""" % WIDTHS[name])
+                self.assertGreaterEqual(min(box), 0, f"{name}: the value stands within the window")
+            if SCREENSHOTS and name == "desk":
+                self.page.screenshot(SCREENSHOTS / "hovered.png", "#figure-8")
+
+    def test_curves_are_switched(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='rgb(213,  94,   0)']")]
+          .map(each => getComputedStyle(each).visibility)"""
+        self.assertEqual(set(self.page.does(shown)), {"visible"})
+        button = '[...document.querySelectorAll("#figure-8 .switches button")].find(b => b.textContent === "ν = 4 %")'
+        self.page.does(f"{button}.click()")
+        self.assertEqual(set(self.page.does(shown)), {"hidden"})
+        self.assertEqual(self.page.does(f'{button}.getAttribute("aria-pressed")'), "false")
+        self.page.does(f"{button}.focus()")
+        self.page.call("Input.dispatchKeyEvent", type="keyDown", key="Enter", code="Enter", text="\r")
+        self.assertEqual(set(self.page.does(shown)), {"visible"}, "the keyboard brings it back")
+        switched = self.page.does("""[...document.querySelectorAll("figure.plot")].filter(f => f.querySelector(".switches"))
+          .map(f => f.id)""")
+        for number in range(4, 16):
+            self.assertIn(f"figure-{number}", switched)
+
+    def test_the_keyboard_reads_values(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        self.page.does('document.querySelector("#figure-8 svg").focus()')
+        reading = 'document.querySelector("#figure-8 .reading").textContent'
+        told = []
+        for key in ["ArrowRight"] * 30 + ["ArrowDown"]:
+            self.page.presses(key)
+            told.append(self.page.does(reading))
+        amplitudes = [float(re.search(r"A = ([\d.]+)", each)[1]) for each in told[:30]]
+        self.assertEqual(amplitudes, sorted(amplitudes))
+        self.assertGreater(amplitudes[-1], 2 * amplitudes[0])
+        self.assertNotEqual(told[-1].split(":")[0], told[-2].split(":")[0], "down goes to the next curve")
+
+    def test_claims_are_filtered_and_sorted(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        rows = """[...document.querySelectorAll(".claims tbody tr")].filter(row => !row.hidden)
+          .map(row => [...row.cells].map(cell => cell.textContent))"""
+        everything = self.page.does(rows)
+        for verdict in ("reproduced", "not reproduced", "corrected"):
+            self.page.does(f"""[...document.querySelectorAll(".claims .switches button")]
+              .find(b => b.textContent.match(/^\\d+ {verdict}$/)).click()""")
+            self.assertEqual(self.page.does(rows), [row for row in everything if row[-1] == verdict], verdict)
+        self.page.does('document.querySelector(".claims .switches button").click()')
+        heads = self.page.does('[...document.querySelectorAll(".claims th[scope=col]")].map(th => th.textContent)')
+        by_name = f'document.querySelectorAll(".claims th[scope=col] button")[{heads.index("name")}].click()'
+        self.page.does(by_name)
+        names = [row[0] for row in self.page.does(rows)]
+        self.assertEqual(len(names), len(everything))
+        self.assertEqual(names, sorted(names, key=str.lower))
+        self.page.does(by_name)
+        self.assertEqual([row[0] for row in self.page.does(rows)], names[::-1])
+        self.assertEqual(self.page.does('document.querySelector(".claims th[aria-sort]").getAttribute("aria-sort")'), "descending")
+        self.page.does(f'document.querySelectorAll(".claims th[scope=col] button")[{heads.index("ours")}].click()')
+        numbers = [float(found[0].replace("−", "-")) for row in self.page.does(rows)
+                   if (found := re.match(r"−?[\d.]+(e[−+-]?\d+)?", row[heads.index("ours")]))]
+        self.assertEqual(numbers, sorted(numbers))
+
+    def test_it_can_be_heard(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        nodes = self.page.call("Accessibility.getFullAXTree")["nodes"]
+        named = [(node["role"]["value"], node.get("name", {}).get("value", "")) for node in nodes if not node["ignored"]]
+        for role in ("image", "button", "link", "heading", "region"):
+            of_role = [name for each, name in named if each == role]
+            self.assertTrue(of_role, role)
+            self.assertTrue(all(of_role), f"every {role} has a name")
+        levels = self.page.does('[...document.querySelectorAll("h1, h2, h3, h4")].map(h => Number(h.tagName[1]))')
+        self.assertEqual(levels[0], 1)
+        self.assertEqual(levels.count(1), 1)
+        self.assertTrue(all(after <= before + 1 for before, after in zip(levels, levels[1:])), levels)
+        self.assertEqual(self.page.does('document.documentElement.lang'), "en-GB")
+        unscoped = self.page.does('[...document.querySelectorAll("main th:not([scope])")].map(th => th.textContent)')
+        self.assertEqual(unscoped, [])
+
+    def test_light_and_dark_can_be_read(self):
+        for scheme, ground in (("light", "white"), ("dark", "black")):
+            with self.subTest(scheme):
+                self.page.open(PAGE, WIDTHS["desk"], scheme)
+                back = self.page.does("getComputedStyle(document.body).backgroundColor")
+                self.assertEqual(luminance(back) > 0.5, ground == "white")
+                for what in ("p", ".pale", "a", "td.reproduced", "td.not-reproduced", "td.corrected", "figcaption"):
+                    colour = self.page.does(f'getComputedStyle(document.querySelector("main {what}")).color')
+                    self.assertGreater(contrast(colour, back), 4.5, what)
+                if SCREENSHOTS:
+                    for section in ("#figures", "#theory", ".claims"):
+                        self.page.screenshot(SCREENSHOTS / f"{scheme}-{section[1:]}.png", section)
+
+    def test_it_prints(self):
+        self.page.open(PAGE, 720, media="print")
+        for hidden in (".switches", "nav", ".reading"):
+            self.assertEqual(self.page.does(f'getComputedStyle(document.querySelector("{hidden}")).display'), "none")
+        self.assertEqual(self.page.does("document.documentElement.scrollWidth"), 720)
+        pdf = self.page.call("Page.printToPDF", transferMode="ReturnAsBase64")["data"]
+        self.assertGreater(len(pdf), 100_000)
+
+
+if __name__ == "__main__":
+    if not chromium.program():
+        print("skipped: Chromium is not here (Debian: chromium)")
+        sys.exit(77)
+    PAGE, TABLES = Path(sys.argv[1]), Path(sys.argv[2])
+    if len(sys.argv) > 3:
+        SCREENSHOTS = Path(sys.argv[3])
+        SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=[sys.argv[0]], verbosity=2)

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""The report's text and its numbers: none is typed, all follow the results, and equal results make equal bytes.
+
+    report.py BUILD VERDICTS FOLDER     FOLDER is for what is made here
+
+Exit codes: 1 a fault, 77 pandoc is not here.
+"""
+import json
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+TEXT = SOURCE / "paper/report/text.md"
+BUILD, VERDICTS, FOLDER = None, None, None
+
+
+def made(name: str, *options: str, verdicts: Path = None) -> Path:
+    """The folder of a report."""
+    out = FOLDER / name
+    subprocess.run([SOURCE / "paper/report/make.py", BUILD, "--verdicts", verdicts or VERDICTS, "--out", out, *options],
+                   check=True)
+    return out
+
+
+def typed(text: str) -> list:
+    """Numbers that stand in the text and are none of: a value's name, an equation's number, a year, part of a formula.
+    In a formula only whole numbers of one digit may stand, or it would be a value in disguise."""
+    text = re.sub(r"\{\{[^{}]*\}\}", "", text)
+    text = re.sub(r"[Ee]quations? \(\d+\)( (and|to) \(\d+\))?|SHA-256", "", text)
+    text = re.sub(r"\b(19|20)\d\d\b", "", text)
+    formulas = re.findall(r"\$\$.*?\$\$|\$[^$]*\$", text, re.S)
+    found = [number for formula in formulas for number in re.findall(r"\d+\.\d+|\d{2,}|\.\d+", formula)]
+    return found + re.findall(r"\d[\d.,]*", re.sub(r"\$\$.*?\$\$|\$[^$]*\$", "", text, flags=re.S))
+
+
+class TheText(unittest.TestCase):
+    def test_no_number_is_typed(self):
+        self.assertEqual(typed(TEXT.read_text(encoding="utf-8")), [])
+
+    def test_typed_numbers_are_found(self):
+        for fault in ("a loss of 0.339", "$\\nu = 0.02$", "$$A = 12$$", "31 percent", "in 3 runs", "the 10th"):
+            self.assertNotEqual(typed(fault), [], fault)
+        for admitted in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}"):
+            self.assertEqual(typed(admitted), [], admitted)
+
+
+class TheReport(unittest.TestCase):
+    def test_a_changed_value_changes_the_text(self):
+        before = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
+        verdicts = json.loads(Path(VERDICTS).read_text())
+        changed = next(each for each in verdicts["verdicts"] if each["claim"] == "product-mid-range")
+        said = f"{changed['ours']:.4g}"
+        changed["ours"], changed["verdict"] = 0.4321, "not reproduced"
+        other = FOLDER / "verdicts.json"
+        other.write_text(json.dumps(verdicts))
+        after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
+        sentence = r'here it is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
+        self.assertEqual(re.search(sentence, before)[1], said)
+        self.assertEqual(re.search(sentence, after)[1], "0.4321")
+        count = r'title="count.not-reproduced">(\d+)<'
+        self.assertEqual(int(re.search(count, after)[1]), int(re.search(count, before)[1]) + 1)
+        row = r'<tr id="claim-product-mid-range">.*?</tr>'
+        self.assertIn('class="not-reproduced"', re.search(row, after, re.S)[0])
+
+    def test_an_unknown_name_is_refused_and_nothing_is_written(self):
+        copy = FOLDER / "source"
+        shutil.rmtree(copy, ignore_errors=True)
+        for part in ("paper", "data", "figures", "bench/results"):
+            shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference"))
+        shutil.copy(SOURCE / "CMakeLists.txt", copy)
+        text = copy / "paper/report/text.md"
+        text.write_text(text.read_text(encoding="utf-8").replace("{{product-mid-range}}", "{{product-midrange}}"))
+        out = FOLDER / "refused"
+        shutil.rmtree(out, ignore_errors=True)
+        done = subprocess.run([copy / "paper/report/make.py", BUILD, "--html", "--verdicts", VERDICTS, "--out", out],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no value is called product-midrange, did you mean product-mid-range?", done.stderr)
+        self.assertEqual(list(out.iterdir()), [])
+
+    def test_equal_results_make_equal_bytes(self):
+        whole = [] if shutil.which("latexmk") else ["--html"]
+        first, second = (made(name, *whole) for name in ("first", "second"))
+        for file in ["report.html"] + ["report.pdf"] * (not whole):
+            self.assertEqual((first / file).read_bytes(), (second / file).read_bytes(), file)
+        if whole:
+            print("(no LaTeX here: the PDF is not compared)")
+
+
+if __name__ == "__main__":
+    if not shutil.which("pandoc"):
+        print("skipped: pandoc is not here")
+        sys.exit(77)
+    BUILD, VERDICTS, FOLDER = (Path(argument).resolve() for argument in sys.argv[1:4])
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
