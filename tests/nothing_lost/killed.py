@@ -179,7 +179,7 @@ def main():
                        "--history", "0:300:30000", "-o", "out.json"], ["out.json"]),
         victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "-o", "."], tables),
         victim("draw", [str(tree / "figures" / "draw"), script,
-                        str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig"],
+                        str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig", "0.0.0"],
                ["fig.svg", "fig.pdf", "fig.png"]),
         victim("verify", [program, "verify", "--claims", str(tree / "data" / "claims.json"), "--runs", runs,
                           "--members", "2", "-o", "verdicts.json", "--markdown", "claims.md"],

@@ -38,8 +38,11 @@ class Programs:
     def verify(self, *more):
         return [self.program, "verify", "--claims", self.claims, "--runs", self.runs, *more]
 
+    def report(self, *more):
+        return [self.program, "report", "--until-time", "10", "--members", "2", *more]
+
     def drawing(self, stem):
-        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem]
+        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, "0.0.0"]
 
     def refused(self, command, words, **more):
         """The command fails with exit code 5 and one line that holds the words."""
@@ -52,10 +55,10 @@ class Programs:
 
 
 def devices(p):
-    for command in (p.run("-o", "/dev/full"), p.series("--figure", "7", "-o", "/dev/full"),
+    for command in (p.run("-o", "/dev/full"), p.series("--figure", "7", "-o", "/dev/full"), p.report("-o", "/dev/full"),
                     p.verify("-o", "/dev/full"), p.verify("--markdown", "/dev/full")):
         p.refused(command, ["/dev/full: cannot be written", FULL])
-    to_stdout = [p.run(), p.series("--figure", "7"), p.verify(), [p.program, "scenes", str(p.tree / "data/scenes")],
+    to_stdout = [p.run(), p.series("--figure", "7"), p.verify(), p.report(), [p.program, "scenes", str(p.tree / "data/scenes")],
                  [p.program, "figures", p.catalogue], [p.program, "--help"], [p.program, "run", "--help"],
                  [p.program, "--version"]]
     with open("/dev/full", "w") as full:
@@ -94,10 +97,10 @@ def made_here(here, files):
 
 def small_disk(p, here):
     """Each command on disks of many sizes, so that it fails at each of the places where it can."""
-    wanted = {"run": ["out.json"], "series": ["fig07.dat"], "verify": ["verdicts.json"],
+    wanted = {"run": ["out.json"], "series": ["fig07.dat"], "verify": ["verdicts.json"], "report": ["page.html"],
               "draw": ["fig.svg", "fig.pdf", "fig.png"]}
     commands = {"run": p.run("-o", "out.json"), "series": p.series("--figure", "7", "-o", "fig07.dat"),
-                "verify": p.verify("-o", "verdicts.json"), "draw": p.drawing("./fig")}
+                "verify": p.verify("-o", "verdicts.json"), "report": p.report("-o", "page.html"), "draw": p.drawing("./fig")}
     for name, command in commands.items():
         mount(here, "16m")
         done = subprocess.run(command, cwd=here, capture_output=True, text=True)
@@ -142,7 +145,8 @@ def read_only_disk(p, here):
     for file, command in (("out.json", p.run("-o", "out.json")), ("new.json", p.run("-o", "new.json")),
                           ("fig07.dat", p.series("--figure", "7", "-o", "fig07.dat")),
                           ("fig07.dat", p.series("--figure", "7", "-o", ".")),
-                          ("verdicts.json", p.verify("-o", "verdicts.json")), ("./fig.", p.drawing("./fig"))):
+                          ("verdicts.json", p.verify("-o", "verdicts.json")),
+                          ("page.html", p.report("-o", "page.html")), ("./fig.", p.drawing("./fig"))):
         p.refused(command, [file, "cannot be written", READ_ONLY], cwd=here)
     p.check((here / "out.json").read_text() == "old\n", "a read-only file was changed")
     subprocess.run(["umount", str(here)], check=True)
@@ -181,7 +185,8 @@ def without_permission(p, here):
     here.chmod(0o755)
     if subprocess.run([*nobody, "ls", str(here)], capture_output=True).returncode != 0:
         return False
-    for name, command in (("out.json", p.run("-o", "out.json")), ("./fig.", p.drawing("./fig"))):
+    for name, command in (("out.json", p.run("-o", "out.json")), ("page.html", p.report("-o", "page.html")),
+                          ("./fig.", p.drawing("./fig"))):
         p.refused(nobody + command, [name, "cannot be written", DENIED], cwd=here)
     return True
 

@@ -8,6 +8,8 @@
 namespace impact_damper {
 namespace {
 
+constexpr const char* no_break = "\u00a0";  // a space at which no line ends
+
 std::string data_html(const std::string& exact, const std::string& shown) {
   return "<data value=\"" + exact + "\">" + shown + "</data>";
 }
@@ -63,12 +65,12 @@ std::string number_html(double value, int digits) {
 
 std::string count_html(std::int64_t count) { return data_html(std::to_string(count), std::to_string(count)); }
 
-std::string percent_html(double part) { return number_html(100 * part) + "&nbsp;%"; }
+std::string percent_html(double part) { return number_html(100 * part) + no_break + "%"; }
 
 std::string Speech::both(double value, double scale, std::string_view unit, std::string_view by) const {
-  const std::string plain = number_html(value) + "&nbsp;" + std::string(by);
+  const std::string plain = number_html(value) + no_break + std::string(by);
   if (!scales_) return plain;
-  return number_html(value * scale) + "&nbsp;" + std::string(unit) + " (" + plain + ')';
+  return number_html(value * scale) + no_break + std::string(unit) + " (" + plain + ')';
 }
 
 std::string Speech::length(double value) const {
@@ -76,9 +78,9 @@ std::string Speech::length(double value) const {
 }
 
 std::string Speech::time(double value) const {
-  const std::string periods = number_html(value / (2 * std::numbers::pi)) + "&nbsp;periods";
+  const std::string periods = number_html(value / (2 * std::numbers::pi)) + no_break + "periods";
   if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
-  return number_html(value * scales_->time()) + "&nbsp;s (" + periods + ')';
+  return number_html(value * scales_->time()) + no_break + "s (" + periods + ')';
 }
 
 std::string Speech::velocity(double value) const {
