@@ -66,6 +66,7 @@ Ended run(std::vector<std::string> words) {
   std::array<int, 2> channel{};
   if (::pipe2(channel.data(), O_CLOEXEC) != 0) throw IoError("a pipe: " + std::string(std::strerror(errno)));
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::string svg_only = "SVG_ONLY=1";

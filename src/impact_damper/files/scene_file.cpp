@@ -19,7 +19,7 @@ GivenKeys given_keys(const ObjectReader& object) {
     if (object.holds(key)) list += (list.empty() ? "" : ", ") + std::string(key);
   };
   const auto is_in_both = [](std::string_view name) {
-    const auto field = std::ranges::find(unit_fields, name, &UnitField::name);
+    const auto* const field = std::ranges::find(unit_fields, name, &UnitField::name);
     return field != unit_fields.end() && field->also_dimensionless;
   };
   for (const UnitField& field : unit_fields)

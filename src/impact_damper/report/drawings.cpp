@@ -11,7 +11,7 @@
 namespace impact_damper {
 namespace {
 
-constexpr std::size_t least_rows = 3, most_rows_drawn = 4000;
+constexpr std::size_t least_points = 3, most_rows_drawn = 4000;
 
 bool is_there(const Table& table, std::string_view block) {
   return std::ranges::find(table.blocks, block, &TableBlock::name) != table.blocks.end();
@@ -58,7 +58,7 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
 
 std::optional<Drawing> decay(const Findings& findings) {
   const HalfCycles& rows = *findings.run.half_cycles;
-  if (rows.amplitude.size() < least_rows) return std::nullopt;
+  if (rows.amplitude.size() < least_points) return std::nullopt;
   Drawing drawing =
       drawing_of(findings, "decay", findings.forced() ? "Amplitude over time" : "Decay of the amplitude");
   drawing.table.blocks.push_back(
@@ -107,7 +107,7 @@ std::optional<Drawing> loss(const Findings& findings) {
   const std::size_t before = drawing.table.blocks.size();
   add_loss_theory_blocks(figure, {&source}, drawing.table);
   for (std::size_t i = before; i < drawing.table.blocks.size(); ++i) {
-    drawing.table.blocks[i].notes.push_back("2 zeta is put on it");
+    drawing.table.blocks[i].notes.emplace_back("2 zeta is put on it");
     for (double& eta : drawing.table.blocks[i].columns[1].values) eta += viscous;
   }
   return drawing;
@@ -131,7 +131,7 @@ std::optional<Drawing> motion(const Findings& findings, const std::optional<Moti
 }
 
 std::optional<Drawing> prediction(const Findings& findings) {
-  if (findings.others.empty() || findings.spread.size() < least_rows) return std::nullopt;
+  if (findings.others.empty() || findings.spread.size() < least_points) return std::nullopt;
   Drawing drawing = drawing_of(findings, "prediction", "How far releases part");
   TableBlock curve{.name = "curve",
                    .columns = {{"time", "time of the peak, by 1/Omega_n", {}},
@@ -142,7 +142,7 @@ std::optional<Drawing> prediction(const Findings& findings) {
     curve.columns[0].values.push_back(findings.run.half_cycles->peak_time[row]);
     curve.columns[1].values.push_back(100 * findings.spread[row]);
   }
-  if (curve.columns[0].values.size() < least_rows) return std::nullopt;
+  if (curve.columns[0].values.size() < least_points) return std::nullopt;
   drawing.table.blocks.push_back(std::move(curve));
   return drawing;
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double two_periods = 4 * std::numbers::pi;
 constexpr std::int64_t window_samples = 1001;
-constexpr std::size_t least_rows = 12;  // two rows of the averaged loss factor
+constexpr std::size_t least_half_cycles = 12;  // two rows of the averaged loss factor
 
 // The amplitude that falls are counted from: a release on the way out has no height in its first row.
 std::optional<std::size_t> first_row(const HalfCycles& rows) {
@@ -85,7 +85,7 @@ void find_best_damping(Findings& findings) {
 
 void find_steady_state(Findings& findings) {
   const std::vector<double>& all = findings.run.half_cycles->amplitude;
-  if (all.size() < least_rows) return;
+  if (all.size() < least_half_cycles) return;
   const std::vector<double> last(all.end() - static_cast<std::ptrdiff_t>(all.size() / 4), all.end());
   const auto [least, greatest] = std::ranges::minmax(last);
   const double mean = std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size());

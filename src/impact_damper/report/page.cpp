@@ -38,13 +38,13 @@ std::string caption_of(const std::string& name) {
 std::string inline_svg(const std::string& svg, const std::string& title, const std::string& caption) {
   const std::size_t begin = svg.find("<svg");
   if (begin == std::string::npos) throw std::invalid_argument("a picture must be an SVG");
-  return "<svg role=\"img\" aria-label=\"" + escaped(title + ". " + caption) + '"' + svg.substr(begin + 4);
+  return R"(<svg role="img" aria-label=")" + escaped(title + ". " + caption) + '"' + svg.substr(begin + 4);
 }
 
 std::string figure_html(const Drawing& drawing, const std::string& svg) {
   std::string caption = caption_of(drawing.name);
   if (drawing.every > 1) caption += " One of every " + std::to_string(drawing.every) + " is drawn.";
-  return "<figure class=\"plot\" id=\"figure-" + drawing.name + "\"><div class=\"drawing\">\n" +
+  return R"(<figure class="plot" id="figure-)" + drawing.name + "\"><div class=\"drawing\">\n" +
          inline_svg(svg, drawing.title, caption) + "</div><figcaption>" + drawing.title + ". " + caption +
          "</figcaption></figure>\n";
 }

@@ -10,8 +10,6 @@
 namespace impact_damper {
 namespace {
 
-std::string paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
-
 std::string part_in_words(double part) {
   return part == 0.5 ? "half" : part == 0.1 ? "a tenth" : "a hundredth";
 }
@@ -73,14 +71,15 @@ std::string falls_table(const Findings& findings) {
       .caption = "When the amplitude first was below a part of the first one, counted from the first peak",
       .heads = {"Below", "that is", "within"},
       .rows = {}};
-  if (!findings.others.empty()) table.heads.push_back("of all releases");
+  if (!findings.others.empty()) table.heads.emplace_back("of all releases");
   const auto since = [&](double time) { return speech.time(time - findings.first_peak); };
   for (const Fall& fall : findings.falls) {
     table.rows.push_back({part_in_words(fall.part), speech.length(fall.amplitude), since(fall.time)});
     if (findings.others.empty()) continue;
     const std::string low = fall.times ? since(fall.times->low) : "not all get there",
                       high = fall.times ? since(fall.times->high) : low;
-    table.rows.back().push_back(shown(low) == shown(high) ? high : low + " to " + high);
+    std::string& range = table.rows.back().emplace_back(low);
+    if (shown(low) != shown(high)) range.append(" to ").append(high);
   }
   return table_html(table);
 }
@@ -127,7 +126,7 @@ std::string theory_sentences(const Findings& findings) {
 std::string summary_html(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (!findings.first_amplitude)
-    return paragraph(
+    return paragraph_html(
         "The primary mass never swings through its position of rest within this run, so there is no "
         "amplitude to speak "
         "of: only its motion and its energy are shown.");
@@ -145,23 +144,24 @@ std::string summary_html(const Findings& findings) {
     text += "There is no impact at all.";
   else if (lost > 0)
     text += "Impacts took " + percent_html(impacts / lost) + " of the energy that was lost.";
-  return paragraph(text);
+  return paragraph_html(text);
 }
 
 std::string decay_html(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (!findings.first_amplitude)
-    return paragraph("The run holds not one whole half cycle: there is no amplitude to follow.");
-  if (findings.forced()) return paragraph(steady_sentences(findings));
+    return paragraph_html("The run holds not one whole half cycle: there is no amplitude to follow.");
+  if (findings.forced()) return paragraph_html(steady_sentences(findings));
   const double time = findings.last_peak - findings.first_peak;
   const double fallen = *findings.first_amplitude / findings.last_amplitude;
   std::string html =
       !findings.falls.empty()
           ? falls_table(findings)
-          : paragraph("Within this run the amplitude does not fall to half of its first value; it ends at " +
-                      speech.length(findings.last_amplitude) + ", " + percent_html(1 / fallen) + " of it.");
+          : paragraph_html(
+                "Within this run the amplitude does not fall to half of its first value; it ends at " +
+                speech.length(findings.last_amplitude) + ", " + percent_html(1 / fallen) + " of it.");
   if (time > 0 && std::isfinite(fallen) && fallen > 1)
-    html += paragraph(
+    html += paragraph_html(
         "Over the whole run the amplitude fell as that of an oscillator with a viscous damping ratio of " +
         percent_html(logarithm(fallen) / time) + " would have" +
         (findings.best ? "; but impacts do not damp evenly, as the next section shows." : "."));
@@ -170,20 +170,22 @@ std::string decay_html(const Findings& findings) {
 
 std::string loss_html(const Findings& findings) {
   if (findings.forced())
-    return paragraph(
+    return paragraph_html(
         "A loss factor is read off a free decay. This motion is forced: see its amplitudes above, and its "
         "energy below.");
-  if (!findings.first_amplitude) return paragraph("Without half cycles there is no loss factor to read off.");
-  if (findings.best) return paragraph(best_sentences(findings)) + paragraph(theory_sentences(findings));
+  if (!findings.first_amplitude)
+    return paragraph_html("Without half cycles there is no loss factor to read off.");
+  if (findings.best)
+    return paragraph_html(best_sentences(findings)) + paragraph_html(theory_sentences(findings));
   const Scene& scene = findings.subject.scene;
   if (findings.run.impacts->time.empty())
-    return paragraph("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
-                     number_html(2 * scene.damping_ratio) + ", at every amplitude.");
+    return paragraph_html("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
+                          number_html(2 * scene.damping_ratio) + ", at every amplitude.");
   if (findings.loss.eta.empty())
-    return paragraph(
+    return paragraph_html(
         "The loss factor is averaged over " + count_html(LossFactorOptions{}.half_cycles) +
         " half cycles, and this run is too short for that: let it go further, by a later or a lower stop.");
-  return paragraph(
+  return paragraph_html(
       scene.restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
           : "The amplitude does not fall: there is no loss factor to speak of.");
@@ -197,7 +199,7 @@ std::string energy_html(const Findings& findings) {
   HtmlTable table{.caption = "The energy of both masses, from the beginning to the end of the run",
                   .heads = {"What"},
                   .rows = {}};
-  if (scales) table.heads.push_back("J");
+  if (scales) table.heads.emplace_back("J");
   table.heads.insert(table.heads.end(), {"by Kε²", "share"});
   const auto row = [&](const std::string& what, double energy) {
     table.rows.push_back({what});
@@ -218,28 +220,29 @@ std::string energy_html(const Findings& findings) {
                 ? ", which took " + percent_html(impacts / brought) + " of the energy. "
                 : ". ";
   }
-  return table_html(table) + paragraph(text + "What is left over when all are added up is " +
-                                       number_html(ledger.residual) + " of what went through: rounding.");
+  return table_html(table) +
+         paragraph_html(text + "What is left over when all are added up is " + number_html(ledger.residual) +
+                        " of what went through: rounding.");
 }
 
 std::string prediction_html(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (findings.others.empty())
-    return paragraph(
+    return paragraph_html(
         "Only one release was simulated (<code>--members 1</code>), so nothing can be said about how far "
         "small "
         "differences grow.");
-  if (findings.spread.empty()) return paragraph("There is no amplitude whose spread could be told.");
+  if (findings.spread.empty()) return paragraph_html("There is no amplitude whose spread could be told.");
   const EnsembleOptions shifts;
   const std::string text = count_html(std::ssize(findings.others) + 1) + " releases that differ by at most " +
                            number_html(100 * shifts.step * static_cast<double>(shifts.most_steps)) +
                            " % were followed. ";
   const double greatest = std::ranges::max(findings.spread), last = findings.spread.back();
   if (!findings.lost_row)
-    return paragraph(text + "Their amplitudes never part by more than " + percent_html(greatest) +
-                     ": within this run the motion can be predicted.");
+    return paragraph_html(text + "Their amplitudes never part by more than " + percent_html(greatest) +
+                          ": within this run the motion can be predicted.");
   const HalfCycles& rows = *findings.run.half_cycles;
-  return paragraph(
+  return paragraph_html(
       text + "Up to an amplitude of " + speech.length(rows.amplitude[*findings.lost_row]) + ", " +
       speech.time(rows.peak_time[*findings.lost_row]) + " after the release, they agree within " +
       percent_html(lost_spread) +

@@ -8,8 +8,6 @@
 namespace impact_damper {
 namespace {
 
-std::string paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
-
 std::string impacts_in_words(std::int64_t impacts) {
   return count_html(impacts) + (impacts == 1 ? " impact" : " impacts") + " in every half cycle";
 }
@@ -35,8 +33,8 @@ std::string regime_table(const Findings& findings) {
 std::string sticking_sentence(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (!(findings.stuck_time > 0)) return "The loose mass never sticks to a wall. ";
-  const std::string share = "The loose mass is stuck to a wall for " +
-                            percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
+  std::string share = "The loose mass is stuck to a wall for " +
+                      percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
   if (findings.forced()) return share;
   if (findings.sticking_ends)
     return share + "Down to an amplitude of " + speech.length(*findings.sticking_ends) +
@@ -67,17 +65,17 @@ std::string failure_sentence(const Findings& findings) {
 
 std::string regimes_html(const Findings& findings) {
   if (!findings.first_amplitude)
-    return paragraph("Without half cycles there are no regimes to tell apart; " +
-                     count_html(std::ssize(findings.run.impacts->time)) + " impacts were counted.");
+    return paragraph_html("Without half cycles there are no regimes to tell apart; " +
+                          count_html(std::ssize(findings.run.impacts->time)) + " impacts were counted.");
   if (findings.run.impacts->time.empty())
-    return paragraph(
+    return paragraph_html(
         "The loose mass never strikes a wall: the primary mass moves too little for that, or too slowly.");
   std::string text = sticking_sentence(findings) + "There are up to " + count_html(findings.most_impacts) +
                      (findings.most_impacts == 1 ? " impact" : " impacts") + " in one half cycle. ";
   if (findings.windows.empty())
     text += "Their number is nowhere the same for " + count_html(RegimeOptions{}.window_half_cycles) +
             " half cycles in a row. ";
-  return paragraph(text + failure_sentence(findings)) + regime_table(findings);
+  return paragraph_html(text + failure_sentence(findings)) + regime_table(findings);
 }
 
 }  // namespace impact_damper

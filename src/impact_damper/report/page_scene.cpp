@@ -31,8 +31,8 @@ class SceneTable {
   std::string html(const std::string& caption) {
     table_.caption = caption;
     table_.heads = {"Quantity"};
-    if (scales_) table_.heads.push_back("In units");
-    table_.heads.push_back("Dimensionless");
+    if (scales_) table_.heads.emplace_back("In units");
+    table_.heads.emplace_back("Dimensionless");
     return table_html(table_);
   }
 

@@ -68,7 +68,7 @@ std::string count_html(std::int64_t count) { return data_html(std::to_string(cou
 std::string percent_html(double part) { return number_html(100 * part) + no_break + "%"; }
 
 std::string Speech::both(double value, double scale, std::string_view unit, std::string_view by) const {
-  const std::string plain = number_html(value) + no_break + std::string(by);
+  std::string plain = number_html(value) + no_break + std::string(by);
   if (!scales_) return plain;
   return number_html(value * scale) + no_break + std::string(unit) + " (" + plain + ')';
 }
@@ -90,6 +90,8 @@ std::string Speech::velocity(double value) const {
 std::string Speech::energy(double value) const {
   return both(value, scales_ ? scales_->energy() : 1, "J", "Kε²");
 }
+
+std::string paragraph_html(const std::string& text) { return "<p>" + text + "</p>\n"; }
 
 std::string table_html(const HtmlTable& table) {
   std::string html = "<div class=\"wide\"><table>\n<caption>" + table.caption + "</caption>\n<thead><tr>";

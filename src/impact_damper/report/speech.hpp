@@ -37,6 +37,8 @@ class Speech {
   std::optional<Scales> scales_;
 };
 
+std::string paragraph_html(const std::string& text);
+
 // A table with a caption; the first column heads its rows. Cells are HTML.
 struct HtmlTable {
   std::string caption;
