@@ -17,15 +17,17 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
   gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
 CHECK_PACKAGES := git python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev locales \
-  clang-tidy cppcheck gcovr valgrind
+  clang-tidy cppcheck gcovr valgrind pandoc chromium
+# What the report is made of, and what its PDF is set with.
+PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bench deps-check build figures verify test bench bench-record stress stress-results check \
-  fuzz kills lint sanitize coverage mutation same-bits reference archive clean
+.PHONY: help deps deps-bench deps-check deps-paper build figures verify paper test bench bench-record stress \
+  stress-results check fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -66,6 +68,9 @@ deps-bench:  ## the same for the bench: its peers and its higher precision
 	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
 	@$(alone) rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
 
+deps-paper:  ## the same for the report: make deps-paper paper
+	@$(call install,$(PACKAGES) $(PAPER_PACKAGES))
+
 # What comes first in a recipe that works in $(BUILD): one at a time in this folder, also where a killed one's
 # children still work. The lock goes with the last process that inherits descriptor 9. Where it is held, no make
 # may be called for the same folder: it would wait for the one that waits for it.
@@ -100,6 +105,12 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	@$(alone) cmake --build $(BUILD) --target runs-$(ENGINE) -- --quiet || exit; \
 	$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
+
+paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
+	@$(alone) cmake --build $(BUILD) --target figures-exact -- --quiet && \
+	$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts-exact.json \
+	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
+	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
 test: build  ## run every test
 	@$(alone) ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)

@@ -343,6 +343,41 @@ TEST_CASE("an impact, its wall, time and speed are where a mass in uniform fligh
   }
 }
 
+TEST_CASE("not located, a step from one wall through to beyond the other is an impact of the other") {
+  // A lossless wall with omega_m h = 1, and a mass so light that nothing else moves: beside the wall, as far
+  // as it is overlapped, u_{n+1} = u_n - u_{n-1}. What comes with steps of s = 4 and overlaps by d, goes on
+  // to s, s - d and -d: three steps on it stands as deep in the gap as it was in the wall, and as fast. The
+  // gap is 1, so the other wall is overlapped by d - 1 at once, until the fourth contact (d = 0.5) ends
+  // inside the gap.
+  constexpr double h = 0x1p-20;
+  constexpr int period = 13, periods = 10;
+  const Scene scene{.mass_ratio = h * h,
+                    .restitution = 1,
+                    .wall_stiffness = 1,
+                    .x0 = 0,
+                    .y0 = 0.5,
+                    .w0 = -4 / h,
+                    .until_time = periods * period * h};
+  const Run run = simulated(
+      scene, {.time_step = h},
+      {.impacts = true, .contacts = true, .history = {{0, *scene.until_time, periods * period + 1}}});
+  const std::array<double, period> y{0.5, -3.5, -4, -0.5, 3.5, 5, 2.5, -1.5, -4, -2.5, 1.5, 5, 4.5};
+  // An impact gives the primary mass 2 nu w = 8 h, which in 130 steps could take it 1e-9 away.
+  REQUIRE(run.history->y.size() == periods * period + 1);
+  for (int n = 0; n <= periods * period; ++n) {
+    CHECK(run.history->y[n] == doctest::Approx(y[n % period]).epsilon(1e-9));
+  }
+  REQUIRE(run.impacts->time.size() == 4 * periods);
+  REQUIRE(run.contacts->begin.size() == 4 * periods);
+  for (int i = 0; i < 4 * periods; ++i) {
+    CHECK(run.impacts->wall[i] == (i % 2 ? Wall::right : Wall::left));
+    // In the step that ends beyond the wall: numbers 1, 4, 7 and 10 of a period.
+    CHECK(std::ceil(run.impacts->time[i] / h) == period * (i / 4) + 1 + 3 * (i % 4));
+    // From the last contact of a period a step in the gap leads to the next.
+    if (i % 4) CHECK(run.impacts->time[i] == run.contacts->end[i - 1]);
+  }
+}
+
 TEST_CASE("a mass pressed to the wall at the start is in contact but makes no impact") {
   for (bool locate : {false, true}) {
     Scene scene{.x0 = -3, .until_time = 1};  // y'' = x < 0

@@ -53,8 +53,6 @@ def picture_html(svg: str, name: str, words: str) -> str:
 
 
 class Html:
-    name = "html"
-
     def __init__(self, values: Values):
         self.values = values
 
@@ -108,10 +106,9 @@ class Html:
 
 
 class Latex:
-    name = "latex"
-
     def __init__(self, values: Values):
         self.values = values
+        self.pictures = []  # SVG files that are wanted as PDF
 
     def value(self, name: str, text: str) -> str:
         return text
@@ -132,6 +129,7 @@ class Latex:
 {values.stamps[number]}~· {values.version}}}{{{rows}}}""")
 
     def picture(self, file: Path, words: str) -> str:
+        self.pictures.append(file)
         return raw("latex", rf"\widepicture{{{file.stem}.pdf}}{{{latex(words)}}}")
 
     def claims(self) -> str:

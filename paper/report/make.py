@@ -63,7 +63,7 @@ def html_of(text: str, values: Values) -> str:
         frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
     page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
                      "--shift-heading-level-by=1", "--toc-depth=3")
-    return re.sub("<th(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
+    return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
 def pdf_of(text: str, values: Values) -> bytes:
@@ -72,9 +72,10 @@ def pdf_of(text: str, values: Values) -> bytes:
     environment = dict(os.environ, SOURCE_DATE_EPOCH=values.state["seconds"], FORCE_SOURCE_DATE="1", TZ="UTC", LC_ALL="C.UTF-8")
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        for svg in (SOURCE / "bench/results").glob("*.svg"):
+        form = Latex(values)
+        (work / "report.tex").write_text(converted(filled(text, values, form), "latex", frame, values))
+        for svg in form.pictures:
             called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
-        (work / "report.tex").write_text(converted(filled(text, values, Latex(values)), "latex", frame, values))
         command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
         if not shutil.which(command[0]):
             raise Mistake("latexmk is not installed: make deps-paper")

@@ -8,7 +8,8 @@ counting, picking and comparing; all come from what the program made:
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
     figNN.BLOCK.N.peak      column N where column 2 is greatest
     bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
-    study.NAME              percent of time saved, by a run of studies.json against its base; study.NAME.command
+    study.NAME              percent of time saved, by a run of studies.json against its base, on the way to the
+                            amplitude study.until
     stamp.NUMBER, version, commit, date, year
 
 {{NAME|3}} writes three significant digits, {{NAME|%}} a hundred times the value.
@@ -80,10 +81,9 @@ def studies(source: Path, program: Path) -> dict:
         return float(re.search(r'"end_time": ([^,]*),', done.stdout)[1])
 
     base = run(file["base"])
-    values = {"study.base": base}
+    values = {"study.until": float(file["common"][file["common"].index("--until-amplitude") + 1])}
     for study in file["studies"]:
         values[f"study.{study['name']}"] = 100 * (1 - run(study["arguments"]) / base)
-        values[f"study.{study['name']}.command"] = " ".join(["impact-damper run", *file["common"], *study["arguments"]])
     return values
 
 
