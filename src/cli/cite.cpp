@@ -51,9 +51,9 @@ std::string entries(const Manifest& manifest, const std::string& note) {
 std::string labelled(std::string_view label, const std::vector<std::string>& values) {
   std::string lines;
   for (const std::string& value : values) {
-    std::string head(lines.empty() ? label : "");
-    head.resize(9, ' ');
-    lines += comment("  " + head + value);
+    std::string line = "  " + std::string(lines.empty() ? label : "");
+    line.resize(11, ' ');
+    lines += comment(line += value);
   }
   return lines;
 }

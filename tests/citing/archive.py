@@ -141,6 +141,15 @@ done = run(COPY / "paper/archive", BUILD, HOME=str(FOLDER))
 wanted(done.returncode == 1 and "report.pdf is missing: make paper" in done.stderr, f"no report: {done.stderr}")
 wanted(first.read_bytes() == bytes_of_first, "a refusal has changed the archive")
 
+# Without room: the old one stays, nothing unfinished, not even of a process that was killed.
+(BUILD / "paper/report.pdf").write_text("another report\n")
+(BUILD / f".{name}.999999999.tmp.gz").write_text("abandoned")
+done = run("sh", "-c", f"ulimit -f 1000; exec {COPY}/paper/archive {BUILD}", HOME=str(FOLDER))
+wanted(done.returncode == 5 and "cannot be written" in done.stderr, f"no room: exit code {done.returncode}: {done.stderr}")
+left = sorted(path.name for path in BUILD.iterdir())
+wanted(left == sorted([first.name, "paper", "unpacked"]), f"left without room: {left}")
+wanted(first.read_bytes() == bytes_of_first, "without room the archive is changed")
+
 # These checks, against what is faulty.
 (unpacked / "figures/fig08.gp").write_text("\n")
 wanted(listed_problems(unpacked) == ["figures/fig08.gp is not as the manifest says"], "a changed script is not found out")
