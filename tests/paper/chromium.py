@@ -108,10 +108,13 @@ class Page:
         for what in ("rawKeyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=what, key=key, code=key)
 
-    def screenshot(self, file: Path):
-        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        picture = self.call("Page.captureScreenshot", captureBeyondViewport=True,
-                            clip={"x": 0, "y": 0, "width": size["width"], "height": min(size["height"], 16000), "scale": 1})
+    def screenshot(self, file: Path, of: str = "body"):
+        """A picture of what a selector names, as much of it as the browser can draw at once."""
+        box = self.does(f"""(() => {{
+          const {{left, top, width, height}} = document.querySelector("{of}").getBoundingClientRect();
+          return {{x: left + scrollX, y: top + scrollY, width, height: Math.min(height, 16000)}};
+        }})()""")
+        picture = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip={**box, "scale": 1})
         file.write_bytes(base64.b64decode(picture["data"]))
 
 
