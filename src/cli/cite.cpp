@@ -66,23 +66,26 @@ std::string stamp_of(const Stamped& stamped) {
 std::string made_from(const Manifest& manifest, const Stamped& stamped) {
   const CitedFigure& figure = *stamped.figure;
   const CitedTable* const table = stamped.table;
-  const bool as_published = !table || table == figure.tables.data();
   std::vector<std::string> scenes;
   for (const CitedFile& scene : figure.scenes) scenes.push_back(scene.file);
   const std::string picture = std::filesystem::path(figure.picture.file).filename().string();
-  const std::string folder = as_published ? "figures/" : "figures/" + table->engine + "/";
+  std::string shown = figure.picture.file, target = "figures/" + picture;
+  if (table && table != figure.tables.data()) {  // another engine's, which is not published
+    target = "figures/" + table->engine + "/" + picture;
+    shown = "build/" + target;
+  }
 
   std::string text = comment("Figure " + figure.number + " of " + manifest.title + " " + manifest.version +
                              ": " + figure.title);
   text += labelled("stamp", {stamp_of(stamped)});
-  text += labelled("picture", {as_published ? figure.picture.file : "build/" + folder + picture});
+  text += labelled("picture", {shown});
   if (table) text += labelled("table", {table->content.file, "by the " + table->engine + " engine"});
   text += labelled("script", {figure.script.file});
   text += labelled(
       "SHA-256", {table ? table->content.sha256 + " of the table" : figure.script.sha256 + " of the script"});
   text += labelled("scenes", scenes);
   text += labelled("claims", figure.claims);
-  text += labelled("made by", {"cmake --preset release", "cmake --build build --target " + folder + picture});
+  text += labelled("made by", {"cmake --preset release", "cmake --build build --target " + target});
   return text;
 }
 
