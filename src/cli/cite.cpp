@@ -97,15 +97,13 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
     for (const CitedTable& table : figure.tables)
       known.push_back(std::string_view(table.content.sha256).substr(0, 8));
   }
-  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version +
-                     ", got " + in_quotes(stamp.digits) +
-                     (stamp.version ? " of version " + *stamp.version : "");
+  const bool of_another = stamp.version && *stamp.version != manifest.version;
+  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version;
+  text += of_another ? " (version " + *stamp.version + " has a manifest of its own), got "
+                     : " (what was drawn from other data, such as one's own scene, is in none), got ";
+  text += in_quotes(stamp.digits);
+  if (of_another) text += " of version " + *stamp.version;
   if (const auto meant = nearest(stamp.digits, known)) text += ", did you mean " + std::string(*meant) + "?";
-  if (stamp.version && *stamp.version != manifest.version) {
-    text += "; version " + *stamp.version + " has a manifest of its own";
-  } else {
-    text += "; what was drawn from other data, such as one's own scene, is in no manifest";
-  }
   return text;
 }
 
