@@ -16,7 +16,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
   gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git python3 python3-jsonschema clang llvm lld libclang-rt-14-dev locales \
+CHECK_PACKAGES := git python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev locales \
   clang-tidy cppcheck gcovr valgrind pandoc chromium
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
@@ -27,7 +27,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bench deps-check deps-paper build figures verify paper test bench bench-record stress \
-  stress-results check fuzz kills lint sanitize coverage mutation same-bits reference clean
+  stress-results check fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -156,6 +156,11 @@ same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in st
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)
+
+archive:  ## write what is deposited: sources, reference data, figures and report, as they are committed
+	@paper/archive
+	@$(MAKE) --no-print-directory paper
+	@$(alone) paper/archive $(BUILD)
 
 clean:  ## remove all that was built
 	@$(alone) rm -rf $(BUILD)

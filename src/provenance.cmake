@@ -1,6 +1,12 @@
 # Writes OUTPUT from INPUT with the commit filled in. Run at every build, because the commit changes without
 # CMake being run; the file is only touched when its content changes, so an unchanged build stays idle.
 set(commit unknown)
+# git writes the commit here when it makes an archive, which has no other sign of it (.gitattributes). What was changed
+# after unpacking cannot be told.
+set(archived "$Format:%H$")
+if(archived MATCHES "^[0-9a-f]+$")
+  string(SUBSTRING ${archived} 0 12 commit)
+endif()
 find_program(git git)
 if(git)
   # The folder above may be another project's repository: only the source's own commit counts.

@@ -18,7 +18,6 @@ import datetime
 import difflib
 import hashlib
 import json
-import os
 import re
 import subprocess
 from pathlib import Path
@@ -60,14 +59,21 @@ def git(source: Path, *arguments: str) -> str:
     return done.stdout.strip() if done.returncode == 0 else ""
 
 
-def state_of(source: Path) -> dict:
-    """Commit and its date; SOURCE_DATE_EPOCH where there is no repository, as in an unpacked archive."""
+# git writes the time of the commit here when it makes an archive (.gitattributes).
+ARCHIVED = "$Format:%ct$"
+
+
+def state_of(source: Path, program: Path) -> dict:
+    """Commit and its date. Without a repository, as in an unpacked archive, the program knows the one and this file
+    the other."""
     commit, seconds = git(source, "rev-parse", "--short=12", "HEAD"), git(source, "log", "-1", "--format=%ct")
-    if commit and git(source, "status", "--porcelain"):
+    if git(source, "rev-parse", "--show-toplevel") != str(source):
+        said = subprocess.run([program, "--version"], capture_output=True, text=True).stdout
+        commit, seconds = re.search(r"\((.*)\)", said)[1], ARCHIVED if ARCHIVED.isdigit() else "0"
+    elif git(source, "status", "--porcelain"):
         commit += " with changes"
-    moment = datetime.datetime.fromtimestamp(int(seconds or os.environ.get("SOURCE_DATE_EPOCH", 0)), datetime.timezone.utc)
-    return {"commit": commit or "unknown", "date": moment.strftime("%Y-%m-%d"), "year": moment.strftime("%Y"),
-            "seconds": str(int(moment.timestamp()))}
+    moment = datetime.datetime.fromtimestamp(int(seconds), datetime.timezone.utc)
+    return {"commit": commit, "date": moment.strftime("%Y-%m-%d"), "year": moment.strftime("%Y"), "seconds": seconds}
 
 
 def studies(source: Path, program: Path) -> dict:
@@ -103,7 +109,7 @@ class Values:
         self.figures = {each["figure"]: each for each in self.catalogue["figures"]}
         self.bench = read(source / "bench/results/bench.json")
         self.tables, self.stamps = {}, {}
-        self.state = state_of(source)
+        self.state = state_of(source, build / "src/impact-damper")
         self.version = re.search(r"project\(impact-damper VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]
         self.known = {"version": self.version, **{name: self.state[name] for name in ("commit", "date", "year")}}
         self.used = set()

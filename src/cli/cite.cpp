@@ -51,9 +51,9 @@ std::string entries(const Manifest& manifest, const std::string& note) {
 std::string labelled(std::string_view label, const std::vector<std::string>& values) {
   std::string lines;
   for (const std::string& value : values) {
-    std::string head(lines.empty() ? label : "");
-    head.resize(9, ' ');
-    lines += comment("  " + head + value);
+    std::string line = "  " + std::string(lines.empty() ? label : "");
+    line.resize(11, ' ');
+    lines += comment(line += value);
   }
   return lines;
 }
@@ -66,23 +66,26 @@ std::string stamp_of(const Stamped& stamped) {
 std::string made_from(const Manifest& manifest, const Stamped& stamped) {
   const CitedFigure& figure = *stamped.figure;
   const CitedTable* const table = stamped.table;
-  const bool as_published = !table || table == figure.tables.data();
   std::vector<std::string> scenes;
   for (const CitedFile& scene : figure.scenes) scenes.push_back(scene.file);
   const std::string picture = std::filesystem::path(figure.picture.file).filename().string();
-  const std::string folder = as_published ? "figures/" : "figures/" + table->engine + "/";
+  std::string shown = figure.picture.file, target = "figures/" + picture;
+  if (table && table != figure.tables.data()) {  // another engine's, which is not published
+    target = "figures/" + table->engine + "/" + picture;
+    shown = "build/" + target;
+  }
 
   std::string text = comment("Figure " + figure.number + " of " + manifest.title + " " + manifest.version +
                              ": " + figure.title);
   text += labelled("stamp", {stamp_of(stamped)});
-  text += labelled("picture", {as_published ? figure.picture.file : "build/" + folder + picture});
+  text += labelled("picture", {shown});
   if (table) text += labelled("table", {table->content.file, "by the " + table->engine + " engine"});
   text += labelled("script", {figure.script.file});
   text += labelled(
       "SHA-256", {table ? table->content.sha256 + " of the table" : figure.script.sha256 + " of the script"});
   text += labelled("scenes", scenes);
   text += labelled("claims", figure.claims);
-  text += labelled("made by", {"cmake --preset release", "cmake --build build --target " + folder + picture});
+  text += labelled("made by", {"cmake --preset release", "cmake --build build --target " + target});
   return text;
 }
 
@@ -94,15 +97,13 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
     for (const CitedTable& table : figure.tables)
       known.push_back(std::string_view(table.content.sha256).substr(0, 8));
   }
-  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version +
-                     ", got " + in_quotes(stamp.digits) +
-                     (stamp.version ? " of version " + *stamp.version : "");
+  const bool of_another = stamp.version && *stamp.version != manifest.version;
+  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version;
+  text += of_another ? " (version " + *stamp.version + " has a manifest of its own), got "
+                     : " (what was drawn from other data, such as one's own scene, is in none), got ";
+  text += in_quotes(stamp.digits);
+  if (of_another) text += " of version " + *stamp.version;
   if (const auto meant = nearest(stamp.digits, known)) text += ", did you mean " + std::string(*meant) + "?";
-  if (stamp.version && *stamp.version != manifest.version) {
-    text += "; version " + *stamp.version + " has a manifest of its own";
-  } else {
-    text += "; what was drawn from other data, such as one's own scene, is in no manifest";
-  }
   return text;
 }
 

@@ -57,9 +57,6 @@ verdicts(0 "no fault")
 plant("loss factor per cycle" analysis/loss_factor.cpp
       "loss.eta.push_back(-2 *"
       "loss.eta.push_back(-2 * 2 * std::numbers::pi *")
-plant("restitution off by 0.05" motion/wall.hpp
-      "-logarithm(restitution)"
-      "-logarithm(Real(restitution - Real(0.05)))")
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes.
 plant("contact force clipped at zero" motion/contact.hpp
       "    if (start_.y == wall_) {
@@ -76,3 +73,7 @@ plant("contact force clipped at zero" motion/contact.hpp
     const Real third = system_.stiffness * (q.bound(3, span) + r.bound(3, span)) +
                        system_.damping * (q.bound(4, span) + r.bound(4, span));
     return {{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()};")
+# Last, as most is compiled anew with this header: it need not be put right for another.
+plant("restitution off by 0.05" motion/wall.hpp
+      "-logarithm(restitution)"
+      "-logarithm(Real(restitution - Real(0.05)))")

@@ -45,7 +45,7 @@ bool read_cited_file(ObjectReader object, CitedFile& file) {
 
 void read_cited_figure(ObjectReader& item, CitedFigure& figure, const std::string& version) {
   item.required("title", figure.title, some_text);
-  for (ObjectReader scene : item.required_objects("scenes", 100))
+  for (const ObjectReader& scene : item.required_objects("scenes", 100))
     read_cited_file(scene, figure.scenes.emplace_back());
   bool sums_are_read = !version.empty();
   for (ObjectReader table : item.required_objects("tables", table_engines.size())) {
