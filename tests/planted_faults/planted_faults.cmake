@@ -5,7 +5,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${FOLDER})
-foreach(part CMakeLists.txt src data figures bench)
+foreach(part CMakeLists.txt src data figures paper bench)
   file(COPY ${SOURCE}/${part} DESTINATION ${FOLDER})
 endforeach()
 
