@@ -38,6 +38,8 @@ SCENES = {
     "slip of the units": (["--scene", "slip.json"], {"scene": "is the free travel given in millimetres?"},
                           ["decay", "loss", "phase", "begin", "prediction"]),
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
+    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "60"], {"energy": "impacts were counted"},
+                         ["decay", "loss", "phase", "begin", "prediction"]),
     "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
                ["decay", "phase", "begin", "prediction"]),
 }
@@ -77,6 +79,40 @@ def best_damping(rows):
     times, amplitudes = rows["peak_time"], rows["amplitude"]
     fits = [parabola(times[i - 5:i + 6], amplitudes[i - 5:i + 6]) for i in range(5, len(times) - 5)]
     return max((-2 * slope / value, value) for value, slope in fits)
+
+
+def windows(impacts):
+    """The longest series of at least 8 half cycles with as many impacts each, 1 to 6, from the first whole one on."""
+    series, first = {}, 1
+    for row in range(1, len(impacts) + 1):
+        if row == len(impacts) or impacts[row] != impacts[first]:
+            if row - first >= 8 and 1 <= impacts[first] <= 6:
+                series.setdefault(impacts[first], []).append((first, row - 1))
+            first = row
+    return {count: max(each, key=lambda ends: ends[1] - ends[0]) for count, each in series.items()}
+
+
+def shifted(x0):
+    """The other releases' x0: splitmix64 from 1, up to a thousand steps of 1e-9 of it either way."""
+    state, mask = 1, 2 ** 64 - 1
+    for _ in range(int(MEMBERS) - 1):
+        state = (state + 0x9e3779b97f4a7c15) & mask
+        z = ((state ^ (state >> 30)) * 0xbf58476d1ce4e5b9) & mask
+        z = ((z ^ (z >> 27)) * 0x94d049bb133111eb) & mask
+        z ^= z >> 31
+        steps = 1.0 + (z >> 1) % 1000
+        yield x0 * (1 + 1e-9 * (steps if z & 1 else -steps))
+
+
+def spread(run, options):
+    """Greatest and last relative spread of the releases' amplitudes."""
+    columns = [run["half_cycles"]["amplitude"]]
+    for x0 in shifted(run["scene"]["x0"]):
+        other = call("run", *options, f"--x0={x0!r}")
+        columns.append(json.loads(other.stdout)["half_cycles"]["amplitude"])
+    rows = [sorted(row) for row in zip(*columns)]
+    spreads = [(row[-1] - row[0]) / ((row[1] + row[2]) / 2) for row in rows]
+    return max(spreads), spreads[-1], next((i for i, each in enumerate(spreads) if each > 0.01), None)
 
 
 def holds(page, section, value, what, digits=1e-9):
@@ -119,6 +155,16 @@ def compare(page, run, scales):
         holds(page, "loss", amplitude * (scales[1] if scales else 1), "its amplitude", 1e-6)
     if rows["impacts"] and energy["impact_loss"]:
         holds(page, "regimes", max(rows["impacts"]), "most impacts in a half cycle")
+        for count, (first, last) in windows(rows["impacts"]).items():
+            for value in (count, last - first + 1, amplitudes[first], amplitudes[last]):
+                holds(page, "regimes", value, f"window of {count} impacts")
+    if run["scene"]["x0"]:
+        greatest, last, lost = spread(run, options)
+        # Twelve digits of an amplitude are left in a spread of a millionth, six of them significant.
+        holds(page, "prediction", 100 * greatest, "greatest spread", 1e-6)
+        if lost is not None:
+            holds(page, "prediction", 100 * last, "last spread", 1e-6)
+            holds(page, "prediction", amplitudes[lost], "amplitude at which releases part")
 
 
 shutil.rmtree(folder, ignore_errors=True)
