@@ -107,6 +107,8 @@ def shifted(x0):
 def spread(run, options):
     """Greatest and last relative spread of the releases' amplitudes."""
     columns = [run["half_cycles"]["amplitude"]]
+    if "--x0" in options:
+        options = options[:options.index("--x0")] + options[options.index("--x0") + 2:]
     for x0 in shifted(run["scene"]["x0"]):
         other = call("run", *options, f"--x0={x0!r}")
         columns.append(json.loads(other.stdout)["half_cycles"]["amplitude"])
