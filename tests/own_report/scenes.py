@@ -38,8 +38,8 @@ SCENES = {
     "slip of the units": (["--scene", "slip.json"], {"scene": "is the free travel given in millimetres?"},
                           ["decay", "loss", "phase", "begin", "prediction"]),
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
-    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "60"], {"energy": "impacts were counted"},
-                         ["decay", "loss", "phase", "begin", "prediction"]),
+    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted"},
+                         ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
                ["decay", "phase", "begin", "prediction"]),
 }

@@ -58,7 +58,7 @@ std::string number_html(double value, int digits) {
   const double size = std::abs(value);
   double power = 1;  // of ten: from here on the digits asked for are all before the point
   for (int i = 0; i < digits; ++i) power *= 10;
-  const bool whole = size >= power && size < 1e6;
+  const bool whole = size >= power - 0.5 && size < 1e6 - 0.5;
   return data_html(number_text(value),
                    typeset(rounded_text(whole ? std::round(value) : value, whole ? 7 : digits)));
 }

@@ -1,0 +1,117 @@
+#include "impact_damper/report/drawings.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "impact_damper/report/speech.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Findings examined(const Scene& scene, std::optional<Scales> scales = {}) {
+  EnsembleOptions ensemble;
+  ensemble.members = 3;
+  return examine({"a test", "", scene, scales, Exact{}}, ensemble, [](const std::string&) {});
+}
+
+const TableBlock& block(const std::vector<Drawing>& drawings, std::string_view drawing,
+                        std::string_view name) {
+  const auto found = std::ranges::find(drawings, drawing, &Drawing::name);
+  REQUIRE(found != drawings.end());
+  const auto in_it = std::ranges::find(found->table.blocks, name, &TableBlock::name);
+  REQUIRE(in_it != found->table.blocks.end());
+  return *in_it;
+}
+
+std::vector<std::string> names(const std::vector<Drawing>& drawings) {
+  std::vector<std::string> all;
+  for (const Drawing& each : drawings) all.push_back(each.name);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the closed form drawn for a damped scene is that for zeta = 0 and 2 zeta on top") {
+  Scene scene;
+  scene.mass_ratio = 0.03;
+  scene.damping_ratio = 0.004;
+  scene.until_amplitude = 0.05;
+  const std::vector<Drawing> drawings = drawings_of(examined(scene));
+  const TableBlock& form = block(drawings, "loss", "one-impact-1");
+  // eta/nu = 4 b V^2 / (pi A^2), V the larger root of (pi^2 + 4 b^2) V^2 - 2 pi V + 1 - 4 A^2 = 0.
+  const double b = 0.25, pi = std::numbers::pi, c = pi * pi + 4 * b * b;
+  for (std::size_t i = 0; i < form.columns[0].values.size(); ++i) {
+    const double a = form.columns[0].values[i];
+    const double v = (pi + std::sqrt(pi * pi - c * (1 - 4 * a * a))) / c;
+    CHECK(form.columns[1].values[i] ==
+          doctest::Approx(0.03 * 4 * b * v * v / (pi * a * a) + 0.008).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a scene in units has its scales in every table, a dimensionless one in none") {
+  Scene scene;
+  scene.until_time = 60;
+  for (const Drawing& drawing : drawings_of(examined(scene, Scales{2, 50, 4}))) {
+    const TableBlock& scales = drawing.table.blocks.front();
+    CHECK(scales.name == "scales");
+    CHECK(scales.columns[0].values == std::vector<double>{0.2});
+    CHECK(scales.columns[1].values == std::vector<double>{4});
+  }
+  for (const Drawing& drawing : drawings_of(examined(scene)))
+    CHECK(std::ranges::find(drawing.table.blocks, "scales", &TableBlock::name) == drawing.table.blocks.end());
+}
+
+TEST_CASE("what would be too much for a picture is thinned, and it is said how much") {
+  Scene scene;
+  scene.restitution = 0.95;
+  scene.until_time = 9000;
+  const Findings findings = examined(scene);
+  REQUIRE(findings.run.impacts->time.size() > 8000);
+  const std::vector<Drawing> drawings = drawings_of(findings);
+  const auto phase = std::ranges::find(drawings, "phase", &Drawing::name);
+  REQUIRE(phase != drawings.end());
+  CHECK(phase->every > 1);
+  for (const TableBlock& each : phase->table.blocks) {
+    CHECK(each.columns[0].values.size() <= 4000);
+    CHECK_NOTHROW(check(phase->table));
+  }
+}
+
+TEST_CASE("what a scene has nothing of is not drawn") {
+  Scene still;
+  still.x0 = 0;
+  still.until_time = 5;
+  CHECK(names(drawings_of(examined(still))) == std::vector<std::string>{"begin"});
+  Scene forced = still;
+  forced.force_amplitude = 0.1;
+  forced.until_time = 200;
+  CHECK(names(drawings_of(examined(forced))) ==
+        std::vector<std::string>{"decay", "phase", "begin", "best", "prediction"});
+}
+
+TEST_CASE("from rest the releases differ in the exciting force") {
+  Scene forced;
+  forced.x0 = 0;
+  forced.force_amplitude = 0.1;
+  forced.until_time = 60;
+  const Findings findings = examined(forced);
+  CHECK(findings.others[0].scene.force_amplitude != 0.1);
+  CHECK(std::ranges::max(findings.spread) > 0);
+}
+
+TEST_CASE("numbers are rounded for reading and keep their digits for programs") {
+  CHECK(number_html(0.07876543) == R"(<data value="0.07876543">0.0788</data>)");
+  CHECK(number_html(-12345.6) == R"(<data value="-12345.6">−12346</data>)");
+  CHECK(number_html(1.6e8) == R"(<data value="1.6e+08">1.6×10<sup>8</sup></data>)");
+  CHECK(number_html(-2.5e-12) == R"(<data value="-2.5e-12">−2.5×10<sup>−12</sup></data>)");
+  CHECK(number_html(999.6) == R"(<data value="999.6">1000</data>)");
+  CHECK(number_html(1e100) == R"(<data value="1e+100">1×10<sup>100</sup></data>)");
+  CHECK(Speech(std::nullopt).length(6) == "<data value=\"6\">6</data>\u00a0ε");
+  CHECK(Speech(Scales{2, 50, 4}).length(6) ==
+        "<data value=\"24\">24</data>\u00a0mm (<data value=\"6\">6</data>\u00a0ε)");
+  CHECK(escaped("<\"a&b\">") == "&lt;&quot;a&amp;b&quot;&gt;");
+}
