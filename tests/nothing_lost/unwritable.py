@@ -39,7 +39,7 @@ class Programs:
         return [self.program, "verify", "--claims", self.claims, "--runs", self.runs, *more]
 
     def drawing(self, stem):
-        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem]
+        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, scratch.VERSION]
 
     def refused(self, command, words, **more):
         """The command fails with exit code 5 and one line that holds the words."""
