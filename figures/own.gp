@@ -9,15 +9,19 @@ if (in_units) {
   eval canvas(720, 540)
   set tmargin at screen 0.795
 }
+# Over less than two decades a logarithmic axis is marked at 1, 2 and 5 of each, or it had but a number or two.
+marks(name, low, high) = high / low >= 100 ? "" : sprintf("set %stics (%s); ", name, marks_of(floor(log10(low)), log10(high)))
+marks_of(decade, end) = sprintf("%g, %g, %g", 10.0 ** decade, 2 * 10.0 ** decade, 5 * 10.0 ** decade).\
+  (decade + 1 > end ? "" : ", ".marks_of(decade + 1, end))
 scale_of(what) = what eq "time" ? scale_time : scale_length
 # The axis itself, and beside it the one in units; logarithmic axes cannot be linked.
 axis(name, what, low, high, is_logarithmic) = \
   sprintf("set %srange [%.17g:%.17g]; ", name, low, high).\
-  (is_logarithmic ? sprintf("set logscale %s; ", name) : "").\
+  (is_logarithmic ? sprintf("set logscale %s; ", name).marks(name, low, high) : "").\
   (in_units ? second_axis(name, what, low * scale_of(what), high * scale_of(what), is_logarithmic) : "")
 second_axis(name, what, low, high, is_logarithmic) = \
   sprintf("set %stics nomirror; set %s2tics; set %s2range [%.17g:%.17g]; ", name, name, name, low, high).\
-  (is_logarithmic ? sprintf("set logscale %s2; ", name) : sprintf("set m%s2tics; ", name)).\
+  (is_logarithmic ? sprintf("set logscale %s2; ", name).marks(name."2", low, high) : sprintf("set m%s2tics; ", name)).\
   sprintf("set %s2label '%s' offset %s; ", name, what eq "time" ? "time in s" : "amplitude in mm", \
           name eq "x" ? "0,-0.5" : "-0.8,0").\
   (name eq "y" ? "set rmargin at screen 0.88" : "")

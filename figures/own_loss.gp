@@ -8,6 +8,7 @@ logarithmic = STATS_min > 0 ? "xy" : "x"
 if (STATS_min > 0) {
   set logscale y
   set yrange [STATS_min / 1.5:STATS_max * 3]
+  eval marks("y", STATS_min / 1.5, STATS_max * 3)
 } else {
   set yrange [STATS_min - 0.1 * STATS_max:1.5 * STATS_max]
 }

@@ -111,7 +111,8 @@ def planted_tree(folder, pattern, replacement):
     scratch.make_folder(folder)
     for name in ("figures", "data", "tests/nothing_lost"):
         shutil.copytree(scratch.SOURCE / name, folder / name)
-    shutil.copy(scratch.SOURCE / "CMakePresets.json", folder)
+    for name in ("CMakePresets.json", "CMakeLists.txt"):
+        shutil.copy(scratch.SOURCE / name, folder)
     text, count = re.subn(pattern, replacement, (scratch.SOURCE / "Makefile").read_text(), flags=re.S)
     if count != 1:
         sys.exit(f"{pattern!r} stands {count} times in the Makefile")

@@ -42,7 +42,7 @@ class Programs:
         return [self.program, "report", "--until-time", "10", "--members", "2", *more]
 
     def drawing(self, stem):
-        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, "0.0.0"]
+        return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, scratch.VERSION]
 
     def refused(self, command, words, **more):
         """The command fails with exit code 5 and one line that holds the words."""
