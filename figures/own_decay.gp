@@ -4,6 +4,7 @@ eval require("curve", 3)
 eval look("curve", 1)
 to = STATS_max
 eval look("curve", 2)
+if (STATS_index_max > STATS_records / 2) { set key bottom right }
 logarithmic = STATS_min > 0 && STATS_max > 10 * STATS_min ? "y" : ""
 set xlabel "dimensionless time t"
 set ylabel "peak amplitude A"
