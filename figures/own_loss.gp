@@ -4,7 +4,7 @@ eval require("curve-1", 10)
 eval look("curve-1", 1)
 from = STATS_min / 1.15; to = STATS_max * 1.15
 eval look("curve-1", 2)
-logarithmic = STATS_min > 0 ? "xy" : "x"
+logarithmic = (is_wide(from, to) ? "x" : "").(STATS_min > 0 ? "y" : "")
 if (STATS_min > 0) {
   set logscale y
   set yrange [STATS_min / 1.5:STATS_max * 3]
@@ -14,7 +14,7 @@ if (STATS_min > 0) {
 }
 set xlabel "peak amplitude A"
 set ylabel "loss factor η, per radian" offset 0.5,0
-eval axis("x", "length", from, to, 1)
+eval axis("x", "length", from, to, is_wide(from, to))
 optional(block, clause) = !has(block) ? "" : sprintf("table index '%s' using ", block).clause
 forms = optional("one-impact-1", '1:2 with lines ls 9 title "closed forms, ν → 0",').\
   optional("bounce-down-1", '1:2 with lines ls 9 notitle,')

@@ -109,16 +109,17 @@ std::string theory_sentences(const Findings& findings) {
   if (e == 0)
     return "With <i>e</i> = 0 there is no rebound, and the closed forms drawn for other restitutions do not "
            "hold.";
-  return "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at "
-         "an amplitude "
-         "of " +
-         speech.length(peak_loss_amplitude(e)) +
-         ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the free travel, with η = " +
-         number_html(peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio) +
-         " and a narrower peak than an average over half cycles can show. To damp best at the amplitude that "
-         "matters, "
-         "choose the free travel " +
-         number_html(1 / peak_loss_amplitude(e)) + " times as long.";
+  const double eta = peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio;
+  constexpr double far_too_much = 0.5;  // for a decay in which the amplitude changes little from peak to peak
+  std::string text =
+      "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best "
+      "at an amplitude of " +
+      speech.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the free travel";
+  if (eta < far_too_much)
+    text +=
+        ", with η = " + number_html(eta) + " and a narrower peak than an average over half cycles can show";
+  return text + ". To damp best at the amplitude that matters, choose a free travel of " +
+         number_html(1 / peak_loss_amplitude(e)) + " times that amplitude.";
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ std::string Speech::length(double value) const {
 }
 
 std::string Speech::time(double value) const {
-  const std::string periods = number_html(value / (2 * std::numbers::pi)) + no_break + "periods";
+  const std::string periods = number_html(value / (2 * std::numbers::pi)) + " periods";
   if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
   return number_html(value * scales_->time()) + no_break + "s (" + periods + ')';
 }
