@@ -21,13 +21,13 @@ std::string caption_of(const std::string& name) {
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss")
-    return "The loss factor over the amplitude, averaged over half cycles; a decay runs from right to "
-           "left. Pale: all releases. Thin: closed forms for a light mass, with the primary system's own "
-           "damping put on.";
+    return "The loss factor over the amplitude, averaged over half cycles; a decay runs from right to left. "
+           "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
+           "put on.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
-           "next, over the "
-           "half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each half cycle.";
+           "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "
+           "half cycle.";
   if (name == "prediction")
     return "Greatest less least amplitude of all releases, in percent of their median.";
   return "Above, the loose mass between the walls of its cavity; below, the displacement of the cavity.";

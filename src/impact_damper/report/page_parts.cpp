@@ -112,8 +112,8 @@ std::string theory_sentences(const Findings& findings) {
   const double eta = peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio;
   constexpr double far_too_much = 0.5;  // for a decay in which the amplitude changes little from peak to peak
   std::string text =
-      "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best "
-      "at an amplitude of " +
+      "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
+      "amplitude of " +
       speech.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the free travel";
   if (eta < far_too_much)
     text +=
@@ -129,8 +129,7 @@ std::string summary_html(const Findings& findings) {
   if (!findings.first_amplitude)
     return paragraph_html(
         "The primary mass never swings through its position of rest within this run, so there is no "
-        "amplitude to speak "
-        "of: only its motion and its energy are shown.");
+        "amplitude to speak of: only its motion and its energy are shown.");
   std::string text;
   if (!findings.forced())
     text = fall_in_short(findings);
@@ -231,8 +230,7 @@ std::string prediction_html(const Findings& findings) {
   if (findings.others.empty())
     return paragraph_html(
         "Only one release was simulated (<code>--members 1</code>), so nothing can be said about how far "
-        "small "
-        "differences grow.");
+        "small differences grow.");
   if (findings.spread.empty()) return paragraph_html("There is no amplitude whose spread could be told.");
   const EnsembleOptions shifts;
   const std::string text = count_html(std::ssize(findings.others) + 1) + " releases that differ by at most " +

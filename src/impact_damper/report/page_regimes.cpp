@@ -39,8 +39,7 @@ std::string sticking_sentence(const Findings& findings) {
   if (findings.sticking_ends)
     return share + "Down to an amplitude of " + speech.length(*findings.sticking_ends) +
            " its bounces on a wall die out before the primary mass has come back, half cycle after half "
-           "cycle; there "
-           "sticking ends. ";
+           "cycle; there sticking ends. ";
   return share + "It does so only now and then, or to the end of the run. ";
 }
 

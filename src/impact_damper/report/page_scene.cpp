@@ -76,8 +76,7 @@ std::string engine_sentence(const Findings& findings) {
     case 0:
       text +=
           "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
-          "time step, "
-          "and no impact is missed.";
+          "time step, and no impact is missed.";
       break;
     case 1:
       text += "The walls are rigid and impacts take no time; of infinitely many bounces the sum is taken.";
