@@ -26,7 +26,7 @@ struct Drawing {
 //                those of zeta = 0, on which 2 zeta is put
 //   phase        as the table of the figure of phases, but for what the scene has nothing of
 //   begin, best  as the table of a figure of motion
-//   prediction   "curve" (amplitude, spread of the ensemble's amplitudes in percent)
+//   prediction   "curve" (time, spread of the ensemble's amplitudes in percent)
 //
 // A scene in units has "scales" (s by 1/Omega_n, mm by epsilon) beside these.
 std::vector<Drawing> drawings_of(const Findings& findings);
