@@ -100,7 +100,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
            : "<p>A phase is counted from zero crossing to zero crossing, and no impact lies between "
              "two.</p>\n",
        {"phase"}},
-      {"motion", "The motion itself", "", {"begin", "best"}},
+      {"motion", "The motion itself", motion_html(findings), {"begin", "best"}},
       {"energy", "Where the energy goes", energy_html(findings), {}},
       {"prediction", "How far this can be predicted", prediction_html(findings), {"prediction"}},
       {"made", "How this page was made", made_html(findings), {}},

@@ -12,6 +12,7 @@ std::string scene_html(const Findings& findings);
 std::string decay_html(const Findings& findings);  // of a forced motion: its amplitudes
 std::string loss_html(const Findings& findings);
 std::string regimes_html(const Findings& findings);
+std::string motion_html(const Findings& findings);
 std::string energy_html(const Findings& findings);
 std::string prediction_html(const Findings& findings);
 

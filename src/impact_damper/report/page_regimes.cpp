@@ -1,4 +1,4 @@
-// What a report's page says of the regimes that a motion passes through.
+// What a report's page says of the regimes that a motion passes through, and of the motion in its windows.
 #include <algorithm>
 #include <numeric>
 
@@ -60,7 +60,28 @@ std::string failure_sentence(const Findings& findings) {
   return "Impacts do not begin to fail within this run. ";
 }
 
+std::string strikes(const Findings& findings, const MotionWindow& window) {
+  const std::vector<double>& time = findings.run.history->time;
+  const std::vector<double>& impacts = findings.run.impacts->time;
+  const auto count = std::ranges::upper_bound(impacts, time[window.last]) -
+                     std::ranges::lower_bound(impacts, time[window.first]);
+  return "the loose mass strikes " + count_html(count) + (count == 1 ? " time. " : " times. ");
+}
+
 }  // namespace
+
+std::string motion_html(const Findings& findings) {
+  if (!findings.begin) return paragraph_html("The run ends where it begins: there is no motion to show.");
+  const Speech speech(findings.subject.scales);
+  const std::vector<double>& time = findings.run.history->time;
+  std::string text =
+      "In the first " + speech.time(time[findings.begin->last]) + " " + strikes(findings, *findings.begin);
+  if (findings.chosen)
+    text += (findings.forced() ? "At the end, from " : "About the best damping, from ") +
+            speech.time(time[findings.chosen->first]) + " to " + speech.time(time[findings.chosen->last]) +
+            ", " + strikes(findings, *findings.chosen);
+  return paragraph_html(text);
+}
 
 std::string regimes_html(const Findings& findings) {
   if (!findings.first_amplitude)
