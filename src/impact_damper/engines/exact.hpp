@@ -55,8 +55,8 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
   while (!timeline.stopped()) {
     if (!in_contact) {
       const Flight<Real, Force> flight(system, timeline.now(), state);
-      const auto met = flight.next_wall(Real(0), timeline.remaining(), timeline.span());
-      if (met) state = met->state;
+      const auto met = flight.next_wall(timeline.remaining(), timeline.span());
+      if (met) state = copied(met->state);
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
       wall = met->wall;
@@ -66,7 +66,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
       const Contact<Real, Force> contact(walls, timeline.now(), state, wall);
       const auto left = contact.leave(timeline.remaining(), timeline.span());
       const Real begin = timeline.now();
-      if (left) state = left->state;
+      if (left) state = copied(left->state);
       const Works<Real> works =
           timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
       if (observer.wants_contacts())

@@ -72,7 +72,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
         ++observer.ledger().bounce_downs;
         observer.ledger().bounce_down_loss += double(loss);
       }
-      const Stuck<Real, Force> stuck(system, timeline.now(), state.x, state.v + joined, wall);
+      Stuck<Real, Force> stuck(system, timeline.now(), state.x, state.v + joined, wall);
       const Real begin = timeline.now() + accumulation;
       const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
       if (released) state = stuck.released(*released);
@@ -85,23 +85,9 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     }
 
     const Flight<Real, Force> flight(system, timeline.now(), state);
-    // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4
-    // y'''/|y''''|. Half of that is passed over, within which the sign of a y'' that is zero to rounding
-    // would decide; but no more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of
-    // the travel.
-    Real from{0};
-    if (on_wall && state.w == 0) {
-      const auto lead = flight.lead_of_y();
-      const Real acceleration = (wall == Wall::left ? 1 : -1) * lead[2];
-      const Real jerk = (wall == Wall::left ? 1 : -1) * lead[3];
-      if (jerk > 0 && acceleration < jerk * Real(1e-6)) {
-        from = 2 * jerk / flight.fourth_of_y(timeline.span());
-        const Real near = 1 / square_root(Real(1 + jerk));
-        if (near < from) from = near;
-      }
-    }
-    const auto met = flight.next_wall(from, timeline.remaining(), timeline.span());
-    if (met) state = met->state;
+    const bool released = on_wall && state.w == 0;
+    const auto met = flight.next_wall(timeline.remaining(), timeline.span(), released);
+    if (met) state = copied(met->state);
     timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
     if (timeline.stopped()) break;
     wall = met->wall;

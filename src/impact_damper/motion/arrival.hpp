@@ -29,6 +29,12 @@ template <class Real>
 struct State {
   Real x, v, y, w;
 };
+// A copy, number by number. As a block it would be loaded in pairs, and each pair wait until its two numbers,
+// stored one by one just before, have reached the cache: each motion, a few nanoseconds for the one before.
+template <class Real>
+State<Real> copied(const State<Real>& s) {
+  return {s.x, s.v, s.y, s.w};
+}
 
 template <class Real>
 struct Arrival {
@@ -43,16 +49,20 @@ using Derivatives = std::array<Real, N>;
 
 // c_0 + c_1 s + c_2 s^2 + ...: even and odd powers apart, half as long a chain of operations that wait for
 // each other.
-template <class Real, std::size_t N>
-Real sum(const std::array<Real, N>& c, const Real& s) {
-  static_assert(N >= 2);
+template <std::size_t terms, class Real, std::size_t N>
+Real sum_of_first(const std::array<Real, N>& c, const Real& s) {
+  static_assert(terms >= 2 && terms <= N);
   const Real s_2 = s * s;
-  Real highest = c[N - 1], next = c[N - 2];
-  for (std::size_t n = N - 1; n >= 2; n -= 2) {
+  Real highest = c[terms - 1], next = c[terms - 2];
+  for (std::size_t n = terms - 1; n >= 2; n -= 2) {
     highest = c[n - 2] + s_2 * highest;
     if (n > 2) next = c[n - 3] + s_2 * next;
   }
-  return N % 2 == 0 ? next + s * highest : highest + s * next;
+  return terms % 2 == 0 ? next + s * highest : highest + s * next;
+}
+template <class Real, std::size_t N>
+Real sum(const std::array<Real, N>& c, const Real& s) {
+  return sum_of_first<N>(c, s);
 }
 // The terms of its derivative.
 template <class Real, std::size_t N>
@@ -72,7 +82,7 @@ struct Nearby {
 template <class Real>
 Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
   const Real over = 1 / y[1], t = (level - y[0]) * over;
-  const Real a = t * y[2] * over / 2, b = t * t * y[3] * over * reciprocals<Real>[6];
+  const Real a = t * (y[2] * over / 2), b = t * t * (y[3] * over * reciprocals<Real>[6]);
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
   const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
   // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
@@ -81,21 +91,21 @@ Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real
               fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
-// u and u' a short time later.
+// u and u' after the time of a correction that is `close`, whose fourth power no longer counts; d: the
+// derivatives of u, of which the first two may be another's.
 template <class Real>
 struct Moved {
   Real u, u1;
 };
 template <class Real>
-Moved<Real> moved(const Derivatives<Real, 6>& d, const Real& t) {
-  const Real half = t / 2, third = t * reciprocals<Real>[3], quarter = t / 4;
-  return {d[0] + t * (d[1] + half * (d[2] + third * (d[3] + quarter * d[4]))),
-          d[1] + t * (d[2] + half * (d[3] + third * (d[4] + quarter * d[5])))};
+Moved<Real> moved(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, const Real& t) {
+  const Real half = t / 2, third = t * reciprocals<Real>[3];
+  return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
 
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
 // parabola through its beginning, then by Halley's method on the series: roughly, but accurately within a
-// `short_time`. u is the distance from the wall it left.
+// `short_time`. u is the distance from the wall it left; it may begin with its third derivative alone.
 template <class Real>
 struct Guess {
   Real time;
@@ -103,9 +113,10 @@ struct Guess {
   Real u, u1, u2;  // of the series then: u from the wall it meets, and its first derivatives
 };
 template <class Real>
-Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const Real& most) {
+Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& short_time, const Real& most) {
   const auto& over = reciprocals<Real>;
-  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0);
+  const bool from_rest = u[1] == 0 && u[2] == 0;
+  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
@@ -113,8 +124,8 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
   Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
-  if (!(t < most)) t = most;
-  Derivatives<Real, 8> c{across ? Real(u[0] - 1) : u[0], u[1]};
+  if (!(t < most)) t = from_rest ? Real(most * Real(0.75)) : most;
+  Derivatives<Real, 10> c{across ? Real(u[0] - 1) : u[0], u[1]};
   Real factor = over[2];
   for (std::size_t n = 2; n < c.size(); ++n) {
     c[n] = factor * u[n];
@@ -122,12 +133,18 @@ Guess<Real> guess(const Derivatives<Real, 8>& u, const Real& short_time, const R
   }
   const auto c1 = slopes(c);
   const auto c2 = slopes(c1);
+  const auto halley = [](const Real& at, const Real& at1, const Real& at2) {
+    return Real(-at * at1 / (at1 * at1 - at * at2 / 2));
+  };
+  // First by few terms, as a parabola may be far off.
+  const Real nearer = halley(sum_of_first<6>(c, t), sum_of_first<5>(c1, t), sum_of_first<4>(c2, t));
+  if (absolute(nearer) < t / 2) t += nearer;
   Real g, g1, g2;
   for (int i = 0;; ++i) {
     g = sum(c, t);
     g1 = sum(c1, t);
     g2 = sum(c2, t);
-    const Real step = -g * g1 / (g1 * g1 - g * g2 / 2), size = absolute(step);
+    const Real step = halley(g, g1, g2), size = absolute(step);
     if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
     t += step;
     if (t > short_time && size * 32 < t) break;
@@ -171,11 +188,12 @@ struct SeriesLanding {
 template <class Real>
 SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
   const auto& [h, across, g, g1, g2] = guess;
-  const Real hr = h * rate, hr_2 = hr * hr, tiny = std::numeric_limits<Real>::epsilon() / 16;
-  // What is left out of u': |u^(8)| h^7/7!.
-  if (!(fourth * (hr_2 * hr_2 * hr_2 * hr) <= 5040 * tiny * absolute(g1) * (rate * rate * rate)))
+  const Real hr = h * rate, hr_2 = hr * hr, hr_4 = hr_2 * hr_2,
+             tiny = std::numeric_limits<Real>::epsilon() / 16;
+  // What is left out of u': |u^(10)| h^9/9!.
+  if (!(fourth * (hr_4 * hr_4 * hr) <= 362880 * tiny * absolute(g1) * (rate * rate * rate)))
     return {0, g1, false};
-  const Real newton = -g / g1, shift = newton * (1 - newton * g2 / (2 * g1));
+  const Real over = 1 / g1, newton = -g * over, shift = newton * (1 - newton * (g2 * over) / 2);
   // And of the shift, its third power.
   return {shift, g1 + shift * g2, absolute(shift) * 33554432 < h};
 }

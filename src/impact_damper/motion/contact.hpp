@@ -15,7 +15,7 @@ class Contact {
   Contact(const ContactSystem<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : system_(system),
         begin_(begin),
-        start_(start),
+        start_(copied(start)),
         wall_(wall == Wall::left ? 0 : 1),
         inward_(wall == Wall::left ? -1 : 1) {}
 
@@ -181,10 +181,10 @@ class Contact {
   // lets go.
   //
   // The proof. The slow motion's depth is exp(-a t) times the arc of a sine that ends at h, and so above
-  // exp(-a h) times its chord. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), until
-  // what is left of the fast motion can never more reach as far as that chord (or helps it, and cannot change
-  // sides). (2) Where by h it is less than a rounding error, this is the end; else (3) the end is corrected,
-  // and proved by the bound again.
+  // exp(-a h) times its chord. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), in
+  // shorter ones where the mass all but leaves, until what is left of the fast motion can never more reach as
+  // far as that chord (or helps it, and cannot change sides). (2) Where by h it is less than a rounding
+  // error, this is the end; else (3) the end is corrected, and proved by the bound again.
   std::optional<typename Rebound<Real>::End> settle() const {
     const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
@@ -197,22 +197,23 @@ class Contact {
     const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
 
     Overlap slow_now{inward_ * slow.q, inward_ * slow.w}, fast_now{inward_ * fast.q, inward_ * fast.w};
-    Overlap before{0, inward_ * start_.w};
+    Moment now{0, {0, inward_ * start_.w}, fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth};
     Real left_late;
     for (int n = 1;; ++n) {
-      const Real t = Real(n) * c.piece;
-      if (n > 24 || !(t < early)) return {};
-      const Real fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
+      const Moment before = now;
+      now.time = Real(n) * c.piece;
+      if (n > 24 || !(now.time < late)) return {};
       slow_now = moved_by_piece(c.slow, c.slow_piece, slow_now);
       fast_now = moved_by_piece(c.fast, c.fast_piece, fast_now);
-      const Overlap now{slow_now.q + fast_now.q, slow_now.w + fast_now.w};
-      if (!stays_open(before.q, before.w, now.q, now.w, c.piece, fourth)) return {};
-      left_late = c.fast.left(fast_now.q, fast_now.w, Real(late - t));
+      now.depth = {slow_now.q + fast_now.q, slow_now.w + fast_now.w};
+      now.fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
+      if (!stays_in_wall(before, now, slow_fourth, 4)) return {};
+      left_late = c.fast.left(fast_now.q, fast_now.w, Real(late - now.time));
       if (!swings && fast_now.q >= 0) break;
+      const Real wait = now.time < early ? Real(early - now.time) : Real(0);
       if (c.fast.left(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
-          c.fast.left(fast_now.q, fast_now.w, Real(early - t)) < chord / 4)
+          c.fast.left(fast_now.q, fast_now.w, wait) < chord / 4)
         break;
-      before = now;
     }
     const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
     if (left_late * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
@@ -224,32 +225,49 @@ class Contact {
   std::optional<typename Rebound<Real>::End> settle_after(const Real& late, Real h,
                                                           const Real& slow_fourth) const {
     const ContactSystem<Real, Force>& c = system_;
-    const ContactState<Real> slow_late = slow_at(late), fast_late = fast_at(late);
-    const Real faint = fourth_of(c.fast, fast_late.q, fast_late.w) + slow_fourth, last = h;
+    const Moment begin = moment(late, slow_fourth);
+    const Real last = h;
     for (int correction = 0; correction < 4; ++correction) {
       Derivatives<Real, 6> x, q;
       const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
       c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
                 slow_end.w + fast_end.w},
                x, q);
-      const auto [shift, newton, close] = nearby(Real(0), q, h, faint);
+      const auto [shift, newton, close] = nearby(Real(0), q, h, begin.fourth);
       h += shift;
       if (!(absolute(h - last) < late / 4)) return {};
       if (!close) continue;
-      const auto [end_x, end_v] = moved(x, shift);
-      const Real end_w = moved(q, shift).u1;
-      if (!stays_open(Real(inward_ * (slow_late.q + fast_late.q)),
-                      Real(inward_ * (slow_late.w + fast_late.w)), Real(0), Real(inward_ * end_w),
-                      Real(h - late), faint))
-        return {};
+      const auto [end_x, end_v] = moved(x[0], x[1], x, shift);
+      const Real end_w = moved(q[0], q[1], q, shift).u1;
+      if (!stays_in_wall(begin, {h, {0, inward_ * end_w}, 0}, slow_fourth, 4)) return {};
       return typename Rebound<Real>::End{h, end_x, end_v, end_w};
     }
     return {};
   }
-  // q and q' of a part, and what they are a piece later.
+  // Inwards: q and q' of a part or of both; at a time, with a bound on their fourth derivative from then on.
   struct Overlap {
     Real q, w;
   };
+  struct Moment {
+    Real time;
+    Overlap depth;
+    Real fourth;
+  };
+  Moment moment(const Real& t, const Real& slow_fourth) const {
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+    return {t,
+            {inward_ * (slow.q + fast.q), inward_ * (slow.w + fast.w)},
+            fourth_of(system_.fast, fast.q, fast.w) + slow_fourth};
+  }
+  // Whether the mass is proved to stay in the wall, by two moments, or by them and one halfway, and so on.
+  bool stays_in_wall(const Moment& from, const Moment& to, const Real& slow_fourth, int halvings) const {
+    const Real h = to.time - from.time;
+    if (stays_open(from.depth.q, from.depth.w, to.depth.q, to.depth.w, h, from.fourth)) return true;
+    if (halvings == 0 || !(to.depth.q >= 0)) return false;
+    const Moment halfway = moment(Real(from.time + h / 2), slow_fourth);
+    return stays_in_wall(from, halfway, slow_fourth, halvings - 1) &&
+           stays_in_wall(halfway, to, slow_fourth, halvings - 1);
+  }
   static Overlap moved_by_piece(const Oscillator<Real>& oscillator, const Propagator<Real>& p,
                                 const Overlap& now) {
     return {p.c * now.q + p.s * now.w, p.v * now.w - oscillator.b() * p.s * now.q};

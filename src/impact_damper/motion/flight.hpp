@@ -11,7 +11,7 @@ class Flight {
  public:
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : swing_(system.free, system.forcing, begin, start.x, start.v),
-        start_(start),
+        start_(copied(start)),
         wall_(start.y > Real(0.5) ? 1 : 0),
         away_(start.y > Real(0.5) ? -1 : 1) {}
 
@@ -20,10 +20,18 @@ class Flight {
     return state_of(from_wall(t));
   }
 
-  // Where and when a wall is met, if in [from, horizon).
-  std::optional<Arrival<Real>> next_wall(const Real& from, const Real& horizon, const Real& span) const {
-    if (const auto met = arrive(from, span)) return met->time < horizon ? met : std::nullopt;
-    return search_wall(from, horizon, span);
+  // Where and when a wall is met, if before `horizon`; `released`: it begins at rest on a wall, and leaves
+  // it.
+  std::optional<Arrival<Real>> next_wall(const Real& horizon, const Real& span, bool released = false) const {
+    const auto leap = [&] { return released ? leap_by_jerk(span) : Real(0); };
+    // Where y'' is zero to the last bit there is no sign to pass over.
+    std::optional<Arrival<Real>> met = arrive(released && lead_of_y()[2] != 0 ? leap() : Real(0), span);
+    if (!met) {
+      met = search_wall(leap(), horizon, span);
+    } else if (!(met->time < horizon)) {
+      met.reset();
+    }
+    return met;
   }
   // The same, certified step by step.
   std::optional<Arrival<Real>> search_wall(const Real& from, const Real& horizon, const Real& span) const {
@@ -89,16 +97,24 @@ class Flight {
   State<Real> state_of(const Place& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
   }
-  // Of u, by those of -away x, with which all but the first two agree.
+  // Derivatives of u: but for the first two they are those of -away x.
   template <std::size_t N>
-  static Derivatives<Real, N> derivatives_of_u(const Place& place, Derivatives<Real, N> opposite_x) {
-    opposite_x[0] = place.u;
-    opposite_x[1] = place.u1;
-    return opposite_x;
+  Derivatives<Real, N> derivatives_of_u(const Place& place, const Real& t) const {
+    auto u = swing_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
+    u[0] = place.u;
+    u[1] = place.u1;
+    return u;
   }
-  template <std::size_t N>
-  Derivatives<Real, N> derivatives_of_opposite_x(const Place& place, const Real& t) const {
-    return swing_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
+  // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4
+  // y'''/|y''''|. Half of that is passed over, within which the sign of a y'' that is zero to rounding would
+  // decide; but no more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of the
+  // travel.
+  Real leap_by_jerk(const Real& span) const {
+    const auto lead = lead_of_y();
+    const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
+    if (!(jerk > 0 && acceleration < jerk * Real(1e-6))) return 0;
+    const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk));
+    return near < far ? near : far;
   }
   // By both ends of a time h, or by those of its halves, and so on.
   template <std::size_t N>
@@ -110,8 +126,8 @@ class Flight {
     const Real half = h / 2;
     const Place middle = from_wall(begin + half);
     return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
-           stays_between_walls(derivatives_of_u(middle, derivatives_of_opposite_x<4>(middle, begin + half)),
-                               Real(begin + half), to, half, fourth, halvings - 1);
+           stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
+                               fourth, halvings - 1);
   }
   // By guess and proof (arrival.hpp), in a few pieces; nothing where that does not come to an end.
   [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
@@ -119,11 +135,10 @@ class Flight {
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
-      const auto [opposite_x, fourth] =
-          swing_.template lead<8>(-away_ * here.x, -away_ * here.v, begin, -away_, span);
-      const auto u = derivatives_of_u(here, opposite_x);
-      const auto reached = [&, fourth = fourth](bool across, const Real& h, const Real& x1, const Real& v1,
-                                                const Real& u1) -> std::optional<Arrival<Real>> {
+      const auto u = derivatives_of_u<10>(here, begin);
+      const Real fourth = swing_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
+      const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
+                               const Real& u1) -> std::optional<Arrival<Real>> {
         const Real level = across ? 1 : 0;
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
@@ -132,7 +147,7 @@ class Flight {
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      const Guess<Real> guessed = guess(u, Real(Real(0.02) / rate), most);
+      const Guess<Real> guessed = guess(u, Real(Real(0.05) / rate), most);
       Real h = guessed.time;
       if (!(h > 0)) return {};
       if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close) {
@@ -145,13 +160,13 @@ class Flight {
       Place there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
-        const auto x_there = derivatives_of_opposite_x<6>(there, begin + h);
-        const auto u_there = derivatives_of_u(there, x_there);
+        const auto u_there = derivatives_of_u<6>(there, begin + h);
         const bool across = there.u > Real(0.5);
         const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4) {
-          const auto [x1, v1] = moved(x_there, shift);
-          return reached(across, h + shift, -away_ * x1, -away_ * v1, moved(u_there, shift).u1);
+          const auto [x1, v1] = moved<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
+          return reached(across, h + shift, -away_ * x1, -away_ * v1,
+                         moved(there.u, there.u1, u_there, shift).u1);
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
         if (correction == 5 || !(near || beyond)) break;

@@ -77,11 +77,13 @@ class Oscillator {
     const Real discriminant = b - a * a;
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
+    over_omega_ = 1 / omega_;
     root_b_ = square_root(b);
     over_root_b_ = 1 / root_b_;
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
+    if (underdamped_) turn_before_ = angle_of(omega_, a) / omega_;
   }
 
   const Real& a() const { return a_; }
@@ -94,14 +96,16 @@ class Oscillator {
   // When, from a time `from` on, a free motion that begins with u and u' falls through zero; only where
   // underdamped. Its phase grows by omega t, and it falls after each half turn.
   Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
-    const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) / omega_;
+    const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) * over_omega_;
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
     return first + Real(whole_above(double((from - first) / period))) * period;
   }
+  // How long before a zero of u'' that of u' is, where a free motion turns between; only where underdamped.
+  const Real& turn_before() const { return turn_before_; }
   // |u| at the turns of a free motion: after a time t at which u' is zero; only where underdamped.
   Real height(const Real& u, const Real& u1, const Real& t) const {
-    const Real along = (u1 + a_ * u) / omega_, height = square_root(Real(u * u + along * along));
+    const Real along = (u1 + a_ * u) * over_omega_, height = square_root(Real(u * u + along * along));
     return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
   }
   // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
@@ -109,7 +113,7 @@ class Oscillator {
   Real left(const Real& u, const Real& u1, const Real& t) const {
     const Real along = absolute(u1 + a_ * u), rate = underdamped_ ? a_ : slow_rate_;
     const Real size =
-        absolute(u) + (underdamped_ ? Real(along / omega_) : Real(along * (t + 1 / slow_rate_)));
+        absolute(u) + (underdamped_ ? Real(along * over_omega_) : Real(along * (t + 1 / slow_rate_)));
     return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
   }
   // The size of a free motion with u and u', which no damping raises: a bound on u from then on.
@@ -139,7 +143,7 @@ class Oscillator {
     Propagator<Real> p;
     if (underdamped_) {
       const auto [sin, cos] = sin_cos(omega_ * t);
-      p.s = sin / omega_;
+      p.s = sin * over_omega_;
       if (a_ == 0) {
         p.c = cos;
         p.c1 = cos > 0 ? -sin * sin / (1 + cos) : cos - 1;
@@ -294,10 +298,10 @@ class Oscillator {
 
   Real a_{0}, b_{1};
   bool underdamped_ = true;
-  Real omega_{1};      // sqrt|b - a^2|
+  Real omega_{1}, over_omega_{1};  // sqrt|b - a^2|
   Real slow_rate_{0};  // of the slower exponential, where there are two
   Real rate_{1};
-  Real root_b_{1}, over_root_b_{1}, half_period_{0};
+  Real root_b_{1}, over_root_b_{1}, half_period_{0}, turn_before_{0};
 };
 
 // u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.

@@ -52,7 +52,7 @@ class Rebound {
   template <class Derive>
   Rebound(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share, const Real& zeta,
           const std::array<Touch<Real>, 3>& start, Derive&& derive)
-      : share_(share) {
+      : share_(share), zeta_(zeta) {
     swing_ = fast.half_period();
     if (!(swing_ < std::numeric_limits<Real>::infinity())) return;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
@@ -62,6 +62,7 @@ class Rebound {
     few_ = reach_of(few, fast);
     more_ = reach_of(more, fast);
     many_ = reach_of(many, fast);
+    most_ = reach_of(most, fast);
     accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
     unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
@@ -85,12 +86,12 @@ class Rebound {
       const Real q_then = slow_q - left_ * f.q;
       const Real w_then = i == 2 ? Real(slow_w + left_ * s.w) : Real(slow_w - left_ * f.w);  // but for -E w
       const Real w_whole = i == 2 ? Real(w_then - left_) : w_then;
-      std::array<Real, many> x, q;
+      std::array<Real, most> x, q;
       derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
              x, q);
       q[1] = w_then;
       Real factorial{1};
-      for (std::size_t n = 0; n < many; ++n) {
+      for (std::size_t n = 0; n < most; ++n) {
         if (n > 1) factorial *= Real(double(n));
         q_[i][n] = q[n] / factorial;
         centre_[i][n] = n == 0   ? change.x
@@ -115,15 +116,22 @@ class Rebound {
   };
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
     const Start start{x, v, w};
-    std::array<Real, 4> q = combine<4>(q_, start);
-    q[1] -= left_ * w;
-    const Real over = 1 / q[1], t = -q[0] * over, a = t * q[2] * over, b = t * t * q[3] * over;
-    const Real s = t * (1 - a + (2 * a * a - b)), size = absolute(s);
-    if (size < few_.s)
-      if (const auto end = end_within<few>(start, s, few_)) return end;
-    if (size < more_.s)
-      if (const auto end = end_within<more>(start, s, more_)) return end;
-    return size < many_.s ? end_within<many>(start, s, many_) : std::nullopt;
+    const auto q = overlap_after<few>(start);
+    const Real over = 1 / q[1], t = -q[0] * over, a = t * (q[2] * over), b = t * t * (q[3] * over);
+    Real s = t * (1 - a + (2 * a * a - b));
+    if (absolute(s) < few_.s)
+      if (const auto end = end_within(start, q, s, few_)) return end;
+    if (!(absolute(s) < most_.s)) return {};
+    // Nearer by few terms, before all that it takes are summed.
+    const auto q1 = slopes(q);
+    const auto q2 = slopes(q1);
+    for (int i = 0; i < 2; ++i) s += step_to_zero(q, q1, q2, s).rest;
+    if (absolute(s) < more_.s)
+      if (const auto end = end_within(start, overlap_after<more>(start), s, more_)) return end;
+    if (absolute(s) < many_.s)
+      if (const auto end = end_within(start, overlap_after<many>(start), s, many_)) return end;
+    if (!(absolute(s) < most_.s)) return {};
+    return end_within(start, overlap_after<most>(start), s, most_);
   }
   // Bounds on the second and third derivative of x in it.
   Real second_of_x(const Real& x, const Real& v, const Real& w) const {
@@ -132,9 +140,9 @@ class Rebound {
   Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
 
  private:
-  static constexpr std::size_t few = 10, more = 14, many = 24;
+  static constexpr std::size_t few = 10, more = 14, many = 18, most = 24;
   using Start = std::array<Real, 3>;  // by x, v and w at the touch
-  using Table = std::array<std::array<Real, many>, 3>;
+  using Table = std::array<std::array<Real, most>, 3>;
   template <std::size_t terms>
   static std::array<Real, terms> combine(const Table& by, const Start& start) {
     std::array<Real, terms> all;
@@ -157,42 +165,59 @@ class Rebound {
     return {s, exponential(Real(fast.a() * s))};
   }
 
+  // The terms of q(T + s).
   template <std::size_t terms>
-  std::optional<End> end_within(const Start& start, Real s, const Reach& reach) const {
-    const auto& [x, v, w] = start;
+  std::array<Real, terms> overlap_after(const Start& start) const {
     std::array<Real, terms> q = combine<terms>(q_, start);
-    q[1] -= left_ * w;
-    Real left_w;
+    q[1] -= left_ * start[2];
+    return q;
+  }
+  // From s on to where q vanishes, with q' and q'' at s.
+  struct Step {
+    Real rest, w, w1;
+  };
+  template <std::size_t terms>
+  static Step step_to_zero(const std::array<Real, terms>& q, const std::array<Real, terms - 1>& q1,
+                           const std::array<Real, terms - 2>& q2, const Real& s) {
+    const Real w = sum(q1, s), w1 = sum(q2, s), over = 1 / w, newton = -sum(q, s) * over;
+    return {newton * (1 - newton * (w1 * over) / 2), w, w1};
+  }
+  template <std::size_t terms>
+  std::optional<End> end_within(const Start& start, const std::array<Real, terms>& q, Real s,
+                                const Reach& reach) const {
+    const auto& [x, v, w] = start;
     const auto q1 = slopes(q);
     const auto q2 = slopes(q1);
+    Step step;
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
-      const Real g = sum(q, s), g1 = sum(q1, s), g2 = sum(q2, s), newton = -g / g1;
-      const Real rest = newton * (1 - newton * g2 / (2 * g1));
-      s += rest;
-      left_w = g1 + rest * (g2 + rest * (3 * q[3] + 12 * s * q[4]));
-      if (absolute(rest) < accurate_) break;
+      step = step_to_zero(q, q1, q2, s);
+      if (absolute(step.rest) < accurate_) break;
+      s += step.rest;
     }
-    const Real time = swing_ + s;
+    // All else that is a sum by powers of s need not wait for the last step, and is moved on by it.
+    const Real rest = step.rest, whole = s + rest, time = swing_ + whole;
+    const Real left_w = step.w + rest * (step.w1 + rest * (3 * q[3] + 12 * s * q[4]));
     if (!(left_w * w < 0)) return {};
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(left_w);
     const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
     // exp(a s) >= 1 + a s.
-    bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * s) * out), time,
+    bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * whole) * out), time,
                              Real(fast_fourth + reach.growth * slow_fourth));
-    if (!proved && s > 0) {
+    if (!proved && whole > 0) {
       // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
       const Real depth = inward * q[0], slope = inward * q[1];
       proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
                           swing_, Real(fast_fourth + slow_fourth)) &&
-               stays_open(depth, slope, Real(0), Real(-out), s,
+               stays_open(depth, slope, Real(0), Real(-out), whole,
                           Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
     }
     if (!proved) return {};
     const std::array<Real, terms> centre = combine<terms>(centre_, start);
-    const Real centre_v = v + share_ * w;
-    return End{time, x + (centre_v * s + sum(centre, s)),
-               v + (share_ * (w - left_w) + sum(slopes(centre), s)), left_w};
+    const Real centre_v = v + share_ * w, change = sum(centre, s), change_v = sum(slopes(centre), s);
+    const Real left_x = x + (centre_v * whole + (change + rest * change_v));
+    const Real v_before = v + (share_ * (w - left_w) + change_v);
+    return End{time, left_x, v_before - rest * ((1 - share_) * (2 * zeta_ * v_before + left_x)), left_w};
   }
   static Real bound(const Start& row, const Start& start) {
     return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
@@ -202,8 +227,8 @@ class Rebound {
   Real decay_{0}, growth_{0};  // a and exp(a T)
   Real unweighted_{0};         // (b / omega^2)^2
   Real accurate_{0};           // a correction of s whose third power is nothing
-  Reach few_, more_, many_;
-  Real share_{0};
+  Reach few_, more_, many_, most_;
+  Real share_{0}, zeta_{0};
   Table centre_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
 };

@@ -26,8 +26,10 @@ class Stuck {
     return v ? State<Real>{-push_ * *v * swing_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
   }
   // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
-  std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) const {
-    return swing_.falls(2, push_, from, horizon, span);
+  std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) {
+    const auto released = swing_.falls(2, push_, from, horizon, span);
+    if (released) turn_ = swing_.turn_before(*released);
+    return released;
   }
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
     return swing_.keeps_side(side, end.x, t);
@@ -41,6 +43,8 @@ class Stuck {
   Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
+    // Until then x'' keeps its sign, and so x' rises, the way the wall pushes, through one zero at most.
+    if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
     return swing_.falls(order, sign, from, until, span);
   }
   Real height(const Real& t) const { return swing_.height(t); }
@@ -55,6 +59,7 @@ class Stuck {
   Swing<Real, Force> swing_;
   State<Real> start_;
   Real push_;
+  std::optional<Real> turn_;  // of x before the release, once that is known
 };
 
 }  // namespace impact_damper

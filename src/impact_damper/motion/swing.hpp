@@ -100,20 +100,12 @@ class Swing {
     return impact_damper::derivatives<N>(oscillator_, x, v, times, Real(0),
                                          forcing_.template derivatives<N + 1>(begin_ + t));
   }
-  // And a bound on the fourth for a time `span` from t on.
+  // A bound on the fourth of these, d, for a time `span` from t on.
   template <std::size_t N>
-  struct Lead {
-    Derivatives<Real, N> derivatives;
-    Real fourth;
-  };
-  template <std::size_t N>
-  Lead<N> lead(const Real& x, const Real& v, const Real& t, const Real& times, const Real& span) const {
-    if (!forcing_) {
-      const auto d = impact_damper::derivatives<N>(oscillator_, x, v);
-      return {d, oscillator_.size(d[4], d[5])};
-    }
-    const Instant<Real, N, Force> now{oscillator_, x, v, times, Real(0), forcing_, begin_ + t};
-    return {now.derivatives(), now.bound(4, span)};
+  Real fourth(const Derivatives<Real, N>& d, const Real& x, const Real& v, const Real& t, const Real& times,
+              const Real& span) const {
+    if (!forcing_) return oscillator_.size(d[4], d[5]);
+    return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, begin_ + t}.bound(4, span);
   }
   using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
@@ -149,6 +141,12 @@ class Swing {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return absolute(at(t).x);
     return oscillator_.height(x0_, v0_, t);
+  }
+  // When x had its last turn before x'' vanished at t, for the first time; if in closed form.
+  std::optional<Real> turn_before(const Real& t) const {
+    const Real& half_period = oscillator_.half_period();
+    if (forcing_ || !(half_period < std::numeric_limits<Real>::infinity()) || !(t < half_period)) return {};
+    return t - oscillator_.turn_before();
   }
   // |x'| where that turns, if in closed form; x there is -2a/b times x'.
   std::optional<Real> speed_at_turn(const Real& t) const {
