@@ -26,11 +26,9 @@ std::string shown(const std::string& html) {
   return text;
 }
 
-// The range of values that differ from release to release, as a sentence; none where it cannot be seen.
-std::string range_sentence(const std::string& what, const std::string& low, const std::string& high) {
-  return shown(low) == shown(high)
-             ? ""
-             : "Over all releases " + what + " lies between " + low + " and " + high + ". ";
+// "0.1 to 0.2", or one of them where a reader would see no difference.
+std::string range_html(const std::string& low, const std::string& high) {
+  return shown(low) == shown(high) ? high : low + " to " + high;
 }
 
 // An equivalent viscous damping ratio: that of an oscillator with this loss factor.
@@ -76,10 +74,8 @@ std::string falls_table(const Findings& findings) {
   for (const Fall& fall : findings.falls) {
     table.rows.push_back({part_in_words(fall.part), speech.length(fall.amplitude), since(fall.time)});
     if (findings.others.empty()) continue;
-    const std::string low = fall.times ? since(fall.times->low) : "not all get there",
-                      high = fall.times ? since(fall.times->high) : low;
-    std::string& range = table.rows.back().emplace_back(low);
-    if (shown(low) != shown(high)) range.append(" to ").append(high);
+    table.rows.back().push_back(fall.times ? range_html(since(fall.times->low), since(fall.times->high))
+                                           : "not all get there");
   }
   return table_html(table);
 }
@@ -93,8 +89,10 @@ std::string best_sentences(const Findings& findings) {
                      number_html(best.eta) + ", at an amplitude of " + speech.length(best.amplitude) +
                      ": the primary mass is damped there as by " + as_viscous(best.eta) + ". ";
   if (zeta > 0) text += "Its own damping accounts for η = 2ζ = " + number_html(2 * zeta) + " of that. ";
-  if (best.etas)
-    text += range_sentence("the largest", number_html(best.etas->low), number_html(best.etas->high));
+  if (best.etas && best.etas->low < best.etas->high)
+    text += "Over all releases it is " +
+            range_html(number_html(best.etas->low), number_html(best.etas->high)) + ", at " +
+            range_html(speech.length(best.amplitudes->low), speech.length(best.amplitudes->high)) + ". ";
   if (best.amplitude == findings.loss.amplitude.back())
     text += "It is found at the end of the run: further down the damping may be better still. ";
   return text;
