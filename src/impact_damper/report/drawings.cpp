@@ -92,9 +92,9 @@ std::optional<Drawing> loss(const Findings& findings) {
   Figure figure;
   figure.number = drawing.name;
   figure.table = TableKind::loss_factor;
-  figure.curves = {{findings.subject.name, {}}};
+  figure.curves = {{"given", {}}};  // a file may be called anything, a line break among it
   figure.ordinate = LossOrdinate::eta;
-  FigureRun source{findings.subject.name, findings.run};
+  FigureRun source{"given", findings.run};
   add_loss_block(figure, figure.curves[0], source, "1", "simulated", {}, drawing.table);
   const auto curve = std::ranges::find(drawing.table.blocks, "curve-1", &TableBlock::name);
   if (curve->columns[0].values.size() < least) return std::nullopt;
