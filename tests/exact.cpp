@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -398,6 +399,37 @@ TEST_CASE("what is recorded never changes the motion, to the last bit") {
     CHECK(bare.half_cycles->peak_time == full.half_cycles->peak_time);
     CHECK(bare.half_cycles->impacts == full.half_cycles->impacts);
     CHECK(bare.end_time == full.end_time);
+  }
+}
+
+// Asks for the state at the end of each half cycle, when it is told of it.
+struct AtCrossings {
+  bool wants_half_cycles() const { return true; }
+  bool wants_contacts() const { return false; }
+  bool wants_energy() const { return false; }
+  void half_cycle(double, double end, double, double) { ends.push_back(end); }
+  void impact(double, Wall, double) {}
+  void contact(double, double, Wall) {}
+  double next_sample() const {
+    return x.size() < ends.size() ? ends[x.size()] : std::numeric_limits<double>::infinity();
+  }
+  void sample(double, double now, double, double, double) { x.push_back(now); }
+  EnergyLedger& ledger() { return unused; }
+
+  std::vector<double> ends, x;
+  EnergyLedger unused;
+};
+
+TEST_CASE("who asks for the state at a time that was told of gets it, that of the scene's end among them") {
+  Scene scene;
+  for (int cycles = 1; cycles <= 200; ++cycles) {
+    AtCrossings asking;
+    scene.until_time = 1000;
+    run_exact<double>(scene, Exact{.budget = {.max_half_cycles = cycles}}, asking);
+    CAPTURE(cycles);
+    CHECK(asking.ends.size() == std::size_t(cycles));
+    REQUIRE(asking.x.size() == asking.ends.size());
+    CHECK(std::abs(asking.x.back()) < 1e-12);  // |v| is at most 6, t at most 630: an ulp of it 1.1e-13
   }
 }
 

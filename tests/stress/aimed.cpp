@@ -162,8 +162,9 @@ Check within_a_rounding(const Options& options) {
       scene.wall_stiffness = 1e15;
       scene.restitution = e;
       scene.until_time = options.brief ? 3e3 : 1e5;
-      Engine engine = Exact{};
-      if (rigid) engine = Restitution{.accumulation_tolerance = 1e-13};
+      const Budget enough{.max_impacts = 5'000'000};
+      Engine engine = Exact{.budget = enough};
+      if (rigid) engine = Restitution{.accumulation_tolerance = 1e-13, .budget = enough};
       ++check.cases;
       const Run run = simulate(scene, engine, {.impacts = true, .energy = true});
       const std::vector<double>& time = run.impacts->time;

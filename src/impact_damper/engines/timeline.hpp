@@ -68,7 +68,9 @@ class Timeline {
       if (ends < duration) end = motion.at(ends);
       duration = ends;
     }
-    while (observer_.next_sample() <= double(now() + duration)) {
+    // As exact as what the observer is told of times: one that asks for the state at an end gets it.
+    const double until = timed_out_ ? horizon_.end_time : double(clock_.after(duration));
+    while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
       if (t < 0) t = 0;
       const State<Real> s = motion.at(t < duration ? t : duration);

@@ -100,12 +100,13 @@ struct Root {
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
 // outlook(t), a std::array<Outlook<Real>, N>, says where each function stands and what bounds it for a time
 // `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
-// A function that is not positive but rising is one that has just been left. Every step is an
-// effort (effort.hpp).
+// A function that is not positive but rising is one that has just been left. While it does not rise by more
+// than rounding, steps double: what it does meanwhile is lost in rounding errors. Every step is an effort
+// (effort.hpp).
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
                                      const Real& resolution) {
-  Real time = from;
+  Real time = from, wait{0};
   while (time < horizon) {
     spend_effort();
     const auto functions = outlook(time);
@@ -113,13 +114,13 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
     const Real most = rest_of_horizon < span ? rest_of_horizon : span;
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
     Real step = most;
+    bool waits = false;
     std::optional<Root<Real>> near;
     for (std::size_t i = 0; i < functions.size(); ++i) {
       Jet<Real> jet = functions[i].whole;
-      if (jet.g <= 0) {
-        if (jet.g1 < 0) return Root<Real>{time, i};
-        jet.g = 0;
-      }
+      const bool left = jet.g <= 0;
+      if (left && jet.g1 < 0) return Root<Real>{time, i};
+      if (left) jet.g = 0;
       Real proven = certified_step(jet, most);
       const Outlook<Real>& function = functions[i];
       if (proven < most && function.main.g > function.rest) {
@@ -128,6 +129,8 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
         const Real proven_without_rest = certified_step(main, most);
         if (proven_without_rest > proven) proven = proven_without_rest;
       }
+      if (left && proven < wait) proven = wait;
+      waits = waits || (left && !(proven > least && proven > wait));
       if (!(proven < step)) continue;
       step = proven;
       // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
@@ -143,7 +146,9 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
     }
     if (step >= rest_of_horizon) return std::nullopt;
     if (near) return near;
-    time += step > least ? step : least;
+    if (!(step > least)) step = least;
+    time += step;
+    wait = waits ? 2 * step : Real(0);
   }
   return std::nullopt;
 }
