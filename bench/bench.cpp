@@ -145,7 +145,7 @@ int bench(const Arguments& arguments) {
     found.figures = measure_figure_set(IMPACT_DAMPER_SOURCE, quick ? 3 : 9);
     found.allocations = count_allocations();
     tell("two threads");
-    found.speedup = measure_speedup(quick ? 3 : 9);
+    found.speedup = measure_speedup(quick ? 3 : 41);
     tell("elementary functions");
     found.functions = measure_functions(quick ? 9 : 101);
   }

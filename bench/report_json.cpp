@@ -147,6 +147,7 @@ std::string report_json(const Findings& found) {
                        {"one_milliseconds", json_of(found.speedup->one, 1e3)},
                        {"two_milliseconds", json_of(found.speedup->two, 1e3)},
                        {"speedup", json_of(found.speedup->ratio)},
+                       {"side_by_side", json_of(found.speedup->side_by_side)},
                        {"repeats", found.speedup->repeats}};
   }
   for (const FunctionCost& function : found.functions) {

@@ -226,7 +226,9 @@ std::vector<Target> targets_of(const Findings& found) {
   add(at_least("an ensemble on 2 threads against 1", 1.8, {}), [&](Target& t) {
     if (!found.speedup) return;
     t.measured = found.speedup->ratio.median;
-    t.note = std::to_string(found.speedup->members) + " decays, by the clock on the wall";
+    t.note = std::to_string(found.speedup->members) +
+             " decays, by the clock on the wall; two ensembles side by " +
+             "side, which share nothing: " + digits(found.speedup->side_by_side.median, "%.2f") + " x";
   });
   for (const FunctionCost& function : found.functions) {
     add(at_most(function.name + ", " + function.arguments + ": time by the C library's", 1.5, 1, "x"),
