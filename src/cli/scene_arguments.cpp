@@ -117,7 +117,9 @@ void refuse_as_options(const std::invalid_argument& problems) {
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     const std::size_t colon = std::min(line.find(':'), line.size());
-    text += (text.empty() ? "" : "\n") + option_of(line.substr(0, colon)) + line.substr(colon);
+    if (!text.empty()) text += '\n';
+    text += option_of(line.substr(0, colon));
+    text += line.substr(colon);
   }
   throw UsageError(text);
 }
