@@ -91,9 +91,9 @@ inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(dou
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
 template <std::same_as<Counted> Real>
-Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& short_time, const Real& most) {
+Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate, const Real& most) {
   ++counts.guesses;
-  return impact_damper::guess<Real>(u, short_time, most);
+  return impact_damper::guess<Real>(u, fourth, rate, most);
 }
 
 template <std::same_as<Counted> Real>

@@ -14,13 +14,12 @@
 // Whatever cannot be proved so is left to first_root.hpp, and nothing is ever assumed.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <limits>
 #include <optional>
 
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/motion/series.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -42,35 +41,6 @@ struct Arrival {
   Wall wall;
   State<Real> state;
 };
-
-// Derivatives u, u', ... at one instant.
-template <class Real, std::size_t N>
-using Derivatives = std::array<Real, N>;
-
-// c_0 + c_1 s + c_2 s^2 + ...: even and odd powers apart, half as long a chain of operations that wait for
-// each other.
-template <std::size_t terms, class Real, std::size_t N>
-Real sum_of_first(const std::array<Real, N>& c, const Real& s) {
-  static_assert(terms >= 2 && terms <= N);
-  const Real s_2 = s * s;
-  Real highest = c[terms - 1], next = c[terms - 2];
-  for (std::size_t n = terms - 1; n >= 2; n -= 2) {
-    highest = c[n - 2] + s_2 * highest;
-    if (n > 2) next = c[n - 3] + s_2 * next;
-  }
-  return terms % 2 == 0 ? next + s * highest : highest + s * next;
-}
-template <class Real, std::size_t N>
-Real sum(const std::array<Real, N>& c, const Real& s) {
-  return sum_of_first<N>(c, s);
-}
-// The terms of its derivative.
-template <class Real, std::size_t N>
-std::array<Real, N - 1> slopes(const std::array<Real, N>& c) {
-  std::array<Real, N - 1> d;
-  for (std::size_t n = 1; n < N; ++n) d[n - 1] = Real(double(n)) * c[n];
-  return d;
-}
 
 // When y meets a level nearby: its third-order series turned round. `close` tells whether that leaves no more
 // than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
@@ -104,17 +74,18 @@ Moved<Real> moved(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, 
 }
 
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series: roughly, but accurately within a
-// `short_time`. u is the distance from the wall it left; it may begin with its third derivative alone.
+// parabola through its beginning, then by Halley's method on the series. u is the distance from the wall it
+// left; it may begin with its third derivative alone. |u''''| <= fourth, and `rate` times as much each
+// derivative after it. Where the series is as good as the motion the guess is `exact`, and u1 is u' then.
 template <class Real>
 struct Guess {
   Real time;
-  bool across;     // at the other wall
-  Real u, u1, u2;  // of the series then: u from the wall it meets, and its first derivatives
+  bool across;  // at the other wall
+  bool exact;
+  Real u1;
 };
 template <class Real>
-Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& short_time, const Real& most) {
-  const auto& over = reciprocals<Real>;
+Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate, const Real& most) {
   const bool from_rest = u[1] == 0 && u[2] == 0;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];
@@ -125,31 +96,30 @@ Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& short_time, const 
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = from_rest ? Real(most * Real(0.75)) : most;
-  Derivatives<Real, 10> c{across ? Real(u[0] - 1) : u[0], u[1]};
-  Real factor = over[2];
-  for (std::size_t n = 2; n < c.size(); ++n) {
-    c[n] = factor * u[n];
-    factor *= over[n + 1];
-  }
-  const auto c1 = slopes(c);
-  const auto c2 = slopes(c1);
-  const auto halley = [](const Real& at, const Real& at1, const Real& at2) {
-    return Real(-at * at1 / (at1 * at1 - at * at2 / 2));
-  };
+  const Real level = across ? 1 : 0;
+  const auto series = series_of(u);
   // First by few terms, as a parabola may be far off.
-  const Real nearer = halley(sum_of_first<6>(c, t), sum_of_first<5>(c1, t), sum_of_first<4>(c2, t));
+  const SeriesAt<Real> rough = sum_of_first<Real, 3>(series, t);
+  const Real off = level - rough.u, nearer = off * rough.u1 / (rough.u1 * rough.u1 + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
-  Real g, g1, g2;
   for (int i = 0;; ++i) {
-    g = sum(c, t);
-    g1 = sum(c1, t);
-    g2 = sum(c2, t);
-    const Real step = halley(g, g1, g2), size = absolute(step);
-    if (i == 4 || !(size < t / 2) || size * 33554432 < t) break;
+    const SeriesAt<Real> at = sum<Real>(series, t);
+    const Real over = 1 / at.u1, newton = (level - at.u) * over, bend = newton * (at.u2 * over) / 2;
+    const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const Real size = absolute(step);
+    if (size * 33554432 < t && t < most) {
+      // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!.
+      const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2;
+      const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
+      if (fourth * (rt_4 * rt_4 * rt) <= 362880 * tiny * absolute(at.u1) * (rate * rate * rate))
+        return {t + step, across, true, at.u1 + step * at.u2};
+      return {t, across, false, at.u1};
+    }
+    if (i == 4 || !(size < t / 2)) break;
     t += step;
-    if (t > short_time && size * 32 < t) break;
+    if (rate * t > Real(0.05) && size * 32 < t) break;
   }
-  return t < most ? Guess<Real>{t, across, g, g1, g2} : Guess<Real>{most, across, 1, 0, 0};
+  return {t < most ? t : most, across, false, Real(0)};
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
@@ -177,25 +147,6 @@ bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& 
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
          (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;
-}
-
-// A guess made good, where the series is so short a time the motion itself: u' at the wall.
-template <class Real>
-struct SeriesLanding {
-  Real shift, u1;
-  bool close;
-};
-template <class Real>
-SeriesLanding<Real> land_on_series(const Guess<Real>& guess, const Real& fourth, const Real& rate) {
-  const auto& [h, across, g, g1, g2] = guess;
-  const Real hr = h * rate, hr_2 = hr * hr, hr_4 = hr_2 * hr_2,
-             tiny = std::numeric_limits<Real>::epsilon() / 16;
-  // What is left out of u': |u^(10)| h^9/9!.
-  if (!(fourth * (hr_4 * hr_4 * hr) <= 362880 * tiny * absolute(g1) * (rate * rate * rate)))
-    return {0, g1, false};
-  const Real over = 1 / g1, newton = -g * over, shift = newton * (1 - newton * (g2 * over) / 2);
-  // And of the shift, its third power.
-  return {shift, g1 + shift * g2, absolute(shift) * 33554432 < h};
 }
 
 }  // namespace impact_damper

@@ -147,15 +147,15 @@ class Flight {
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      const Guess<Real> guessed = guess(u, Real(Real(0.05) / rate), most);
+      const Guess<Real> guessed = guess(u, fourth, rate, most);
       Real h = guessed.time;
       if (!(h > 0)) return {};
-      if (const auto [shift, u1, close] = land_on_series(guessed, fourth, rate); close) {
+      if (guessed.exact) {
         // z = x + y has gone straight there.
-        const Real whole = h + shift, level = guessed.across ? 1 : 0;
-        return reached(guessed.across, whole,
-                       here.x + ((here.v + away_ * here.u1) * whole + away_ * (here.u - level)),
-                       here.v + away_ * (here.u1 - u1), u1);
+        const Real level = guessed.across ? 1 : 0;
+        return reached(guessed.across, h,
+                       here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level)),
+                       here.v + away_ * (here.u1 - guessed.u1), guessed.u1);
       }
       Place there;
       for (int correction = 0;; ++correction) {

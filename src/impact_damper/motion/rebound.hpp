@@ -86,17 +86,21 @@ class Rebound {
       const Real q_then = slow_q - left_ * f.q;
       const Real w_then = i == 2 ? Real(slow_w + left_ * s.w) : Real(slow_w - left_ * f.w);  // but for -E w
       const Real w_whole = i == 2 ? Real(w_then - left_) : w_then;
-      std::array<Real, most> x, q;
+      std::array<Real, 2 * most> x, q, centre;
       derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
              x, q);
       q[1] = w_then;
       Real factorial{1};
-      for (std::size_t n = 0; n < most; ++n) {
+      for (std::size_t n = 0; n < x.size(); ++n) {
         if (n > 1) factorial *= Real(double(n));
-        q_[i][n] = q[n] / factorial;
-        centre_[i][n] = n == 0   ? change.x
-                        : n == 1 ? change.v
-                                 : Real(-(1 - share) * (2 * zeta * x[n - 1] + x[n - 2]) / factorial);
+        q[n] /= factorial;
+        centre[n] = n == 0   ? change.x
+                    : n == 1 ? change.v
+                             : Real(-(1 - share) * (2 * zeta * x[n - 1] + x[n - 2]) / factorial);
+      }
+      for (std::size_t n = 0; n < most; ++n) {
+        q_[i][n] = Pair<Real>{q[2 * n], q[2 * n + 1]};
+        centre_[i][n] = Pair<Real>{centre[2 * n], centre[2 * n + 1]};
       }
       const Real along = (f.w + fast.a() * f.q) / omega;
       fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
@@ -117,15 +121,14 @@ class Rebound {
   std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
     const Start start{x, v, w};
     const auto q = overlap_after<few>(start);
-    const Real over = 1 / q[1], t = -q[0] * over, a = t * (q[2] * over), b = t * t * (q[3] * over);
+    const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
+               b = t * t * (q[1][1] * over);
     Real s = t * (1 - a + (2 * a * a - b));
     if (absolute(s) < few_.s)
       if (const auto end = end_within(start, q, s, few_)) return end;
     if (!(absolute(s) < most_.s)) return {};
     // Nearer by few terms, before all that it takes are summed.
-    const auto q1 = slopes(q);
-    const auto q2 = slopes(q1);
-    for (int i = 0; i < 2; ++i) s += step_to_zero(q, q1, q2, s).rest;
+    for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
     if (absolute(s) < more_.s)
       if (const auto end = end_within(start, overlap_after<more>(start), s, more_)) return end;
     if (absolute(s) < many_.s)
@@ -140,13 +143,13 @@ class Rebound {
   Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
 
  private:
-  static constexpr std::size_t few = 10, more = 14, many = 18, most = 24;
-  using Start = std::array<Real, 3>;  // by x, v and w at the touch
-  using Table = std::array<std::array<Real, most>, 3>;
-  template <std::size_t terms>
-  static std::array<Real, terms> combine(const Table& by, const Start& start) {
-    std::array<Real, terms> all;
-    for (std::size_t n = 0; n < terms; ++n)
+  static constexpr std::size_t few = 5, more = 7, many = 9, most = 12;  // pairs of terms
+  using Start = std::array<Real, 3>;                                    // by x, v and w at the touch
+  using Table = std::array<PairedSeries<Real, most>, 3>;
+  template <std::size_t pairs>
+  static PairedSeries<Real, pairs> combine(const Table& by, const Start& start) {
+    PairedSeries<Real, pairs> all;
+    for (std::size_t n = 0; n < pairs; ++n)
       all[n] = by[0][n] * start[0] + by[1][n] * start[1] + by[2][n] * start[2];
     return all;
   }
@@ -156,7 +159,8 @@ class Rebound {
     Real s{0};       // the longest |s|
     Real growth{0};  // of exp(a t) in it, from T on
   };
-  static Reach reach_of(std::size_t terms, const Oscillator<Real>& fast) {
+  static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
+    const std::size_t terms = 2 * pairs;
     Real factorial{1};
     for (std::size_t n = 2; n < terms; ++n) factorial *= Real(double(n));
     // The term left out, (omega s)^(terms - 1) / (terms - 1)! in the velocity.
@@ -166,38 +170,36 @@ class Rebound {
   }
 
   // The terms of q(T + s).
-  template <std::size_t terms>
-  std::array<Real, terms> overlap_after(const Start& start) const {
-    std::array<Real, terms> q = combine<terms>(q_, start);
-    q[1] -= left_ * start[2];
+  template <std::size_t pairs>
+  PairedSeries<Real, pairs> overlap_after(const Start& start) const {
+    PairedSeries<Real, pairs> q = combine<pairs>(q_, start);
+    q[0] = q[0] - Pair<Real>{Real(0), left_ * start[2]};
     return q;
   }
   // From s on to where q vanishes, with q' and q'' at s.
   struct Step {
     Real rest, w, w1;
   };
-  template <std::size_t terms>
-  static Step step_to_zero(const std::array<Real, terms>& q, const std::array<Real, terms - 1>& q1,
-                           const std::array<Real, terms - 2>& q2, const Real& s) {
-    const Real w = sum(q1, s), w1 = sum(q2, s), over = 1 / w, newton = -sum(q, s) * over;
+  template <std::size_t pairs>
+  static Step step_to_zero(const std::array<Pair<Real>, pairs>& q, const Real& s) {
+    const auto [depth, w, w1] = sum<Real>(q, s);
+    const Real over = 1 / w, newton = -depth * over;
     return {newton * (1 - newton * (w1 * over) / 2), w, w1};
   }
-  template <std::size_t terms>
-  std::optional<End> end_within(const Start& start, const std::array<Real, terms>& q, Real s,
+  template <std::size_t pairs>
+  std::optional<End> end_within(const Start& start, const std::array<Pair<Real>, pairs>& q, Real s,
                                 const Reach& reach) const {
     const auto& [x, v, w] = start;
-    const auto q1 = slopes(q);
-    const auto q2 = slopes(q1);
     Step step;
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
-      step = step_to_zero(q, q1, q2, s);
+      step = step_to_zero(q, s);
       if (absolute(step.rest) < accurate_) break;
       s += step.rest;
     }
     // All else that is a sum by powers of s need not wait for the last step, and is moved on by it.
     const Real rest = step.rest, whole = s + rest, time = swing_ + whole;
-    const Real left_w = step.w + rest * (step.w1 + rest * (3 * q[3] + 12 * s * q[4]));
+    const Real left_w = step.w + rest * (step.w1 + rest * (3 * q[1][1] + 12 * s * q[2][0]));
     if (!(left_w * w < 0)) return {};
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(left_w);
     const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
@@ -206,17 +208,17 @@ class Rebound {
                              Real(fast_fourth + reach.growth * slow_fourth));
     if (!proved && whole > 0) {
       // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
-      const Real depth = inward * q[0], slope = inward * q[1];
+      const Real depth = inward * q[0][0], slope = inward * q[0][1];
       proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
                           swing_, Real(fast_fourth + slow_fourth)) &&
                stays_open(depth, slope, Real(0), Real(-out), whole,
                           Real(left_ * (unweighted_ * fast_fourth + slow_fourth)));
     }
     if (!proved) return {};
-    const std::array<Real, terms> centre = combine<terms>(centre_, start);
-    const Real centre_v = v + share_ * w, change = sum(centre, s), change_v = sum(slopes(centre), s);
-    const Real left_x = x + (centre_v * whole + (change + rest * change_v));
-    const Real v_before = v + (share_ * (w - left_w) + change_v);
+    const SeriesAt<Real> change = sum<Real>(combine<pairs>(centre_, start), s);
+    const Real centre_v = v + share_ * w;
+    const Real left_x = x + (centre_v * whole + (change.u + rest * change.u1));
+    const Real v_before = v + (share_ * (w - left_w) + change.u1);
     return End{time, left_x, v_before - rest * ((1 - share_) * (2 * zeta_ * v_before + left_x)), left_w};
   }
   static Real bound(const Start& row, const Start& start) {

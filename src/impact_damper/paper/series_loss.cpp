@@ -40,9 +40,9 @@ double amplitude_at(int i, int last, double from, double to) {
   return from * exponential(logarithm(to / from) * i / last);
 }
 
-// Amplitudes along a closed form: a hundredth apart at most, which no drawing tells from the curve.
-std::vector<double> theory_amplitudes(double from, double to) {
-  const int last = static_cast<int>(std::ceil(100 * logarithm(to / from)));
+// Amplitudes along a closed form, no further apart than a factor of exp(spacing).
+std::vector<double> theory_amplitudes(double from, double to, double spacing) {
+  const int last = static_cast<int>(std::ceil(logarithm(to / from) / spacing));
   std::vector<double> amplitudes;
   for (int i = 0; i <= last; ++i) amplitudes.push_back(amplitude_at(i, last, from, to));
   return amplitudes;
@@ -80,7 +80,8 @@ struct ClosedForms {
   LossFactor one_impact, bounce_down;
 
   ClosedForms(double e, double most) : restitution(e), largest(most) {
-    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e))) {
+    // It leaves the fold steeply; bounce-down bends so little that its chords are within 1e-4 of it.
+    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e), 0.01)) {
       const auto motion = single_impact(e, amplitude);
       if (!motion) continue;  // the fold itself, by rounding
       one_impact.amplitude.push_back(amplitude);
@@ -89,7 +90,7 @@ struct ClosedForms {
     // Below 1/pi the far wall is not met before x returns to 0.
     if (e > 0.95 || !(largest > 1 / std::numbers::pi) || !impact_damper::bounce_down(e, largest).sticks)
       return;
-    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest);
+    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest, 0.04);
     for (const double amplitude : bounce_down.amplitude)
       bounce_down.eta.push_back(impact_damper::bounce_down(e, amplitude).loss);
   }

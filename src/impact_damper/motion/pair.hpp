@@ -1,0 +1,32 @@
+// Two numbers that undergo the same: one instruction for both, where the processor has it for their type.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace impact_damper {
+
+template <class Real>
+struct PairOf {
+  class type {
+   public:
+    type() = default;
+    type(const Real& first, const Real& second) : both_{first, second} {}
+    const Real& operator[](std::size_t i) const { return both_[i]; }
+    friend type operator+(const type& a, const type& b) { return {a[0] + b[0], a[1] + b[1]}; }
+    friend type operator-(const type& a, const type& b) { return {a[0] - b[0], a[1] - b[1]}; }
+    friend type operator*(const type& a, const type& b) { return {a[0] * b[0], a[1] * b[1]}; }
+    friend type operator*(const type& a, const Real& b) { return {a[0] * b, a[1] * b}; }
+
+   private:
+    std::array<Real, 2> both_{};
+  };
+};
+template <>
+struct PairOf<double> {
+  using type [[gnu::vector_size(16)]] = double;
+};
+template <class Real>
+using Pair = typename PairOf<Real>::type;
+
+}  // namespace impact_damper
