@@ -120,6 +120,7 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& given) {
 
 int bench(const Arguments& arguments) {
   const auto& [folder, quick, only] = arguments;
+  if (!quick) add_repeats_for(300);
   std::filesystem::create_directories(folder);
   for (const char* name : {"bench.json", "results.md", "time_error.dat", "cost.dat"}) {
     require_writable(folder / name);

@@ -20,6 +20,7 @@ void add(Json& json, const Timing& timing) {
   json["nanoseconds"] = json_of(timing.seconds, 1e9);
   json["yardsticks"] = json_of(timing.yardsticks);
   json["repeats"] = timing.repeats;
+  json["undisturbed_repeats"] = timing.undisturbed;
   json["runs_per_repeat"] = timing.runs;
 }
 
@@ -148,7 +149,8 @@ std::string report_json(const Findings& found) {
                        {"two_milliseconds", json_of(found.speedup->two, 1e3)},
                        {"speedup", json_of(found.speedup->ratio)},
                        {"side_by_side", json_of(found.speedup->side_by_side)},
-                       {"repeats", found.speedup->repeats}};
+                       {"repeats", found.speedup->repeats},
+                       {"repeats_on_two_cores", found.speedup->on_two_cores}};
   }
   for (const FunctionCost& function : found.functions) {
     json["functions"].push_back({{"name", function.name},

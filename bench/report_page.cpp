@@ -195,7 +195,9 @@ void add_rest(std::string& page, const Findings& found) {
             rounded(speedup.two.median * 1e3) + " ms on two; " +
             printed("%.2f (quartiles %.2f to %.2f)", speedup.ratio.median, speedup.ratio.lower,
                     speedup.ratio.upper) +
-            " times as fast.\n";
+            " times as fast. Two ensembles side by side got " + printed("%.2f", speedup.side_by_side.median) +
+            " cores; " + std::to_string(speedup.on_two_cores) + " of " + std::to_string(speedup.repeats) +
+            " repeats were next to more than 1.9.\n";
   }
   if (!found.functions.empty()) {
     page +=
@@ -225,6 +227,23 @@ void add_rest(std::string& page, const Findings& found) {
   if (!notes.empty()) page += "\n## Missing\n\n" + notes;
 }
 
+std::string disturbances(const Findings& found) {
+  int settings = 0, disturbed = 0;
+  const auto see = [&](const Timing& timing) {
+    ++settings;
+    disturbed += timing.undisturbed < timing.repeats;
+  };
+  for (const Curve& curve : found.curves) {
+    for (const Point& point : curve.points) see(point.timing);
+  }
+  for (const Sweep& sweep : found.sweeps) {
+    for (const SweepPoint& point : sweep.points) see(point.timing);
+  }
+  if (found.figures) see(found.figures->timing);
+  return std::to_string(disturbed) + " of " + std::to_string(settings) +
+         " times, where beside a busy neighbour not enough repeats were to be had on a core of one's own";
+}
+
 }  // namespace
 
 std::string report_page(const Findings& found) {
@@ -239,9 +258,8 @@ std::string report_page(const Findings& found) {
           printed("%.1f ns (quartiles %.1f to %.1f)", found.yardstick.median * 1e9,
                   found.yardstick.lower * 1e9, found.yardstick.upper * 1e9) +
           " |\n| times | CPU time, median of 7 repeats or more, of 3 where a run takes over 0.4 s; for "
-          "threads the "
-          "clock on the wall |\n| in all | " +
-          printed("%.0f s", found.seconds) + " |\n\n";
+          "threads the clock on the wall |\n| disturbed | " +
+          disturbances(found) + " |\n| in all | " + printed("%.0f s", found.seconds) + " |\n\n";
   add_targets(page, found);
   add_times(page, found);
   add_entrants(page, found);

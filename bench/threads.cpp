@@ -19,22 +19,33 @@ Speedup measure_speedup(int repeats) {
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
+  struct Sample {
+    std::vector<double> one, two, ratio, side_by_side;
+  } all, on_two_cores;
   ensemble(2);
-  std::vector<double> one, two, ratio, side_by_side;
   for (int i = 0; i < repeats; ++i) {
-    one.push_back(seconds([&] { ensemble(1); }));
-    two.push_back(seconds([&] { ensemble(2); }));
-    ratio.push_back(one.back() / two.back());
-    side_by_side.push_back(2 * one.back() / seconds([&] {
-                             std::thread other([&] { ensemble(1); });
-                             ensemble(1);
-                             other.join();
-                           }));
+    const double one = seconds([&] { ensemble(1); }), two = seconds([&] { ensemble(2); });
+    // Beside another run of one: a slow one must not be in both, and choose what counts.
+    const double alone = seconds([&] { ensemble(1); });
+    const double side_by_side = 2 * alone / seconds([&] {
+                                  std::thread other([&] { ensemble(1); });
+                                  ensemble(1);
+                                  other.join();
+                                });
+    for (Sample* sample : {&all, &on_two_cores}) {
+      if (sample == &on_two_cores && side_by_side < 1.9) continue;
+      sample->one.push_back(one);
+      sample->two.push_back(two);
+      sample->ratio.push_back(one / two);
+      sample->side_by_side.push_back(side_by_side);
+    }
   }
-  speedup.one = spread_of(one);
-  speedup.two = spread_of(two);
-  speedup.ratio = spread_of(ratio);
-  speedup.side_by_side = spread_of(side_by_side);
+  speedup.on_two_cores = int(on_two_cores.one.size());
+  const Sample& taken = speedup.on_two_cores < 9 ? all : on_two_cores;
+  speedup.one = spread_of(taken.one);
+  speedup.two = spread_of(taken.two);
+  speedup.ratio = spread_of(taken.ratio);
+  speedup.side_by_side = spread_of(taken.side_by_side);
   return speedup;
 }
 

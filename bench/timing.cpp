@@ -4,13 +4,26 @@
 #include <cmath>
 #include <ctime>
 
+#include "own_core.hpp"
+
 namespace impact_damper::bench {
 
-double cpu_seconds(const std::function<void()>& work) {
-  const std::clock_t begin = std::clock();
-  work();
-  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+namespace {
+double cpu_clock() {
+  std::timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
+double seconds_to_add = 0;
+}  // namespace
+
+double cpu_seconds(const std::function<void()>& work) {
+  const double begin = cpu_clock();
+  work();
+  return cpu_clock() - begin;
+}
+
+void add_repeats_for(double seconds) { seconds_to_add = seconds; }
 
 Spread spread_of(std::vector<double> sample) {
   if (sample.empty()) return {};
@@ -42,29 +55,46 @@ Timing measure(const std::function<void()>& run, int repeats, std::optional<doub
     // A first estimate from a tenth of it: one run may be below the clock's resolution.
     int tried = 0;
     seconds = cpu_seconds([&] {
-      const std::clock_t begin = std::clock();
+      const double begin = cpu_clock();
       do {
         run();
         ++tried;
-      } while (double(std::clock() - begin) / CLOCKS_PER_SEC < least / 10);
+      } while (cpu_clock() - begin < least / 10);
     });
     runs = std::max(1, int(std::ceil(least / seconds * tried)));
   }
 
-  std::vector<double> times, ratios, yardsticks;
-  double before = yardstick();
-  for (int i = 0; i < repeats; ++i) {
+  static OwnCore core;
+  struct Sample {
+    std::vector<double> times, ratios, yardsticks;
+    int size() const { return int(times.size()); }
+  } all, undisturbed;
+  double before = yardstick(), added = 0;
+  bool own_before = core.now();
+  while (all.size() < repeats || (undisturbed.size() < repeats && added < 3 && seconds_to_add > 0)) {
     const double time = cpu_seconds([&] {
                           for (int j = 0; j < runs; ++j) run();
                         }) /
                         runs;
+    const bool own_after = core.now();
     const double after = yardstick();
-    times.push_back(time);
-    ratios.push_back(time / ((before + after) / 2));
-    yardsticks.push_back(after);
+    const auto take = [&](Sample& sample) {
+      sample.times.push_back(time);
+      sample.ratios.push_back(time / ((before + after) / 2));
+      sample.yardsticks.push_back(after);
+    };
+    take(all);
+    if (own_before && own_after) take(undisturbed);
+    if (all.size() > repeats) {
+      added += time * runs;
+      seconds_to_add -= time * runs;
+    }
     before = after;
+    own_before = own_after;
   }
-  return {spread_of(times), spread_of(ratios), spread_of(yardsticks), repeats, runs};
+  const Sample& taken = undisturbed.size() < repeats ? all : undisturbed;
+  return {spread_of(taken.times), spread_of(taken.ratios), spread_of(taken.yardsticks),
+          taken.size(),           undisturbed.size(),      runs};
 }
 
 }  // namespace impact_damper::bench

@@ -17,17 +17,20 @@ Spread spread_of(std::vector<double> sample);
 double yardstick();
 
 struct Timing {
-  Spread seconds;     // CPU time of one run
-  Spread yardsticks;  // each repeat by the mean of the yardsticks before and after it
-  Spread yardstick;   // seconds
-  int repeats = 0;
-  int runs = 0;  // in each repeat
+  Spread seconds;                    // CPU time of one run
+  Spread yardsticks;                 // each repeat by the mean of the yardsticks before and after it
+  Spread yardstick;                  // seconds
+  int repeats = 0, undisturbed = 0;  // in all, and those on a core of one's own (own_core.hpp)
+  int runs = 0;                      // in each repeat
 };
 // Each repeat lasts a fiftieth of a second at least. A first run, not counted, tells how many runs make one
-// repeat; whoever has made it already says how many CPU seconds it took.
+// repeat; whoever has made it already says how many CPU seconds it took. Where a neighbour disturbs, repeats
+// are added, for three seconds at most, until as many as asked for are undisturbed; these are then taken.
 Timing measure(const std::function<void()>& run, int repeats, std::optional<double> first = {});
+// How many seconds all measure() may add; until told, none.
+void add_repeats_for(double seconds);
 
-// CPU time, not wall time: what others do on the machine is not the contender's.
+// CPU time of this thread, not wall time: what others do on the machine is not the contender's.
 double cpu_seconds(const std::function<void()>& work);
 
 }  // namespace impact_damper::bench

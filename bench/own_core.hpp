@@ -1,0 +1,26 @@
+// Whether the core is one's own for the moment.
+//
+// A processor may be half a core, whose other half is another guest's. The two share caches, the decoder and
+// the memory of branches: long code that branches much takes a fifth to a third longer beside a busy
+// neighbour, and a chain of operations that wait for each other, as the yardstick is, hardly notices. What
+// does notice is a short sort: the third time over, a core of one's own knows each of its branches.
+#pragma once
+
+#include <vector>
+
+namespace impact_damper::bench {
+
+class OwnCore {
+ public:
+  OwnCore();
+  // Asks once more; no core is one's own that has sorted twice as fast before.
+  bool now();
+
+ private:
+  double sorting() const;  // CPU seconds
+
+  std::vector<unsigned> numbers_;
+  double least_;
+};
+
+}  // namespace impact_damper::bench
