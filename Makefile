@@ -118,7 +118,7 @@ test: build  ## run every test
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
 
-bench: $(BUILD)/build.ninja  ## measure run time beside error (about five minutes), print and draw it
+bench: $(BUILD)/build.ninja  ## measure run time beside error (five to ten minutes), print and draw it
 	@$(alone) cmake --build $(BUILD) --target bench
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/

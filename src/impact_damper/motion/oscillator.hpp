@@ -299,7 +299,7 @@ class Oscillator {
   Real a_{0}, b_{1};
   bool underdamped_ = true;
   Real omega_{1}, over_omega_{1};  // sqrt|b - a^2|
-  Real slow_rate_{0};  // of the slower exponential, where there are two
+  Real slow_rate_{0};              // of the slower exponential, where there are two
   Real rate_{1};
   Real root_b_{1}, over_root_b_{1}, half_period_{0}, turn_before_{0};
 };

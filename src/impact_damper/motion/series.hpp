@@ -59,8 +59,10 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
 template <class Real>
 PairedSeries<Real, 5> series_of(const Derivatives<Real, 10>& u) {
   PairedSeries<Real, 5> c;
-  for (std::size_t n = 0; n < c.size(); ++n)
-    c[n] = reciprocal_factorials<Real>[n] * Pair<Real> { u[2 * n], u[2 * n + 1] };
+  for (std::size_t n = 0; n < c.size(); ++n) {
+    const Pair<Real> both{u[2 * n], u[2 * n + 1]};
+    c[n] = reciprocal_factorials<Real>[n] * both;
+  }
   return c;
 }
 
