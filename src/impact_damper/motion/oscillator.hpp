@@ -146,7 +146,7 @@ class Oscillator {
       p.s = sin * over_omega_;
       if (a_ == 0) {
         p.c = cos;
-        p.c1 = cos - 1;
+        p.c1 = cos > Real(0.5) ? -sin * sin / (1 + cos) : cos - 1;
         p.s1 = p.s - t;
         p.v = cos;
         return p;
