@@ -8,15 +8,15 @@ namespace impact_damper {
 
 template <class Real>
 struct PairOf {
-  class type {
+  class Type {
    public:
-    type() = default;
-    type(const Real& first, const Real& second) : both_{first, second} {}
+    Type() = default;
+    Type(const Real& first, const Real& second) : both_{first, second} {}
     const Real& operator[](std::size_t i) const { return both_[i]; }
-    friend type operator+(const type& a, const type& b) { return {a[0] + b[0], a[1] + b[1]}; }
-    friend type operator-(const type& a, const type& b) { return {a[0] - b[0], a[1] - b[1]}; }
-    friend type operator*(const type& a, const type& b) { return {a[0] * b[0], a[1] * b[1]}; }
-    friend type operator*(const type& a, const Real& b) { return {a[0] * b, a[1] * b}; }
+    friend Type operator+(const Type& a, const Type& b) { return {a[0] + b[0], a[1] + b[1]}; }
+    friend Type operator-(const Type& a, const Type& b) { return {a[0] - b[0], a[1] - b[1]}; }
+    friend Type operator*(const Type& a, const Type& b) { return {a[0] * b[0], a[1] * b[1]}; }
+    friend Type operator*(const Type& a, const Real& b) { return {a[0] * b, a[1] * b}; }
 
    private:
     std::array<Real, 2> both_{};
@@ -24,9 +24,9 @@ struct PairOf {
 };
 template <>
 struct PairOf<double> {
-  using type [[gnu::vector_size(16)]] = double;
+  using Type [[gnu::vector_size(16)]] = double;
 };
 template <class Real>
-using Pair = typename PairOf<Real>::type;
+using Pair = typename PairOf<Real>::Type;
 
 }  // namespace impact_damper

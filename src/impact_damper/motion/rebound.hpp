@@ -86,12 +86,13 @@ class Rebound {
       const Real q_then = slow_q - left_ * f.q;
       const Real w_then = i == 2 ? Real(slow_w + left_ * s.w) : Real(slow_w - left_ * f.w);  // but for -E w
       const Real w_whole = i == 2 ? Real(w_then - left_) : w_then;
-      std::array<Real, 2 * most> x, q, centre;
+      constexpr std::size_t terms = 2 * most;
+      std::array<Real, terms> x, q, centre;
       derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
              x, q);
       q[1] = w_then;
       Real factorial{1};
-      for (std::size_t n = 0; n < x.size(); ++n) {
+      for (std::size_t n = 0; n < terms; ++n) {
         if (n > 1) factorial *= Real(double(n));
         q[n] /= factorial;
         centre[n] = n == 0   ? change.x

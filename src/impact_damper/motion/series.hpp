@@ -47,10 +47,12 @@ template <class Real>
 inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
   PairedSeries<Real, 5> all;
   Real even{1};
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    const Real odd = even / Real(double(2 * n + 1));
-    all[n] = Pair<Real>{even, odd};
-    even = odd / Real(double(2 * n + 2));
+  double power = 0;
+  for (Pair<Real>& both : all) {
+    const Real odd = even / Real(power + 1);
+    both = Pair<Real>{even, odd};
+    even = odd / Real(power + 2);
+    power += 2;
   }
   return all;
 }();
@@ -58,10 +60,11 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
 // The series of a motion about one instant.
 template <class Real>
 PairedSeries<Real, 5> series_of(const Derivatives<Real, 10>& u) {
+  const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;
   PairedSeries<Real, 5> c;
   for (std::size_t n = 0; n < c.size(); ++n) {
     const Pair<Real> both{u[2 * n], u[2 * n + 1]};
-    c[n] = reciprocal_factorials<Real>[n] * both;
+    c[n] = over[n] * both;
   }
   return c;
 }
