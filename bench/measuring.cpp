@@ -95,3 +95,15 @@ TEST_CASE("a spread is the median and the quartiles of a sample in any order") {
   CHECK(spread.median == 5);
   CHECK(spread.upper == 7);
 }
+
+TEST_CASE("a time is by as many repeats as asked for, each of as many runs as it says") {
+  int runs = 0;
+  const Timing timing = measure([&] { ++runs; }, 5, 1.0);
+  CHECK(timing.repeats == 5);
+  CHECK(timing.runs == 1);
+  CHECK(runs == 5);
+  CHECK(timing.undisturbed >= 0);
+  CHECK(timing.undisturbed <= 5);
+  CHECK(timing.seconds.lower <= timing.seconds.median);
+  CHECK(timing.seconds.median <= timing.seconds.upper);
+}
