@@ -76,13 +76,15 @@ Moved<Real> moved(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, 
 // When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
 // parabola through its beginning, then by Halley's method on the series. u is the distance from the wall it
 // left; it may begin with its third derivative alone. |u''''| <= fourth, and `rate` times as much each
-// derivative after it. Where the series is as good as the motion the guess is `exact`, and u1 is u' then.
+// derivative after it. Where the series is as good as the motion the guess is `exact`, and `gained` tells by
+// how much u and u' differ then from the straight line: with the digits that a fast mass's own u and u' have
+// not.
 template <class Real>
 struct Guess {
   Real time;
   bool across;  // at the other wall
   bool exact;
-  Real u1;
+  Moved<Real> gained;
 };
 template <class Real>
 Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate, const Real& most) {
@@ -96,30 +98,32 @@ Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real
            : u[0] == 0 ? Real(2 * speed / -push)
                        : Real((speed + square_root(Real(reach - 2 * push))) / -push);
   if (!(t < most)) t = from_rest ? Real(most * Real(0.75)) : most;
-  const Real level = across ? 1 : 0;
-  const auto series = series_of(u);
+  const Real gap = (across ? Real(1) : Real(0)) - u[0];
+  const auto departure = departure_of(u);
   // First by few terms, as a parabola may be far off.
-  const SeriesAt<Real> rough = sum_of_first<Real, 3>(series, t);
-  const Real off = level - rough.u, nearer = off * rough.u1 / (rough.u1 * rough.u1 + off * rough.u2 / 2);
+  const SeriesAt<Real> rough = sum_of_first<Real, 3>(departure, t);
+  const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
+  const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
   for (int i = 0;; ++i) {
-    const SeriesAt<Real> at = sum<Real>(series, t);
-    const Real over = 1 / at.u1, newton = (level - at.u) * over, bend = newton * (at.u2 * over) / 2;
+    const SeriesAt<Real> at = sum<Real>(departure, t);
+    const Real u1 = u[1] + at.u1, over = 1 / u1;
+    const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
     if (size * 33554432 < t && t < most) {
       // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!.
       const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2;
       const Real tiny = std::numeric_limits<Real>::epsilon() / 16;
-      if (fourth * (rt_4 * rt_4 * rt) <= 362880 * tiny * absolute(at.u1) * (rate * rate * rate))
-        return {t + step, across, true, at.u1 + step * at.u2};
-      return {t, across, false, at.u1};
+      if (fourth * (rt_4 * rt_4 * rt) <= 362880 * tiny * absolute(u1) * (rate * rate * rate))
+        return {t + step, across, true, {at.u + step * at.u1, at.u1 + step * at.u2}};
+      return {t, across, false, {}};
     }
     if (i == 4 || !(size < t / 2)) break;
     t += step;
     if (rate * t > Real(0.05) && size * 32 < t) break;
   }
-  return {t < most ? t : most, across, false, Real(0)};
+  return {t < most ? t : most, across, false, {}};
 }
 
 // Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay

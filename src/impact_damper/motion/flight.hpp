@@ -151,11 +151,10 @@ class Flight {
       Real h = guessed.time;
       if (!(h > 0)) return {};
       if (guessed.exact) {
-        // z = x + y has gone straight there.
-        const Real level = guessed.across ? 1 : 0;
-        return reached(guessed.across, h,
-                       here.x + ((here.v + away_ * here.u1) * h + away_ * (here.u - level)),
-                       here.v + away_ * (here.u1 - guessed.u1), guessed.u1);
+        // x has departed from its own straight line by as much, the other way.
+        const auto& [by_u, by_u1] = guessed.gained;
+        return reached(guessed.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
+                       here.u1 + by_u1);
       }
       Place there;
       for (int correction = 0;; ++correction) {

@@ -57,12 +57,14 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
   return all;
 }();
 
-// The series of a motion about one instant.
+// The series about one instant of what a motion departs from a straight line by: from its second derivative
+// on.
 template <class Real>
-PairedSeries<Real, 5> series_of(const Derivatives<Real, 10>& u) {
+PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
   const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;
   PairedSeries<Real, 5> c;
-  for (std::size_t n = 0; n < c.size(); ++n) {
+  c[0] = Pair<Real>{Real(0), Real(0)};
+  for (std::size_t n = 1; n < c.size(); ++n) {
     const Pair<Real> both{u[2 * n], u[2 * n + 1]};
     c[n] = over[n] * both;
   }
