@@ -42,7 +42,6 @@ void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
       {"--locate", {Cem::name}},
       {"--large-step", {Cem::name}},
       {"--unstable", {Cem::name}},
-      {"--max-steps", {Cem::name}},
       {"--calibration", {Exact::name, Cem::name}},
       {"--accumulation-tolerance", {Restitution::name}},
   };
@@ -92,12 +91,18 @@ Engine engine_of(Arguments& arguments) {
   const Budget budget = budget_of(arguments);
   const Calibration calibration = arguments.choice(
       "--calibration", {Calibration::fixed_wall, Calibration::two_body}, Calibration::fixed_wall);
-  if (name == Exact::name) return Exact{calibration, budget};
+  const auto most_steps = arguments.whole_number("--max-steps", at_least(1));
+  if (name == Exact::name) {
+    Exact engine{calibration, budget};
+    if (most_steps) engine.max_steps = *most_steps;
+    return engine;
+  }
   if (name == Restitution::name) {
     Restitution engine;
     engine.budget = budget;
     const auto tolerance = arguments.number("--accumulation-tolerance", NumberRange{0, 1e-3, false});
     if (tolerance) engine.accumulation_tolerance = *tolerance;
+    if (most_steps) engine.max_steps = *most_steps;
     return engine;
   }
   Cem engine;
@@ -107,7 +112,7 @@ Engine engine_of(Arguments& arguments) {
   engine.large_step = arguments.number("--large-step", above(0));
   engine.unstable = arguments.flag("--unstable");
   engine.calibration = calibration;
-  if (const auto most = arguments.whole_number("--max-steps", at_least(1))) engine.max_steps = *most;
+  if (most_steps) engine.max_steps = *most_steps;
   engine.budget = budget;
   return engine;
 }

@@ -32,10 +32,16 @@ struct Budget {
   bool operator==(const Budget&) const = default;
 };
 
+// Steps of the searches for events, and panels of the quadratures of energy, that a run in closed form may
+// take: a budget like the others. All that the other default budgets allow of a scene that is not stiff takes
+// about three million.
+inline constexpr std::int64_t usual_search_steps = 10'000'000;
+
 struct Exact {
   static constexpr std::string_view name = "exact";
   Calibration calibration = Calibration::fixed_wall;
   Budget budget;
+  std::int64_t max_steps = usual_search_steps;  // > 0
 
   bool operator==(const Exact&) const = default;
 };
@@ -46,6 +52,7 @@ struct Restitution {
   // acceleration changes by less than this fraction in it (restitution.hpp). In (0, 1e-3].
   double accumulation_tolerance = 1e-8;
   Budget budget;
+  std::int64_t max_steps = usual_search_steps;  // > 0
 
   bool operator==(const Restitution&) const = default;
 };

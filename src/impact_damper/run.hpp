@@ -19,7 +19,7 @@ enum class StopReason {
   impact_budget,      // Budget::max_impacts
   half_cycle_budget,  // Budget::max_half_cycles
   time_budget,        // Budget::max_time
-  step_budget,        // Cem::max_steps
+  step_budget,        // max_steps of the engine
 };
 std::string_view name_of(StopReason reason);  // the enumerator's own name
 

@@ -15,21 +15,13 @@
 namespace impact_damper {
 namespace {
 
-// A second or so by the default budget, in proportion where more is admitted. The paper's decays take a few
-// thousand, as most events are found without a search.
-std::int64_t effort_for(const Scene& scene, const Budget& budget) {
-  const Budget usual = budget_for(scene, {});
-  const double times = std::max({1.0, double(budget.max_impacts) / double(usual.max_impacts),
-                                 double(budget.max_half_cycles) / double(usual.max_half_cycles),
-                                 *budget.max_time / *usual.max_time});
-  return std::int64_t(2e6 * std::min(times, 1e9));
-}
-
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
+  const Effort effort(options.max_steps);
   return run_exact<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
+  const Effort effort(options.max_steps);
   return run_restitution<double>(scene, options, recorder);
 }
 
@@ -127,7 +119,6 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
-        const Effort effort(effort_for(scene, options.budget));
         return run(scene, options, recorder);
       },
       result.engine);

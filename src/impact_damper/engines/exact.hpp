@@ -10,6 +10,7 @@
 #include "impact_damper/arithmetic.hpp"
 #include "impact_damper/engines/timeline.hpp"
 #include "impact_damper/motion/contact_works.hpp"
+#include "impact_damper/motion/coupled_contact.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 
@@ -55,7 +56,8 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
   while (!timeline.stopped()) {
     if (!in_contact) {
       const Flight<Real, Force> flight(system, timeline.now(), state);
-      const auto met = flight.next_wall(timeline.remaining(), timeline.span());
+      const auto met =
+          timeline.search([&] { return flight.next_wall(timeline.remaining(), timeline.span()); });
       if (met) state = copied(met->state);
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
@@ -63,26 +65,30 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
       if (!timeline.impact(wall, state.w)) break;
       in_contact = by_impact = true;
     } else {
-      const Contact<Real, Force> contact(walls, timeline.now(), state, wall);
-      const auto left = contact.leave(timeline.remaining(), timeline.span());
-      const Real begin = timeline.now();
-      if (left) state = copied(left->state);
-      const Works<Real> works =
-          timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
-      if (observer.wants_contacts())
-        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
-                         wall);
-      if (observer.wants_energy()) {
-        losses += works.wall;
-        if (by_impact) {
-          observer.ledger().impact_loss.push_back(double(works.wall));
-        } else {
-          observer.ledger().contact_loss += double(works.wall);
+      const auto pass = [&](const auto& contact) {
+        const auto left =
+            timeline.search([&] { return contact.leave(timeline.remaining(), timeline.span()); });
+        const Real begin = timeline.now();
+        if (left) state = copied(left->state);
+        const Works<Real> works =
+            timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
+        if (observer.wants_contacts())
+          observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
+                           wall);
+        if (observer.wants_energy()) {
+          losses += works.wall;
+          if (by_impact) {
+            observer.ledger().impact_loss.push_back(double(works.wall));
+          } else {
+            observer.ledger().contact_loss += double(works.wall);
+          }
         }
-      }
-      if (timeline.stopped()) {
-        depth = contact.overlap(timeline.passed());
-        break;
+        if (timeline.stopped()) depth = contact.overlap(timeline.passed());
+      };
+      if (walls.coupled) {
+        pass(CoupledContact<Real, Force>(walls, timeline.now(), state, wall));
+      } else {
+        pass(Contact<Real, Force>(walls, timeline.now(), state, wall));
       }
       in_contact = by_impact = false;
     }

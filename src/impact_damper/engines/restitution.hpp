@@ -74,7 +74,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       }
       Stuck<Real, Force> stuck(system, timeline.now(), state.x, state.v + joined, wall);
       const Real begin = timeline.now() + accumulation;
-      const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
+      const auto released =
+          timeline.search([&] { return stuck.release(accumulation, timeline.remaining(), timeline.span()); });
       if (released) state = stuck.released(*released);
       timeline.pass(stuck, released ? *released : timeline.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= timeline.now()) {
@@ -86,7 +87,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
 
     const Flight<Real, Force> flight(system, timeline.now(), state);
     const bool released = on_wall && state.w == 0;
-    const auto met = flight.next_wall(timeline.remaining(), timeline.span(), released);
+    const auto met =
+        timeline.search([&] { return flight.next_wall(timeline.remaining(), timeline.span(), released); });
     if (met) state = copied(met->state);
     timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
     if (timeline.stopped()) break;

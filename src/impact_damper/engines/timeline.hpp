@@ -52,18 +52,33 @@ class Timeline {
     if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
+  // What a search for the end of a motion finds. Where it takes more steps than the scene may, the scene ends
+  // where the motion begins.
+  template <class Search>
+  auto search(Search&& search) -> decltype(search()) {
+    try {
+      return search();
+    } catch (const OutOfEffort&) {
+      stopped_ = StopReason::step_budget;
+      return {};
+    }
+  }
+
   // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
   // Returns the works in it.
   template <class Motion>
   [[gnu::flatten]] Works<Real> pass(const Motion& motion, Real duration, State<Real>& end,
                                     const Real& wall_damping) {
-    if (!(duration < remaining())) {
+    if (stopped_) {
+      duration = 0;
+      end = motion.at(duration);
+    } else if (!(duration < remaining())) {
       duration = remaining();
       stopped_ = horizon_.stop_reason;
       timed_out_ = true;
       end = motion.at(duration);
     }
-    if (tracks_half_cycles_) {
+    if (tracks_half_cycles_ && duration > 0) {
       const Real ends = follow(motion, duration, end);
       if (ends < duration) end = motion.at(ends);
       duration = ends;
@@ -117,56 +132,70 @@ class Timeline {
   template <class Motion>
   Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
     Real from{0};
-    if (side_ ==
-        0) {  // x has not moved until now: which way it goes, its first derivative that is not zero tells
-      if (duration == 0) return duration;
-      const auto leads = motion.leads_of_x();
-      std::size_t order = 0;
-      while (order < 4 && leads[order] == 0) ++order;
-      if (order == 4) return duration;
-      side_ = leads[order] > 0 ? 1 : -1;
-      if (order == 3) {
-        // x''' t^3/6 outweighs |x''''| t^4/24 until t = 4 x'''/|x''''|. Half of that is passed over, within
-        // which the sign of an x'' that is zero to rounding would decide.
-        const Real fourth = motion.derivative_of_x(1, side_, from, span_).whole.third;
-        const Real leap = 2 * absolute(leads[order]) / fourth;
-        from = leap < duration ? leap : duration;
-        if (span_ < from) from = span_;
-      }
+    try {
+      if (side_ == 0 && !find_side(motion, duration, from)) return duration;
+      return follow_rows(motion, duration, end, from);
+    } catch (const OutOfEffort&) {
+      stopped_ = StopReason::step_budget;
+      timed_out_ = false;
+      return from;
     }
+  }
+  // Which way x goes that has not moved until now: its first derivative that is not zero tells. False: none.
+  template <class Motion>
+  bool find_side(const Motion& motion, const Real& duration, Real& from) {
+    const auto leads = motion.leads_of_x();
+    std::size_t order = 0;
+    while (order < 4 && leads[order] == 0) ++order;
+    if (order == 4) return false;
+    side_ = leads[order] > 0 ? 1 : -1;
+    if (order == 3) {
+      // x''' t^3/6 outweighs |x''''| t^4/24 until t = 4 x'''/|x''''|. Half of that is passed over, within
+      // which the sign of an x'' that is zero to rounding would decide.
+      const Real fourth = motion.derivative_of_x(1, side_, from, span_).whole.third;
+      const Real leap = 2 * absolute(leads[order]) / fourth;
+      from = leap < duration ? leap : duration;
+      if (span_ < from) from = span_;
+    }
+    return true;
+  }
+  // `from`: where the row under way has been followed to; the last zero crossing, when this ends.
+  template <class Motion>
+  Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end, Real& from) {
     notice_peak(side_ * motion.at(from).x, from);
     const Real v = side_ * motion.at(from).v;
     bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
     // What the ends already exclude is not searched for.
-    const bool may_turn = !motion.keeps_course(row_best_, end, duration);
+    bool may_turn = !motion.keeps_course(row_best_, end, duration);
     bool may_cross = !motion.keeps_side(side_, end, duration);
     Real no_turn_before = from;
     if (!may_turn && !may_cross) return duration;
+    // A zero of x at the end of a motion, to rounding, is the next motion's: an impact there may throw x
+    // back, and by then x and x' tell whether it crosses.
+    const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (1 + duration);
     for (;;) {
       std::optional<Real> crossing;
-      if (may_cross) crossing = motion.falls(0, side_, from, duration, span_);
+      if (may_cross) crossing = motion.falls(0, side_, from, last, span_);
       const Real until = crossing ? *crossing : duration;
       if (may_turn && no_turn_before <= until) find_peaks(motion, from, until, rising, no_turn_before);
       if (!crossing) return duration;
-      const Real zero = clock_.after(*crossing);
-      // A heavy mass may meet its wall just as x comes to zero, and throw it back: by rounding x was across.
-      if (row_best_ > last_best_ * (16 * std::numeric_limits<Real>::epsilon())) {
-        observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
-        ++rows_;
-        const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
-        if (low || rows_ >= budget_.max_half_cycles) {
-          stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
-          timed_out_ = false;
-          return *crossing;
-        }
-        last_best_ = row_best_;
+      from = *crossing;
+      const Real zero = clock_.after(from);
+      observer_.half_cycle(double(row_begin_), double(zero), double(row_peak_time_), double(row_best_));
+      ++rows_;
+      const bool low = scene_.until_amplitude && row_best_ < *scene_.until_amplitude;
+      if (low || rows_ >= budget_.max_half_cycles) {
+        stopped_ = low ? StopReason::amplitude : StopReason::half_cycle_budget;
+        timed_out_ = false;
+        return from;
       }
       side_ = -side_;
       row_begin_ = zero;
       row_best_ = 0;
       row_peak_time_ = zero;
-      from = *crossing;
       rising = true;
+      // That x stays below the best of the row holds for the row that has ended, not for this one.
+      may_turn = may_turn || !motion.keeps_course(row_best_, end, duration);
       may_cross = !motion.leaves_zero(from, end, duration);
     }
   }
@@ -205,7 +234,6 @@ class Timeline {
   // The half cycle that is under way: on which side of zero x is (0: x has not moved yet), since when, and
   // its largest |x| so far.
   Real side_{0}, row_begin_{0}, row_best_{0}, row_peak_time_{0};
-  Real last_best_{0};  // of the half cycle before
   Real viscous_{0}, forcing_{0}, turnover_{0};
 };
 

@@ -27,6 +27,13 @@ struct QuadraticFactor {
 // the one whose two factors have roots farthest apart.
 QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0);
 
+// A wall with K = k/nu above this is much stiffer than all else that holds the primary mass.
+template <class Real>
+Real stiff_above(const Real& zeta) {
+  const Real far = 100 * (1 + 2 * zeta);
+  return far * far;
+}
+
 template <class Real>
 ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real& stiffness,
                                     const Real& damping) {
@@ -46,8 +53,7 @@ ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real
   };
   differ_by(0, 0);
   // With a wall that is much stiffer than the spring the joined motion is near enough to start from.
-  const Real far = 100 * (1 + 2 * zeta);
-  if (!(stiffness > far * far)) {
+  if (!(stiffness > stiff_above(zeta))) {
     const Real c3 = 2 * zeta + damping * both, c2 = 1 + 2 * zeta * damping + stiffness * both;
     const Real c1 = damping + 2 * zeta * stiffness;
     const QuadraticFactor start = quadratic_factor(double(c3), double(c2), double(c1), double(stiffness));

@@ -1,16 +1,14 @@
 // What a run in closed form may cost. Where a motion is so stiff, or so long, that no bound on it holds for
-// more than a moment, the search for its next event or the quadrature of its works would go on for years.
+// more than a moment, the search for its next event would go on for years.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 
-#include "impact_damper/files/errors.hpp"
-
 namespace impact_damper {
 
 // Steps of searches (first_root.hpp) and panels of quadratures (energy.hpp) that this thread may still take,
-// at about a microsecond each; simulate() sets them for each run, in proportion to its budget.
+// at about a microsecond each; simulate() sets them for each run.
 inline thread_local constinit std::int64_t effort_left = std::numeric_limits<std::int64_t>::max();
 
 // Sets it for as long as it lives.
@@ -25,12 +23,10 @@ class Effort {
   std::int64_t before_;
 };
 
-// Throws NumericalError when none is left.
+// Thrown by a search when none is left: the run then ends by StopReason::step_budget (timeline.hpp).
+struct OutOfEffort {};
 inline void spend_effort() {
-  if (effort_left-- > 0) return;
-  throw NumericalError(
-      "the scene's motions are too stiff, for as long as they last, to be followed in closed form; end it "
-      "sooner");
+  if (effort_left-- <= 0) throw OutOfEffort{};
 }
 
 }  // namespace impact_damper

@@ -54,7 +54,7 @@ Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, P
   Real from{0};
   const Real least = duration / 65536;
   for (int panels = 1; from < duration; ++panels) {
-    spend_effort();
+    --effort_left;  // the next search may end the run for it; a quadrature is short enough by itself
     Real to = from + panel(from);
     if (panels > 65536 && to < from + least) to = from + least;
     if (!(to < duration)) to = duration;

@@ -33,11 +33,17 @@ struct Outlook {
   Real rest{0};    // bound on |rest| from there on; infinity: no such splitting
 };
 
-// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits.
-// Needs jet.g >= 0.
+// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
+// or `most` where it has none up to there. Needs jet.g >= 0.
 template <class Real>
-Real certified_step(const Jet<Real>& jet, const Real& most) {
+Real certified_step(const Jet<Real>& jet, Real most) {
   const Real &g = jet.g, &g1 = jet.g1, &g2 = jet.g2, &third = jet.third;
+  // From `far` on the cube outdoes each other term three times, and p is negative.
+  const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
+  Real far = by_g > 1 ? square_root(by_g) : Real(1);
+  if (by_g1 > far * far) far = square_root(by_g1);
+  if (by_g2 > far) far = by_g2;
+  if (far < most) most = far;
   const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
   const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
   const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };
@@ -102,16 +108,17 @@ struct Root {
 // `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
 // A function that is not positive but rising is one that has just been left. While it does not rise by more
 // than rounding, steps double: what it does meanwhile is lost in rounding errors. Every step is an effort
-// (effort.hpp).
+// (effort.hpp). No step is chosen by the horizon: a search that ends earlier is the beginning of one that
+// ends later, to the bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
                                      const Real& resolution) {
+  const Real later_than_any_run = 1e13, most = span < later_than_any_run ? span : later_than_any_run;
   Real time = from, wait{0};
   while (time < horizon) {
     spend_effort();
     const auto functions = outlook(time);
     const Real rest_of_horizon = horizon - time;
-    const Real most = rest_of_horizon < span ? rest_of_horizon : span;
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
     Real step = most;
     bool waits = false;
@@ -145,7 +152,7 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
       }
     }
     if (step >= rest_of_horizon) return std::nullopt;
-    if (near) return near;
+    if (near) return near->time < horizon ? near : std::nullopt;
     if (!(step > least)) step = least;
     time += step;
     wait = waits ? 2 * step : Real(0);

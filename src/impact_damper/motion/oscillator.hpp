@@ -74,11 +74,12 @@ class Oscillator {
  public:
   Oscillator() = default;
   Oscillator(const Real& a, const Real& b) : a_(a), b_(b) {
-    const Real discriminant = b - a * a;
+    root_b_ = square_root(b);
+    // b - a^2, exact to rounding near critical damping where b is 1.
+    const Real discriminant = (root_b_ - a) * (root_b_ + a);
     underdamped_ = discriminant > 0;
     omega_ = square_root(absolute(discriminant));
     over_omega_ = 1 / omega_;
-    root_b_ = square_root(b);
     over_root_b_ = 1 / root_b_;
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
@@ -93,10 +94,18 @@ class Oscillator {
   // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
   const Real& half_period() const { return half_period_; }
 
-  // When, from a time `from` on, a free motion that begins with u and u' falls through zero; only where
-  // underdamped. Its phase grows by omega t, and it falls after each half turn.
+  // The first time >= 0 at which a free motion that begins with u and u', not both zero, falls through zero;
+  // only where underdamped. Its phase grows by omega t from that of (omega u, -(u' + a u)), and it falls
+  // where the phase is a multiple of a full turn: taken from this angle, the time keeps its relative accuracy
+  // where it is short, and where omega vanishes.
+  Real first_fall(const Real& u, const Real& u1) const {
+    const Real phase = angle_of(Real(omega_ * u), Real(-(u1 + a_ * u)));
+    return phase < 0 ? Real(phase * over_omega_ + 2 * half_period_) : Real(phase * over_omega_);
+  }
+  // The first of these at or after a time `from` that is no such time itself, nor near one: whole periods are
+  // added to the first.
   Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
-    const Real first = half_period_ - angle_of(Real(omega_ * u), Real(u1 + a_ * u)) * over_omega_;
+    const Real first = first_fall(u, u1);
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
     return first + Real(whole_above(double((from - first) / period))) * period;
@@ -181,9 +190,7 @@ class Oscillator {
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
     // The response z to exp(i omega_f t), turned by the phase at the beginning:
     // sin(phase + omega_f t) = Im(exp(i phase) exp(i omega_f t)).
-    const bool may_resonate = a_ * a_ * 2 < b_ && forcing.frequency * forcing.frequency < 2 * b_;
-    const auto [z, z1] = may_resonate ? respond_by_difference(forcing.frequency, t)
-                                      : respond_by_steady_state(forcing.frequency, t, p);
+    const auto [z, z1] = response_to_rotation(forcing.frequency, t, p);
     return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
             forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
   }
@@ -247,26 +254,42 @@ class Oscillator {
                                        const Real& t) const {
     const Real at = 2 * a_ * t, bt = b_ * t * t, phase = forcing.frequency * t;
     // d_n, f_n: terms of order t^n of the response and of the force times t^2.
+    const auto& over = reciprocals<Real>;
     Real f_now = forcing.amplitude * t * t * sin, f_next = forcing.amplitude * t * t * phase * cos;
     Real d_now = 0, d_next = 0, d = 0, d1 = 0;
-    for (int n = 0;; ++n) {
-      const Real term = (f_now - at * (n + 1) * d_next - bt * d_now) / ((n + 1) * (n + 2));
+    for (int n = 0; n + 3 < 64; ++n) {
+      const Real weight = over[n + 1] * over[n + 2];
+      const Real term = (f_now - bt * d_now) * weight - at * over[n + 2] * d_next;
       d += term;
       d1 += (n + 2) * term;
-      const Real f_after = -phase * phase * f_now / ((n + 1) * (n + 2));
+      const Real f_after = -phase * phase * f_now * weight;
       f_now = f_next;
       f_next = f_after;
       d_now = d_next;
       d_next = term;
-      if (n > 1 &&
-          absolute(d_now) + absolute(d_next) <= std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
+      // These four numbers are all that the terms to come are made of. Fewer are not enough: two successive
+      // terms of d vanish where omega_f^2 = b and a/sqrt(b) is sqrt(3)/2, sqrt(1/2), cos 36 or cos 72
+      // degrees.
+      const Real force_to_come = (absolute(f_now) + absolute(f_next)) * (over[n + 2] * over[n + 3]);
+      if (absolute(d_now) + absolute(d_next) + force_to_come <=
+          std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
         break;
-      if (n > 200) break;  // a response that is zero to the last bit
     }
     return {d, d1 / t};
   }
 
-  // Steady state minus the transient it starts with: safe wherever the steady state cannot be large.
+  // The imaginary part of the response to exp(i omega_f t), from rest, is what a force that has just been
+  // zero makes of it: of the order omega_f where the force is slow. Each form below is used where it keeps
+  // the digits of both parts (docs/mathematics.md, section 3).
+  ComplexResponse response_to_rotation(const Real& frequency, const Real& t,
+                                       const Propagator<Real>& p) const {
+    const Real square = frequency * frequency;
+    if (!underdamped_ && 2 * omega_ > a_) return respond_by_two_decays(frequency, t);
+    const bool near_resonance = a_ * a_ * 2 < b_ && square * 2 > b_ && square < 2 * b_;
+    return near_resonance ? respond_by_difference(frequency, t) : respond_by_steady_state(frequency, t, p);
+  }
+
+  // Steady state minus the transient it starts with: where the steady state cannot be large.
   ComplexResponse respond_by_steady_state(const Real& frequency, const Real& t,
                                           const Propagator<Real>& p) const {
     const Real sin = sin_cos(frequency * t).sin, half = sin_cos(frequency * t / 2).sin;
@@ -295,6 +318,32 @@ class Oscillator {
     const Complex lambda(-a_, omega_), twice_i_omega(0, 2 * omega_);
     return {(e1 - e2) / twice_i_omega, (lambda * e1 - conjugate(lambda) * e2) / twice_i_omega};
   }
+
+  // Well overdamped, eigenvalues -r1 (slow) and -r2: the same with two real eigenvalues. A slow force on a
+  // slow decay is far below its steady state, so E comes from its series where it is short.
+  ComplexResponse respond_by_two_decays(const Real& frequency, const Real& t) const {
+    const auto [sin, cos] = sin_cos(frequency * t);
+    const Real half = sin_cos(frequency * t / 2).sin;
+    const auto e = [&](const Real& rate) {
+      // E = t exp(i omega_f t) phi(-z), phi(-z) = (1 - exp(-z))/z, z = (r + i omega_f) t.
+      const Complex z(rate * t, frequency * t);
+      Complex phi(0);
+      if (rate * t + frequency * t < Real(0.5)) {
+        for (int n = last_short_term; n > 0; --n) phi = Complex(Real(1) / n) - z * phi * Complex(Real(1) / n);
+      } else {
+        const Real decay = exponential(Real(-rate * t)), loss = -exponential_minus_1(Real(-rate * t));
+        phi = Complex(loss * cos + 2 * half * half, decay * sin) / z;
+      }
+      return Complex(t) * (Complex(cos, sin) * phi);
+    };
+    const Real fast_rate = slow_rate_ + 2 * omega_;
+    const Complex slow = e(slow_rate_), fast = e(fast_rate), apart(2 * omega_);
+    return {(slow - fast) / apart, (Complex(fast_rate) * fast - Complex(slow_rate_) * slow) / apart};
+  }
+  // 1/2^n/n! is below a rounding error.
+  static constexpr int last_short_term = std::numeric_limits<Real>::digits10 < 17   ? 16
+                                         : std::numeric_limits<Real>::digits10 < 20 ? 18
+                                                                                    : 30;
 
   Real a_{0}, b_{1};
   bool underdamped_ = true;
