@@ -1,0 +1,132 @@
+// Scenes in which an engine was wrong once, each held against the oracle in all that is recorded.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "compare.hpp"
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// All of the scene must have been compared, and nothing may differ.
+void agrees(const Scene& scene, const Engine& engine, double until = 1) {
+  const oracle::Comparison result = oracle::compare(scene, engine);
+  CHECK(result.until >= until * *scene.until_time);
+  CHECK(result.numbers > 100);
+  CHECK(result.differences.size() == 0);
+  for (std::size_t i = 0; i < result.differences.size() && i < 3; ++i) MESSAGE(result.differences[i]);
+}
+
+Scene scene_until(double time) {
+  Scene scene;
+  scene.until_time = time;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a half cycle that begins inside a contact has its peak") {
+  Scene scene = scene_until(20);
+  scene.mass_ratio = 0.1, scene.restitution = 0.3, scene.damping_ratio = 0.7;
+  agrees(scene, Exact{});
+  scene.until_time.reset();
+  scene.until_amplitude = 0.3;
+  CHECK(simulate(scene, Exact{}, {}).end_time == doctest::Approx(12.20088703792958).epsilon(1e-13));
+}
+
+TEST_CASE("a mass that is struck just as it would be released is released at once") {
+  Scene scene = scene_until(12);
+  scene.mass_ratio = 0.6, scene.restitution = 0, scene.x0 = 0.1, scene.y0 = 0.9;
+  agrees(scene, Restitution{});
+  scene.x0 = 0.25, scene.y0 = 0.75, scene.mass_ratio = 1;
+  agrees(scene, Restitution{});
+}
+
+TEST_CASE("a crossing that coincides with an impact is there") {
+  Scene scene = scene_until(12);
+  scene.x0 = 1, scene.damping_ratio = 0.5;
+  agrees(scene, Restitution{});
+  agrees(scene, Exact{});
+}
+
+TEST_CASE("a crossing right after the release is there") {
+  Scene scene = scene_until(8);
+  scene.x0 = 1e-16, scene.v0 = -0.3, scene.y0 = 0.5, scene.damping_ratio = 0.5;
+  agrees(scene, Exact{});
+  agrees(scene, Restitution{});
+}
+
+TEST_CASE("a force at the undamped frequency is answered where successive terms of the response vanish") {
+  for (const double zeta :
+       {0.8660254037844386, 0.7071067811865476, 0.8090169943749475, 0.30901699437494745, 0.5}) {
+    CAPTURE(zeta);
+    Scene scene = scene_until(0.499);
+    scene.damping_ratio = zeta, scene.force_amplitude = 1, scene.x0 = 0, scene.y0 = 0.5;
+    agrees(scene, Exact{});
+    agrees(scene, Restitution{});
+    // Stuck, from the start: the pair's undamped frequency, and its damping ratio.
+    scene = scene_until(3);
+    scene.mass_ratio = 1, scene.x0 = -1, scene.y0 = 0;
+    scene.force_frequency = std::sqrt(0.5), scene.damping_ratio = zeta * std::sqrt(2);
+    scene.force_amplitude = 0.25;
+    agrees(scene, Restitution{});
+  }
+}
+
+TEST_CASE("a contact whose two motions have one frequency and one damping keeps its digits") {
+  for (const double nu : {4.0, 1.0, 0.25, 0.02}) {
+    CAPTURE(nu);
+    Scene scene = scene_until(20);
+    scene.mass_ratio = nu, scene.wall_stiffness = nu, scene.damping_ratio = std::sqrt(nu),
+    scene.restitution = 1;
+    agrees(scene, Exact{});
+    scene.damping_ratio = 0;
+    scene.wall_stiffness = nu / ((1 + nu) * (1 + nu));
+    scene.restitution = std::exp(-M_PI * std::sqrt(nu));
+    agrees(scene, Exact{});
+  }
+}
+
+TEST_CASE("just below critical damping event times keep their digits") {
+  for (const double zeta : {0.9999999999999999, 0.999999999999, 0.99999999, 1.0, 1.0000000000000002}) {
+    CAPTURE(zeta);
+    Scene scene = scene_until(20);
+    scene.damping_ratio = zeta, scene.x0 = 0.4, scene.v0 = -0.9, scene.y0 = 0.5, scene.mass_ratio = 1e-6;
+    agrees(scene, Exact{});
+    agrees(scene, Restitution{});
+  }
+  for (const double nu : {0.6, 0.02, 4.0}) {
+    CAPTURE(nu);
+    Scene scene = scene_until(12);
+    scene.mass_ratio = nu, scene.damping_ratio = std::sqrt(1 + nu), scene.restitution = 0, scene.x0 = -2,
+    scene.y0 = 1;
+    agrees(scene, Restitution{});
+    scene.damping_ratio = std::nextafter(scene.damping_ratio, 0);
+    agrees(scene, Restitution{});
+  }
+}
+
+TEST_CASE("a slow strong force costs no digits") {
+  for (const double force : {1e9, 1e12}) {
+    CAPTURE(force);
+    Scene scene = scene_until(20);
+    scene.force_amplitude = force, scene.force_frequency = 1 / force;
+    agrees(scene, Exact{}, 0.3);
+    agrees(scene, Restitution{}, 0.3);
+  }
+}
+
+TEST_CASE("extreme mass ratios that are allowed give finite numbers") {
+  for (const double nu : {5e-324, 1e-300, 1e-30, 1e6}) {
+    CAPTURE(nu);
+    Scene scene = scene_until(10);
+    scene.mass_ratio = nu;
+    if (!problems_of(scene).empty()) continue;
+    Record record;
+    record.impacts = record.contacts = record.energy = true;
+    for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
+      CHECK_NOTHROW(simulate(scene, engine, record));
+  }
+}

@@ -1,0 +1,108 @@
+#include "scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "impact_damper/files/number_text.hpp"
+#include "reference.hpp"
+
+namespace oracle {
+
+using impact_damper::Scene;
+using reference::Random;
+
+namespace {
+
+double one_of(Random& random, const std::vector<double>& values) {
+  return values[std::min(std::size_t(random.uniform(0, double(values.size()))), values.size() - 1)];
+}
+
+// Long enough for tens of events, short enough for the oracle: steps are 4 by the fastest rate.
+double length(Random& random, const Scene& scene, double least, double most) {
+  double rate = 2 + 2 * scene.damping_ratio;
+  if (scene.force_amplitude != 0) rate = std::max(rate, scene.force_frequency);
+  return std::min(random.uniform(least, most), 400 / rate);
+}
+
+}  // namespace
+
+Scene random_scene(std::uint64_t seed, bool rigid) {
+  Random random(seed);
+  Scene scene;
+  scene.mass_ratio = random.log_uniform(1e-6, 1e4);
+  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  const double damping = random.uniform(0, 1);
+  scene.damping_ratio = damping < 0.3    ? 0
+                        : damping < 0.5  ? 1 + random.sign() * random.log_uniform(1e-12, 0.1)
+                        : damping < 0.95 ? random.log_uniform(1e-4, 10)
+                                         : random.log_uniform(1, 1e3);
+  scene.wall_stiffness = random.log_uniform(0.3, 1e12);
+  const auto motion = [&] { return random.chance(0.3) ? 0 : random.log_uniform(1e-8, 1e6) * random.sign(); };
+  scene.x0 = random.chance(0.7) ? random.uniform(-8, 8) : motion();
+  scene.v0 = random.chance(0.6) ? 0 : random.chance(0.5) ? random.uniform(-3, 3) : motion();
+  scene.y0 = random.chance(0.4) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.w0 = random.chance(0.6) ? 0 : random.chance(0.5) ? random.uniform(-3, 3) : motion();
+  if (random.chance(0.4)) {
+    scene.force_amplitude = random.log_uniform(1e-3, 100) * random.sign();
+    scene.force_frequency = random.chance(0.2) ? 1 : random.log_uniform(1e-3, random.chance(0.3) ? 1e3 : 10);
+  }
+  if (!rigid && random.chance(0.15))
+    scene.y0 = random.chance(0.5) ? -random.log_uniform(1e-9, 1) : 1 + random.log_uniform(1e-9, 1);
+  scene.until_time = length(random, scene, 3, 40);
+  return scene;
+}
+
+Scene round_scene(std::uint64_t seed, bool rigid) {
+  Random random(seed);
+  Scene scene;
+  const auto pick = [&](std::initializer_list<double> values) { return one_of(random, values); };
+  scene.mass_ratio = pick({1, 0.25, 4, 0.6, 0.02, 0.02, 0.1, 0.5, 2, 1e-6, 1.0 / 3});
+  const double nu = scene.mass_ratio, cos36 = std::numbers::phi / 2, cos72 = (std::numbers::phi - 1) / 2;
+  scene.restitution = pick({0, 0, 1, std::exp(-std::numbers::pi * std::sqrt(nu)), 0.6, 0.5});
+  scene.damping_ratio = pick({0, 0, 0, 0.5, std::sqrt(0.5), std::sqrt(0.75), cos36, cos72, 1,
+                              std::nextafter(1, 0), 1 - 1e-12, std::nextafter(1, 2), std::sqrt(1 + nu),
+                              std::nextafter(std::sqrt(1 + nu), 0), std::sqrt(nu), 0.1});
+  scene.wall_stiffness = pick({nu, nu / ((1 + nu) * (1 + nu)), 1, 100, 1e4, 1e4, nu * (1 + nu)});
+  scene.x0 = pick({0, 1, 0.5, 2, 6, 6, 0.1, -1, -0.5, -2, -6, 0.25, 3});
+  scene.v0 = pick({0, 0, 0, 0, 1, -1, 0.5});
+  scene.y0 = pick({0, 0, 1, 1, 0.5, 0.25, 1 - scene.x0, scene.x0});
+  if (scene.y0 < 0 || scene.y0 > 1) scene.y0 = random.chance(0.5);
+  scene.w0 = pick({0, 0, 0, 0, -scene.v0, 1, -1});
+  if (random.chance(0.5)) {
+    const double b = std::sqrt(1 / (1 + nu)), contact = std::sqrt(scene.wall_stiffness * (1 + nu) / nu);
+    scene.force_amplitude = pick({1, 0.05, -1, 0.5, 10});
+    scene.force_frequency =
+        pick({1, 1, b, contact, std::sqrt(scene.wall_stiffness / nu), 2, 0.5, 1 / (1 + nu)});
+  }
+  if (!rigid && random.chance(0.1)) scene.y0 = pick({-0.5, -1, 1.5, 2, -0.1});
+  // Something must move it.
+  if (scene.x0 == 0 && scene.v0 == 0 && scene.w0 == 0 && scene.force_amplitude == 0 && scene.y0 >= 0 &&
+      scene.y0 <= 1)
+    scene.v0 = 1;
+  if (random.chance(0.3)) {
+    scene.x0 = -scene.x0, scene.v0 = -scene.v0, scene.w0 = -scene.w0,
+    scene.force_amplitude = -scene.force_amplitude;
+    scene.y0 = 1 - scene.y0;
+  }
+  scene.until_time = std::min(length(random, scene, 5, 25), pick({8, 12, 20, 25}));
+  return scene;
+}
+
+std::string options_of(const Scene& scene) {
+  std::string options;
+  const Scene defaults;
+  const auto add = [&](std::string_view name, double value) {
+    std::string option(name);
+    std::replace(option.begin(), option.end(), '_', '-');
+    options += " --" + option + " " + impact_damper::number_text(value);
+  };
+  for (const impact_damper::SceneField& field : impact_damper::scene_fields)
+    if (scene.*field.member != defaults.*field.member) add(field.name, scene.*field.member);
+  if (scene.until_time) add("until_time", *scene.until_time);
+  if (scene.until_amplitude) add("until_amplitude", *scene.until_amplitude);
+  return options;
+}
+
+}  // namespace oracle
