@@ -38,17 +38,11 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
   const Real wall_damping = system.nu * walls.damping;
   Real losses{0};
 
-  // A release at rest on a wall: in contact if pressed against it, which y'' tells, or y''' where that is
-  // zero or outdone in no time. (With a velocity towards the wall it is an impact, which the flight meets at
-  // once.)
-  const Real no_time = std::numeric_limits<Real>::epsilon() / walls.fast.rate();
-  const auto pressed = [&](Real towards_cavity) {
-    if (state.w != 0) return false;
-    const auto lead = Flight<Real, Force>(system, timeline.now(), state).lead_of_y();
-    return towards_cavity * (lead[2] + no_time * lead[3]) < 0;
-  };
-  bool in_contact =
-      state.y < 0 || state.y > 1 || (state.y == 0 && pressed(1)) || (state.y == 1 && pressed(-1));
+  // A release at rest on a wall: in contact if pressed against it. (With a velocity towards the wall it is an
+  // impact, which the flight meets at once.)
+  const auto rests_on_wall = [&] { return state.w == 0 && (state.y == 0 || state.y == 1); };
+  bool in_contact = state.y < 0 || state.y > 1 ||
+                    (rests_on_wall() && Flight<Real, Force>(system, timeline.now(), state).pressed());
   bool by_impact = false;
   Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
@@ -56,8 +50,9 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
   while (!timeline.stopped()) {
     if (!in_contact) {
       const Flight<Real, Force> flight(system, timeline.now(), state);
+      const bool released = rests_on_wall();
       const auto met =
-          timeline.search([&] { return flight.next_wall(timeline.remaining(), timeline.span()); });
+          timeline.search([&] { return flight.next_wall(timeline.remaining(), timeline.span(), released); });
       if (met) state = copied(met->state);
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;

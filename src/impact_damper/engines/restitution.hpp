@@ -54,7 +54,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const auto lead = flight.lead_of_y();
     const Real push = -away * lead[2];
     accumulation = 0;
-    if (speed == 0) return push > 0 || (push == 0 && away * lead[3] < 0);
+    if (speed == 0) return flight.pressed();
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const auto steady_for = [&](const Real& rate) { return rate * accumulation <= tolerance * push; };

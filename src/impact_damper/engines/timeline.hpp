@@ -150,12 +150,9 @@ class Timeline {
     if (order == 4) return false;
     side_ = leads[order] > 0 ? 1 : -1;
     if (order == 3) {
-      // x''' t^3/6 outweighs |x''''| t^4/24 until t = 4 x'''/|x''''|. Half of that is passed over, within
-      // which the sign of an x'' that is zero to rounding would decide.
       const Real fourth = motion.derivative_of_x(1, side_, from, span_).whole.third;
-      const Real leap = 2 * absolute(leads[order]) / fourth;
+      const Real leap = leap_by_third<Real>(leads[order], fourth, span_);
       from = leap < duration ? leap : duration;
-      if (span_ < from) from = span_;
     }
     return true;
   }

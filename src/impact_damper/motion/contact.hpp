@@ -38,8 +38,14 @@ class Contact {
   }
   // The same, certified step by step.
   std::optional<Arrival<Real>> search_leave(const Real& horizon, const Real& span) const {
-    const auto left = search_fall<Real>([&](const Real& t) { return depth(t, span); }, Real(0), horizon, span,
-                                        resolution());
+    // A mass at rest may be pressed against the wall by q''' alone.
+    Real from{0};
+    if (start_.y == wall_ && start_.w == 0) {
+      const Real third = third_of_q_at_rest();
+      if (inward_ * third > 0) from = leap_by_third<Real>(third, fourth_of_q(span), span);
+    }
+    const auto left =
+        search_fall<Real>([&](const Real& t) { return depth(t, span); }, from, horizon, span, resolution());
     if (!left) return {};
     Arrival<Real> end{*left, wall(), at(*left)};
     end.state.y = wall_;
@@ -114,6 +120,15 @@ class Contact {
     const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
     const Real x3 = c.nu * (c.damping * w1 + c.stiffness * start_.w) - 2 * c.zeta * x2 - start_.v + f[1];
     return {start_.x, start_.v, x2, x3};
+  }
+
+  Real third_of_q_at_rest() const {
+    const auto x = leads_of_x();
+    return system_.damping * x[2] - x[3];
+  }
+  Real fourth_of_q(const Real& span) const {
+    return instant_of_q(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(4, span) +
+           instant_of_q(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(4, span);
   }
 
   Real panel(const Real& t) const {

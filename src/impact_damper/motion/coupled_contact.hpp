@@ -37,13 +37,19 @@ class CoupledContact {
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
   [[gnu::noinline]] std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
+    Real from{0};
+    if (start_.y == wall_ && start_.w == 0) {  // as in contact.hpp
+      const Chain chain(*this, Real(0));
+      const Real third = chain.s[3][2];
+      if (inward_ * third > 0) from = leap_by_third<Real>(third, chain.bound_of_q(4, span), span);
+    }
     const auto left = search_fall<Real>(
         [&](const Real& t) {
           const Chain chain(*this, t);
           return look(inward_ * chain.s[0][2], inward_ * chain.s[1][2], inward_ * chain.s[2][2],
                       chain.bound_of_q(3, span));
         },
-        Real(0), horizon, span, resolution());
+        from, horizon, span, resolution());
     if (!left) return {};
     Arrival<Real> end{*left, wall_ == 0 ? Wall::left : Wall::right, at(*left)};
     end.state.y = wall_;

@@ -59,6 +59,13 @@ class Flight {
     const auto x = swing_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
+  // Whether a secondary mass at rest on the wall next to it is pressed against it: y'' tells, or y''' where
+  // y'' is no more than the rounding errors of the terms it is the sum of.
+  bool pressed() const {
+    const auto lead = lead_of_y();
+    const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
+    return absolute(acceleration) > swing_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;
+  }
   Real fourth_of_y(const Real& span) const { return swing_.beginning().bound(4, span); }
 
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {

@@ -51,6 +51,15 @@ std::optional<Real> search_fall(OutlookAt&& outlook_at, const Real& from, const 
   return root ? std::optional(root->time) : std::nullopt;
 }
 
+// Where a function begins with its third derivative alone, u''' t^3/6 outweighs |u''''| t^4/24 until t = 4
+// u'''/|u''''|. Half of that is passed over in a search, within which the sign of a u'' that is zero to
+// rounding would decide. No more than `span`, for which the bound `fourth` holds.
+template <class Real>
+Real leap_by_third(const Real& third, const Real& fourth, const Real& span) {
+  const Real leap = 2 * absolute(third) / fourth;
+  return leap < span ? leap : span;
+}
+
 // Whether a function with the ends u0, u1 of one sign has no zero between them: |its second derivative| is at
 // most `second`, so it keeps within second t^2/8 of its chord.
 template <class Real>
@@ -109,6 +118,13 @@ class Swing {
   }
   using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
+
+  // What rounding may leave of x'' at the beginning where its terms cancel.
+  Real rounding_of_acceleration() const {
+    return 4 * std::numeric_limits<Real>::epsilon() *
+           (oscillator_.b() * absolute(x0_) + 2 * oscillator_.a() * absolute(v0_) +
+            absolute(forcing_.amplitude));
+  }
 
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
   bool keeps_side(const Real& side, const Real& x, const Real& t) const {
