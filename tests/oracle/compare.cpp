@@ -288,7 +288,10 @@ Prediction predict(Question question, const Accuracy& accuracy) {
   const auto end_at = [&](Quad t, const std::string& why) {
     if (!result.ends || t < *result.ends) result.ends = t, result.why = why;
   };
-  if (plain.stop == Stop::effort) end_at(plain.end_time, "the oracle's effort");
+  if (plain.stop == Stop::effort) {
+    end_at(plain.end_time, "the oracle's effort");
+    return result;
+  }
   result.samples.resize(question.samples.size());
 
   // Sizes so far, of each kind.
@@ -624,6 +627,16 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   if (question.walls == Walls::rigid && !both.mismatch) {
     Quad jumped = answer.chatter_loss;
     for (const std::size_t i : both.skipped) jumped += mine.impacts[i].loss;
+    // Each complete chattering is one jump, but for those in which all is negligible; a plastic impact is
+    // none.
+    std::int64_t complete = 0;
+    for (std::size_t i = 0; i < mine.impacts.size(); ++i)
+      complete +=
+          mine.impacts[i].accumulation &&
+          (i + 1 == mine.impacts.size() || mine.impacts[i + 1].accumulation != mine.impacts[i].accumulation);
+    if (ledger.bounce_downs < both.jumps || ledger.bounce_downs > complete)
+      judge.differ("bounce-downs: " + std::to_string(ledger.bounce_downs) + ", true " +
+                   std::to_string(both.jumps));
     judge.number("bounce-down loss", ledger.bounce_down_loss, jumped, totals[4] + totals[6] + floor);
   }
   judge.number("end time", run.end_time, end, 0);

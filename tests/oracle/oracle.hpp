@@ -27,7 +27,7 @@ struct Question {
   // part of themselves, by random numbers of `seed`.
   double noise = 0;
   std::uint64_t seed = 0;
-  std::int64_t most_steps = 600;
+  std::int64_t most_steps = 400;
   std::int64_t most_impacts = 4000;
 };
 
