@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <map>
+#include <numbers>
 
 #include "impact_damper/simulate.hpp"
 #include "print.hpp"
@@ -15,7 +16,15 @@ namespace {
 using namespace impact_damper;
 using impact_damper::Energy;
 
-constexpr double rounding = 0x1p-53;
+// What an engine is off by in one operation, relative to the numbers in it; a size of noise at which growth
+// is still to be linear; and up to which predicted error, relative to its size, a number is compared.
+struct Accuracy {
+  double rounding, noise, predictable, operations;
+};
+constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations};
+// Central differences with a hundred steps for each contact or period: (2 pi / 200)^2 / 24 and more.
+constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3};
+
 constexpr int samples_of_a_run = 65;
 
 // As the engines' recorder places them.
@@ -79,10 +88,13 @@ void simplify(Events& events, const Negligible& below) {
   for (std::size_t i = 0; i < events.rows.size(); ++i) {
     const HalfCycle& each = events.rows[i];
     // Not the first row: how small it is is exactly known.
-    if (i > 0 && i + 1 < events.rows.size() && each.amplitude <= below.length(each.zero_crossing)) {
+    const Quad length = i > 0 ? each.zero_crossing - events.rows[i - 1].zero_crossing : each.zero_crossing;
+    const Quad least = below.length(each.zero_crossing);
+    // As long as a parabola that high, at most.
+    if (i > 0 && i + 1 < events.rows.size() && each.amplitude <= least && length * length <= 16 * least) {
       const HalfCycle& next = events.rows[++i];
       HalfCycle& last = rows.back();
-      last.zero_crossing = next.zero_crossing;
+      last.zero_crossing = next.zero_crossing, last.speed = next.speed;
       if (next.amplitude > last.amplitude) last.amplitude = next.amplitude, last.peak_time = next.peak_time;
       merged.back() = true;
       continue;
@@ -239,8 +251,6 @@ struct Noise {
   double size;
   std::uint64_t seed;
 };
-constexpr std::array<Noise, 3> noises{{{1e-24, 1}, {1e-24, 2}, {4 * rounding, 3}}};
-
 // What the scene's own numbers are as large as, up to then.
 struct Sizes {
   std::vector<Quad> times;
@@ -265,7 +275,10 @@ std::array<Quad, 10> totals_of(const Answer& answer) {
       answer.contact_loss,  answer.chatter_loss, answer.viscous_work, answer.forcing_work, answer.end_time};
 }
 
-Prediction predict(Question question) {
+Prediction predict(Question question, const Accuracy& accuracy) {
+  const double rounding = accuracy.rounding, probe = accuracy.noise, predictable = accuracy.predictable;
+
+  const std::array<Noise, 3> noises{{{1e-24, 1}, {1e-24, 2}, {probe, 3}}};
   Prediction result;
   const double end = *question.scene.until_time;
   question.samples = sample_times(end);
@@ -275,7 +288,10 @@ Prediction predict(Question question) {
   const auto end_at = [&](Quad t, const std::string& why) {
     if (!result.ends || t < *result.ends) result.ends = t, result.why = why;
   };
-  if (plain.stop == Stop::effort) end_at(plain.end_time, "the oracle's effort");
+  if (plain.stop == Stop::effort) {
+    end_at(plain.end_time, "the oracle's effort");
+    return result;
+  }
   result.samples.resize(question.samples.size());
 
   // Sizes so far, of each kind.
@@ -383,103 +399,67 @@ Question question_of(const Scene& scene, const Engine& engine) {
   return question;
 }
 
-class Judge {
- public:
-  Judge(Comparison& result, const Prediction& prediction) : result_(result), prediction_(prediction) {}
-
-  // `error` of a number of this size at this time; `predicted`: by growth. A value that was rounded once is
-  // off by that, too.
-  void number(const std::string& what, double value, Quad truth, Quad predicted) {
-    ++result_.numbers;
-    const Quad error = magnitude(Quad(value) - truth);
-    const Quad unit = predicted + Quad(rounding) * magnitude(truth) + Quad(1e-300L);
-    const double ratio = double(error / unit);
-    if (!(ratio <= result_.worst)) result_.worst = ratio, result_.worst_what = what;
-    if (!(ratio <= operations))
-      differ(what + " is " + text(value, 17) + ", true " + text(truth, 20) + ", off by " + text(error, 3) +
-             ", predicted " + text(unit, 3));
-  }
-  void differ(const std::string& what) { result_.differences.push_back(what); }
-
- private:
-  Comparison& result_;
-  const Prediction& prediction_;
+// Is told of each number that is compared, and of what is there and should not be, or the other way about.
+struct Judge {
+  std::function<void(const std::string& what, double value, Quad truth, Quad predicted)> number;
+  std::function<void(const std::string& what)> differ;
 };
 
-}  // namespace
-
-Comparison compare(const Scene& asked, const Engine& engine) {
-  Comparison result;
-  Scene scene = asked;
-  result.asked = *scene.until_time;
-  Question question = question_of(scene, engine);
-  Prediction prediction = predict(question);
-  for (int i = 0; i < 3 && prediction.ends; ++i) {
-    result.ended_by = prediction.why;
-    // Half a sample earlier: what ends it, and its noise, stay outside.
-    const double end = double(*prediction.ends) - *scene.until_time / samples_of_a_run / 2;
-    if (!(end > 0)) {
-      result.until = 0;
-      return result;
-    }
-    scene.until_time = question.scene.until_time = end;
-    prediction = predict(question);
-  }
-  if (prediction.ends) return result;
-  const double end = *scene.until_time;
-  result.until = end;
-
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, end, samples_of_a_run}};
-  Run run;
-  Judge judge(result, prediction);
-  try {
-    run = simulate(scene, engine, record);
-  } catch (const std::exception& error) {
-    judge.differ(std::string("throws: ") + error.what());
-    return result;
-  }
-
-  // The oracle at the engine's own samples and peaks.
-  struct Wanted {
-    double time;
-    std::size_t index;
-  };
+// The times at which the oracle is asked: the run's samples and, for rows that have two peaks of one height,
+// those of its peaks.
+std::vector<double> times_of(const Run& run, double end) {
   std::vector<double> times = run.history->time;
   for (const double t : run.half_cycles->peak_time)
     if (t >= 0 && t <= end) times.push_back(t);
   std::sort(times.begin(), times.end());
+  return times;
+}
+
+// Judges everything in `run`; returns how many impacts were compared.
+std::int64_t judge_run(const Run& run, Question question, const Prediction& prediction,
+                       const Accuracy& accuracy, const Judge& judge) {
+  const double rounding = accuracy.rounding;
+  const Scene& scene = run.scene;
+  const double end = *scene.until_time;
+  const std::vector<double> times = times_of(run, end);
   question.samples = times;
   const Answer answer = answer_to(question);
   const auto at = [&](double t) -> const Sample& {
-    const auto place = std::lower_bound(times.begin(), times.end(), t) - times.begin();
-    return answer.samples.at(std::min<std::size_t>(place, answer.samples.size() - 1));
+    return answer.samples.at(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   };
+  std::int64_t impacts = 0;
 
   const Growth& growth = prediction.growth;
-  // The sizes of what an engine adds up: it may round each.
+  // Whatever an engine adds up it may round, and x, v and the force so far are what the primary mass's motion
+  // is added up of; the secondary mass's place is so near a wall of the cavity at 0 or 1 as 1 can be rounded.
   const auto size = [&](Kind kind, Quad t) {
     const auto& times_so_far = prediction.sizes.times;
     const auto place = std::lower_bound(times_so_far.begin(), times_so_far.end(), t) - times_so_far.begin();
     const auto& most = prediction.sizes.most[kind];
     return most[std::min<std::size_t>(place, most.size() - 1)];
   };
-  const auto predicted = [&](Kind kind, Quad t) {
-    Quad unit = growth(kind, t);
-    // The force so far, as far as the primary mass follows it.
+  const auto rounded_motion = [&](Quad t) {
     const Quad omega_f = scene.force_frequency;
     const Quad force =
         std::abs(scene.force_amplitude) * std::min(Quad(1), omega_f * t) / std::max(Quad(1), omega_f);
-    if (kind == x_ || kind == y_) unit += Quad(rounding) * (force + size(x_, t) + (kind == y_ ? 1 : 0));
-    if (kind == v_ || kind == w_)
-      unit += Quad(rounding) * force + Quad(rounding) * (size(v_, t) + (kind == w_ ? size(w_, t) : Quad(0)));
-    if (kind == time_ || kind == peak_time_) unit += Quad(rounding) * t;
+    const Quad given = scene.mass_ratio / (1 + scene.mass_ratio) * size(w_, t);  // by the secondary mass
+    return Quad(rounding) * (force + given + size(x_, t) + size(v_, t));
+  };
+  const auto predicted = [&](Kind kind, Quad t) {
+    Quad unit = growth(kind, t);
+    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t;
+    unit += rounded_motion(t);
+    if (kind == y_) unit += Quad(rounding);
+    if (kind == w_) unit += Quad(rounding) * size(w_, t);
     return unit;
+  };
+  // A place that is off by a rounding is met at this speed.
+  const auto met = [&](Quad t, Quad place, Quad speed) {
+    return predicted(time_, t) + (speed != 0 ? place / magnitude(speed) : Quad(0));
   };
   const auto negligible = [&](Kind kind) {
     return [&, kind](Quad t) {
-      return Quad(operations) *
+      return Quad(accuracy.operations) *
              (predicted(kind, t) + (kind == x_ ? predicted(time_, t) * size(v_, t) : Quad(0)));
     };
   };
@@ -497,8 +477,9 @@ Comparison compare(const Scene& asked, const Engine& engine) {
   for (const auto& [i, j] : both.impacts) {
     const oracle::Impact& p = mine.impacts[i];
     if (p.time > until) break;
-    ++result.impacts;
-    judge.number("impact time" + row_index(j), run.impacts->time[j], p.time, predicted(time_, p.time));
+    ++impacts;
+    judge.number("impact time" + row_index(j), run.impacts->time[j], p.time,
+                 met(p.time, rounding, p.relative_velocity));
     judge.number("relative velocity" + row_index(j), run.impacts->relative_velocity[j], p.relative_velocity,
                  predicted(w_, p.time));
     if (!both.mismatch) {
@@ -527,14 +508,27 @@ Comparison compare(const Scene& asked, const Engine& engine) {
       judge.differ("impact" + row_index(j) + ": phase there or not");
     } else if (row > 0) {
       const Quad length = crossings[row] - crossings[row - 1];
-      judge.number("phase" + row_index(j), *run.impacts->phase_deg[j],
-                   180 * (p.time - crossings[row - 1]) / length,
-                   360 / length * predicted(time_, crossings[row]));
+      judge.number(
+          "phase" + row_index(j), *run.impacts->phase_deg[j], 180 * (p.time - crossings[row - 1]) / length,
+          360 / length *
+              (met(p.time, rounding, p.relative_velocity) +
+               met(crossings[row], rounded_motion(crossings[row]), mine.rows[row].speed) +
+               met(crossings[row - 1], rounded_motion(crossings[row - 1]), mine.rows[row - 1].speed)));
     }
   }
+  const auto speed_at = [&](Quad begin) {
+    for (const oracle::Impact& each : mine.impacts)
+      if (each.time == begin) return each.relative_velocity;
+    return Quad(0);
+  };
+  // The place, or at rigid walls the acceleration, that has to vanish at a contact's end.
+  const auto release = [&](Quad t) {
+    return question.walls == Walls::rigid ? rounded_motion(t) * (1 + 2 * scene.damping_ratio)
+                                          : Quad(rounding);
+  };
   // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
   const auto jump = [&](Quad begin) {
-    const Restitution* const rigid = std::get_if<Restitution>(&engine);
+    const Restitution* const rigid = std::get_if<Restitution>(&run.engine);
     Quad rest = 0;
     for (const std::size_t i : both.skipped)
       if (magnitude(*mine.impacts[i].accumulation - begin) <= below.duration(begin))
@@ -544,21 +538,23 @@ Comparison compare(const Scene& asked, const Engine& engine) {
   for (std::size_t i = 0; i < std::min(mine.contacts.size(), its.contacts.size()); ++i) {
     if (mine.contacts[i].begin > until) break;
     judge.number("contact begin" + row_index(i), double(its.contacts[i].begin), mine.contacts[i].begin,
-                 predicted(time_, mine.contacts[i].begin) + jump(mine.contacts[i].begin));
+                 met(mine.contacts[i].begin, rounding, speed_at(mine.contacts[i].begin)) +
+                     jump(mine.contacts[i].begin));
     if (mine.contacts[i].end > until) break;
     judge.number("contact end" + row_index(i), double(its.contacts[i].end), mine.contacts[i].end,
-                 predicted(time_, mine.contacts[i].end));
+                 met(mine.contacts[i].end, release(mine.contacts[i].end), mine.contacts[i].end_speed));
   }
   Quad last_crossing = 0;
   for (std::size_t i = 0; i < std::min(mine.rows.size(), its.rows.size()); ++i) {
     const HalfCycle &p = mine.rows[i], &q = its.rows[i];
     if (p.zero_crossing > until) break;
     judge.number("zero crossing" + row_index(i), double(q.zero_crossing), p.zero_crossing,
-                 predicted(time_, p.zero_crossing));
+                 met(p.zero_crossing, rounded_motion(p.zero_crossing), p.speed));
     judge.number("amplitude" + row_index(i), double(q.amplitude), p.amplitude,
                  predicted(x_, p.zero_crossing));
-    // Where two peaks of a row have one height, either will do.
-    const bool another = magnitude(p.peak_time - q.peak_time) > Quad(1e-4L) * (1 + p.peak_time);
+    // Where two peaks of a row have one height, or the release and the turn right after it, either will do.
+    const bool at_release = i == 0 && q.peak_time == 0;
+    const bool another = at_release || magnitude(p.peak_time - q.peak_time) > Quad(1e-4L) * (1 + p.peak_time);
     if (another && q.peak_time >= last_crossing - below.duration(last_crossing) &&
         q.peak_time <= p.zero_crossing)
       judge.number("|x| at peak time" + row_index(i), double(p.amplitude),
@@ -631,11 +627,180 @@ Comparison compare(const Scene& asked, const Engine& engine) {
   if (question.walls == Walls::rigid && !both.mismatch) {
     Quad jumped = answer.chatter_loss;
     for (const std::size_t i : both.skipped) jumped += mine.impacts[i].loss;
+    // Each complete chattering is one jump, but for those in which all is negligible; a plastic impact is
+    // none.
+    std::int64_t complete = 0;
+    for (std::size_t i = 0; i < mine.impacts.size(); ++i)
+      complete +=
+          mine.impacts[i].accumulation &&
+          (i + 1 == mine.impacts.size() || mine.impacts[i + 1].accumulation != mine.impacts[i].accumulation);
+    if (ledger.bounce_downs < both.jumps || ledger.bounce_downs > complete)
+      judge.differ("bounce-downs: " + std::to_string(ledger.bounce_downs) + ", true " +
+                   std::to_string(both.jumps));
     judge.number("bounce-down loss", ledger.bounce_down_loss, jumped, totals[4] + totals[6] + floor);
   }
   judge.number("end time", run.end_time, end, 0);
   if (run.stop_reason != StopReason::time)
     judge.differ("stopped by " + std::string(name_of(run.stop_reason)));
+  return impacts;
+}
+
+// The longest part of the scene that can be predicted; shortens it to that.
+Prediction predict_what_can_be(Scene& scene, Question& question, const Accuracy& accuracy,
+                               Comparison& result) {
+  result.asked = *scene.until_time;
+  Prediction prediction = predict(question, accuracy);
+  for (int i = 0; i < 4 && prediction.ends; ++i) {
+    result.ended_by = prediction.why;
+    // Half a sample earlier: what ends it, and its noise, stay outside.
+    const double end = double(*prediction.ends) - *scene.until_time / samples_of_a_run / 2;
+    if (!(end > 0)) return prediction;
+    scene.until_time = question.scene.until_time = end;
+    prediction = predict(question, accuracy);
+  }
+  if (!prediction.ends) result.until = *scene.until_time;
+  return prediction;
+}
+
+Record everything(double end) {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = {{0, end, samples_of_a_run}};
+  return record;
+}
+
+// With half the step every error is to be a quarter, once steps are short enough for the scene: they are
+// shortened twice where that is not so. A column's largest error stands for it.
+void compare_by_order(const Scene& scene, const Question& question, const Prediction& prediction, Cem engine,
+                      Comparison& result) {
+  // As the engine's own default.
+  const double contact = std::sqrt(scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio)));
+  const double shortest =
+      std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
+  for (const double finer : {1, 4, 16}) {
+    std::map<std::string, std::array<double, 2>>
+        errors[2];  // by column: itself, in units of the predicted one
+    result.differences.clear();
+    result.numbers = result.impacts = 0;
+    result.worst = 0;
+    for (int half = 0; half < 2; ++half) {
+      engine.time_step = std::numbers::pi / 100 * shortest / finer / (half + 1);
+      const Run run = simulate(scene, engine, everything(*scene.until_time));
+      Judge judge;
+      judge.number = [&](const std::string& what, double value, Quad truth, Quad predicted) {
+        ++result.numbers;
+        auto& [most, by_unit] = errors[half][what.substr(0, std::min(what.find('['), what.find(" at ")))];
+        const Quad error = magnitude(value - truth);
+        const Quad unit = predicted + Quad(central_differences.rounding) * magnitude(truth) + Quad(1e-300L);
+        most = std::max(most, double(error));
+        by_unit = std::max(by_unit, double(error / unit));
+      };
+      judge.differ = [&](const std::string& what) { result.differences.push_back(what); };
+      result.impacts += judge_run(run, question, prediction, central_differences, judge);
+    }
+    for (const auto& [column, at_full] : errors[0]) {
+      const auto& at_half = errors[1][column];
+      if (at_full[1] > result.worst) result.worst = at_full[1], result.worst_what = column;
+      // Half at least: of two kinks near a sample one may be before it now and behind it then. What is far
+      // below the method's error has leading terms that cancel, and need not shrink.
+      if (at_half[0] <= at_full[0] / 2 || at_half[1] <= 1e-3) continue;
+      result.differences.push_back(column + " is off by " + text(at_full[0], 3) + ", with half the step by " +
+                                   text(at_half[0], 3) + ": " + text(at_half[1], 3) +
+                                   " of what is predicted");
+    }
+    if (result.differences.empty()) return;
+  }
+}
+
+// That the run ends where it is told to: by an amplitude, a number of half cycles, a number of impacts. Asked
+// in the middle, where nothing coincides.
+void compare_stops(Scene scene, Engine engine, const Prediction& prediction, const Judge& judge) {
+  const Answer& answer = prediction.answer;
+  const auto time = [&](const std::string& what, const Run& run, StopReason reason, Quad truth) {
+    if (run.stop_reason != reason)
+      judge.differ("stop at " + what + ": by " + std::string(name_of(run.stop_reason)) + " at " +
+                   text(run.end_time, 17) + ", true " + text(truth, 20));
+    else
+      judge.number("stop at " + what, run.end_time, truth,
+                   prediction.growth(time_, truth) + Quad(0x1p-53) * 100 * (1 + truth));
+  };
+  const auto& rows = answer.half_cycles;
+  const std::size_t row = rows.size() / 2;
+  const auto spread = [&](Quad amplitude) {
+    return std::all_of(rows.begin(), rows.end(), [&](const HalfCycle& each) {
+      return magnitude(each.amplitude - amplitude) > Quad(1e-6L) * amplitude;
+    });
+  };
+  if (row + 1 < rows.size()) {
+    const double amplitude = double(rows[row].amplitude) * 1.001;
+    const auto first = std::find_if(rows.begin(), rows.end(),
+                                    [&](const HalfCycle& each) { return each.amplitude < Quad(amplitude); });
+    if (spread(amplitude) && double(rows[row].amplitude) > 1e-6) {
+      Scene stopped = scene;
+      stopped.until_amplitude = amplitude;
+      time("amplitude " + text(amplitude, 17), simulate(stopped, engine, {}), StopReason::amplitude,
+           first->zero_crossing);
+    }
+  }
+  const auto budget = [&]() -> Budget& {
+    return std::visit([](auto& each) -> Budget& { return each.budget; }, engine);
+  };
+  const Budget before = budget();
+  if (row + 1 < rows.size() && std::all_of(rows.begin(), rows.end(), [](const HalfCycle& each) {
+        return each.amplitude > Quad(1e-6L);
+      })) {
+    budget().max_half_cycles = std::int64_t(row) + 1;
+    time("half cycle " + std::to_string(row), simulate(scene, engine, {}), StopReason::half_cycle_budget,
+         rows[row].zero_crossing);
+    budget() = before;
+  }
+  // The run ends with the impact that would be one too many.
+  const auto& impacts = answer.impacts;
+  const std::size_t most = impacts.size() / 2;
+  const auto plain = [](const oracle::Impact& each) {
+    return !each.accumulation && magnitude(each.relative_velocity) > Quad(1e-6L);
+  };
+  if (most < impacts.size() &&
+      std::all_of(impacts.begin(), impacts.begin() + std::ptrdiff_t(most) + 1, plain)) {
+    budget().max_impacts = std::int64_t(most);
+    time("impact " + std::to_string(most), simulate(scene, engine, {}), StopReason::impact_budget,
+         impacts[most].time);
+  }
+}
+
+}  // namespace
+
+Comparison compare(const Scene& asked, const Engine& engine) {
+  Comparison result;
+  Scene scene = asked;
+  Question question = question_of(scene, engine);
+  const Accuracy& accuracy = std::holds_alternative<Cem>(engine) ? central_differences : closed_forms;
+  const Prediction prediction = predict_what_can_be(scene, question, accuracy, result);
+  if (result.until == 0) return result;
+  Judge judge;
+  judge.differ = [&](const std::string& what) { result.differences.push_back(what); };
+  // `predicted`: by growth. A value that was rounded once is off by that, too.
+  judge.number = [&](const std::string& what, double value, Quad truth, Quad predicted) {
+    ++result.numbers;
+    const Quad error = magnitude(Quad(value) - truth);
+    const Quad unit = predicted + Quad(accuracy.rounding) * magnitude(truth) + Quad(1e-300L);
+    const double ratio = double(error / unit);
+    if (!(ratio <= result.worst)) result.worst = ratio, result.worst_what = what;
+    if (!(ratio <= accuracy.operations))
+      judge.differ(what + " is " + text(value, 17) + ", true " + text(truth, 20) + ", off by " +
+                   text(error, 3) + ", predicted " + text(unit, 3));
+  };
+  try {
+    if (const Cem* const cem = std::get_if<Cem>(&engine)) {
+      compare_by_order(scene, question, prediction, *cem, result);
+    } else {
+      result.impacts =
+          judge_run(simulate(scene, engine, everything(result.until)), question, prediction, accuracy, judge);
+      compare_stops(scene, engine, prediction, judge);
+    }
+  } catch (const std::exception& error) {
+    judge.differ(std::string("throws: ") + error.what());
+  }
   return result;
 }
 

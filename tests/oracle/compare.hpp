@@ -19,8 +19,6 @@ namespace oracle {
 // An engine's motion between two events is some 30 to 100 operations one after the other, in each of which
 // the oracle's noise has one rounding.
 inline constexpr double operations = 100;
-// A comparison ends where the predicted error exceeds this part of the size of what is compared.
-inline constexpr double predictable = 1e-7;
 
 struct Comparison {
   std::vector<std::string> differences;  // empty: all agrees

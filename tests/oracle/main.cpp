@@ -31,7 +31,7 @@ using namespace impact_damper;
 constexpr double least_share = 0.5;
 
 struct Options {
-  std::vector<std::string> kinds{"random", "round"}, engines{"exact", "restitution"};
+  std::vector<std::string> kinds{"random", "round"}, engines{"exact", "restitution", "cem"};
   std::int64_t first = 1, count = 100;
   Threads threads = 2;
   std::string results;
@@ -41,6 +41,7 @@ struct Options {
 
 Engine engine_named(const std::string& name) {
   if (name == Restitution::name) return Restitution{};
+  if (name == Cem::name) return Cem{.locate = true};
   return Exact{};
 }
 
@@ -63,7 +64,8 @@ Row compare_all(const std::string& kind, const std::string& engine, const Option
   std::vector<Comparison> all(static_cast<std::size_t>(options.count));
   const auto scene_of = [&](std::int64_t i) {
     const auto seed = static_cast<std::uint64_t>(options.first + i);
-    return kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
+    const Scene scene = kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
+    return engine == Cem::name ? within_steps(scene) : scene;
   };
   for_each_index(options.count, options.threads, [&](std::int64_t i) {
     all[static_cast<std::size_t>(i)] = compare(scene_of(i), engine_named(engine));

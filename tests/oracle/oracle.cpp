@@ -312,6 +312,7 @@ class Integrator {
   void open_contact() { answer_.contacts.push_back({state_.t, state_.t, wall()}), contact_open_ = true; }
   void close_contact() {
     answer_.contacts.back().end = state_.t;
+    answer_.contacts.back().end_speed = magnitude(state_.w);
     contact_open_ = of_impact_ = false;
     chatter_begin_ = answer_.impacts.size();
   }
@@ -489,6 +490,8 @@ class Integrator {
         state_.q = state_.w = 0;
         begins_ = true;
         close_contact();
+        answer_.contacts.back().end_speed =
+            (1 + p_.nu) * magnitude(derivative(step_.acceleration)(end)) / (step_.h * step_.h * step_.h);
         regime_ = Regime::flight;
         return;
     }
@@ -507,10 +510,6 @@ class Integrator {
       const Quad loss = p_.nu * p_.damping * step_.h * integral_of_product(step_.w, step_.w, end);
       (of_impact_ ? answer_.impacts.back().loss : answer_.contact_loss) += loss;
     }
-    if (in_contact()) {
-      Quad& depth = answer_.contacts.back().depth;
-      depth = std::max(depth, std::max(magnitude(step_.q(end)), magnitude(step_.q(end / 2))));
-    }
   }
 
   void note_peak(Quad t, Quad x) {
@@ -525,20 +524,23 @@ class Integrator {
     };
     std::vector<Seen> seen;
     const Quad t0 = state_.t, h = step_.h;
-    // The side on which x is, where it begins at zero by its first coefficient that is not.
-    const int first = leading(step_.x);
-    if (side_of_x_ == 0 && first >= 0) side_of_x_ = int(side()) * sign_of(step_.x.at[first]);
+    // The side to which x goes, where it begins at zero by its first coefficient that is not: an event often
+    // coincides with a crossing.
+    Polynomial x = step_.x;
+    clear_leading(x);
+    const int first = leading(x);
+    const int now = first < 0 ? 0 : int(side()) * sign_of(x.at[first]);
+    if (side_of_x_ == 0) side_of_x_ = now;
     // A crossing that the last step's end left to this one, by a rounding.
-    const int now = int(side()) * sign_of(step_.x.at[0]);
     if (now != 0 && now != side_of_x_) seen.push_back({0, Seen::crossing});
-    for (const Root& root : roots_after_start(step_.x))
+    for (const Root& root : roots_after_start(x))
       if (root.s <= end) seen.push_back({root.s, Seen::crossing});
     for (const Root& root : roots_after_start(step_.v))
       if (root.s <= end) seen.push_back({root.s, Seen::turn});
     while (sample_ < question_.samples.size()) {
       const Quad t = question_.samples[sample_];
-      const Quad s = t == until_ && h == until_ - t0 ? Quad(1) : (t - t0) / h;
-      if (!(s <= end)) break;
+      if (t > t0 + h * end) break;
+      const Quad s = std::min((t - t0) / h, end);
       seen.push_back({std::max(s, Quad(0)), Seen::sample});
       ++sample_;
     }
@@ -556,7 +558,7 @@ class Integrator {
           break;
         }
         case Seen::crossing:
-          answer_.half_cycles.push_back({t, peak_time_, peak_});
+          answer_.half_cycles.push_back({t, peak_time_, peak_, magnitude(step_.v(each.s))});
           side_of_x_ = -side_of_x_;
           if (question_.scene.until_amplitude && peak_ < Quad(*question_.scene.until_amplitude)) {
             answer_.stop = Stop::amplitude;

@@ -27,7 +27,7 @@ struct Question {
   // part of themselves, by random numbers of `seed`.
   double noise = 0;
   std::uint64_t seed = 0;
-  std::int64_t most_steps = 600;
+  std::int64_t most_steps = 400;
   std::int64_t most_impacts = 4000;
 };
 
@@ -42,11 +42,12 @@ struct Impact {
 struct Contact {  // as in impact_damper::Contacts
   Quad begin, end;
   impact_damper::Wall wall;
-  Quad depth = 0;  // compliant walls: its largest |q| at events and steps
+  Quad end_speed = 0;  // at its end |y'| or, released from a rigid wall, (1 + nu) |x'''|
 };
 
 struct HalfCycle {
   Quad zero_crossing, peak_time, amplitude;
+  Quad speed = 0;  // |x'| at the crossing
 };
 
 struct Sample {

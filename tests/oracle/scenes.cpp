@@ -70,7 +70,15 @@ Scene round_scene(std::uint64_t seed, bool rigid) {
   scene.y0 = pick({0, 0, 1, 1, 0.5, 0.25, 1 - scene.x0, scene.x0});
   if (scene.y0 < 0 || scene.y0 > 1) scene.y0 = random.chance(0.5);
   scene.w0 = pick({0, 0, 0, 0, -scene.v0, 1, -1});
-  if (random.chance(0.5)) {
+  if (random.chance(0.25)) {
+    // Released from rest the secondary mass stays where it is until a wall comes: as x crosses zero, or just
+    // where it turns, without speed.
+    scene.x0 = pick({0.1, 0.25, 0.5, 1, 0.75});
+    scene.y0 = pick({0, 1 - scene.x0, 1 - scene.x0, 1 - 2 * scene.x0});
+    if (scene.y0 < 0) scene.y0 = 0;
+    scene.v0 = scene.w0 = 0;
+  }
+  if (random.chance(0.4)) {
     const double b = std::sqrt(1 / (1 + nu)), contact = std::sqrt(scene.wall_stiffness * (1 + nu) / nu);
     scene.force_amplitude = pick({1, 0.05, -1, 0.5, 10});
     scene.force_frequency =
@@ -86,7 +94,21 @@ Scene round_scene(std::uint64_t seed, bool rigid) {
     scene.force_amplitude = -scene.force_amplitude;
     scene.y0 = 1 - scene.y0;
   }
+  for (double* const each : {&scene.x0, &scene.v0, &scene.w0, &scene.force_amplitude})
+    if (*each == 0) *each = 0;  // no -0
   scene.until_time = std::min(length(random, scene, 5, 25), pick({8, 12, 20, 25}));
+  return scene;
+}
+
+Scene within_steps(Scene scene) {
+  scene.mass_ratio = std::clamp(scene.mass_ratio, 1e-3, 100.0);
+  const double nu = scene.mass_ratio;
+  scene.wall_stiffness = std::min(scene.wall_stiffness, 100 * 100 * nu / (1 + nu));
+  scene.damping_ratio = std::min(scene.damping_ratio, 3.0);
+  scene.force_frequency = std::min(scene.force_frequency, 10.0);
+  for (double* const each : {&scene.x0, &scene.v0, &scene.w0, &scene.force_amplitude})
+    *each = std::clamp(*each, -20.0, 20.0);
+  scene.until_time = std::min(*scene.until_time, 15.0);
   return scene;
 }
 

@@ -14,6 +14,10 @@ namespace oracle {
 impact_damper::Scene random_scene(std::uint64_t seed, bool rigid);
 impact_damper::Scene round_scene(std::uint64_t seed, bool rigid);
 
+// The same scene, or one near it, in which central differences of a hundred steps for each contact take some
+// 1e5.
+impact_damper::Scene within_steps(impact_damper::Scene scene);
+
 // The options of the run command that give this scene.
 std::string options_of(const impact_damper::Scene& scene);
 
