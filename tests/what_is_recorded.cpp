@@ -1,0 +1,280 @@
+// What is recorded, and when a run ends, changes nothing of the motion: properties of all three engines over
+// random scenes and scenes of round numbers.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/simulate.hpp"
+#include "random_scenes.hpp"
+#include "round_scenes.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double absent = std::numeric_limits<double>::infinity();  // no recorded number is infinite
+
+// All that a run records, by name, each as a column of numbers.
+using Columns = std::map<std::string, std::vector<double>>;
+
+template <class Value>
+std::vector<double> numbers(const std::vector<Value>& values) {
+  std::vector<double> result;
+  for (const Value& value : values) {
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      result.push_back(value.value_or(absent));
+    } else {
+      result.push_back(double(value));
+    }
+  }
+  return result;
+}
+
+Columns columns_of(const Run& run) {
+  Columns all;
+  if (const auto& rows = run.half_cycles) {
+    all["half_cycles.zero_crossing"] = rows->zero_crossing;
+    all["half_cycles.peak_time"] = rows->peak_time;
+    all["half_cycles.amplitude"] = rows->amplitude;
+    all["half_cycles.impacts"] = numbers(rows->impacts);
+  }
+  if (const auto& impacts = run.impacts) {
+    all["impacts.time"] = impacts->time;
+    all["impacts.wall"] = numbers(impacts->wall);
+    all["impacts.relative_velocity"] = impacts->relative_velocity;
+    all["impacts.phase_deg"] = numbers(impacts->phase_deg);
+    all["impacts.amplitude"] = numbers(impacts->amplitude);
+  }
+  if (const auto& contacts = run.contacts) {
+    all["contacts.begin"] = contacts->begin;
+    all["contacts.end"] = contacts->end;
+    all["contacts.wall"] = numbers(contacts->wall);
+  }
+  if (const auto& history = run.history) {
+    all["history.time"] = history->time;
+    all["history.x"] = history->x;
+    all["history.v"] = history->v;
+    all["history.y"] = history->y;
+    all["history.w"] = history->w;
+  }
+  if (const auto& ledger = run.energy) {
+    const auto energy = [](const Energy& e) { return std::vector{e.kinetic, e.spring, e.wall, e.paper}; };
+    all["energy.initial"] = energy(ledger->initial);
+    all["energy.final"] = energy(ledger->final);
+    all["energy.impact_loss"] = ledger->impact_loss;
+    all["energy.sums"] = {ledger->contact_loss,     double(ledger->bounce_downs), ledger->bounce_down_loss,
+                          ledger->viscous_work,     ledger->forcing_work,         ledger->residual};
+  }
+  return all;
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+// A scene, an engine's options, and what else the tests of it choose at random.
+struct Trial {
+  Scene scene;
+  Engine engine;
+  reference::Random random;
+  std::string text;
+};
+
+// The component element method in steps so large that it is quick, in each of its ways.
+Cem cem_of(const Scene& scene, reference::Random& random) {
+  Cem options{.damper = random.chance(0.5) ? Damper::centred : Damper::lagged,
+              .locate = random.chance(0.5),
+              .calibration = random.chance(0.5) ? Calibration::fixed_wall : Calibration::two_body,
+              .max_steps = 10'000};
+  double h = stability_limit(scene, options.damper, options.calibration) / random.uniform(2, 30);
+  double large = 0.1;
+  if (scene.force_amplitude != 0) {
+    h = std::min(h, std::numbers::pi / scene.force_frequency / random.uniform(10, 100));
+    large = std::min(large, 3 / scene.force_frequency);
+  }
+  options.time_step = h;
+  if (random.chance(0.5) && large > 2 * h) options.large_step = large;
+  return options;
+}
+
+template <class Choice>
+Trial trial_of(std::uint64_t seed, bool round) {
+  Trial trial{round ? round_scenes::scene_of(seed) : random_scenes::scene_of(seed), Choice{},
+              reference::Random(seed + 1'000'000'007), {}};
+  Scene& scene = trial.scene;
+  if constexpr (std::is_same_v<Choice, Restitution>) scene.y0 = std::clamp(scene.y0, 0.0, 1.0);
+  if constexpr (std::is_same_v<Choice, Cem>) {
+    // Walls as stiff as an impact between the masses can be in ten thousand steps that go somewhere.
+    scene.mass_ratio = std::max(scene.mass_ratio, 1e-3);
+    scene.wall_stiffness = std::min(scene.wall_stiffness, 1e5 * scene.mass_ratio);
+    trial.engine = cem_of(scene, trial.random);
+  }
+  if (trial.random.chance(0.3)) scene.until_amplitude = std::fabs(scene.x0) * trial.random.uniform(0.01, 1);
+  if (scene.until_amplitude == 0) scene.until_amplitude.reset();
+  std::visit([](auto& options) { options.budget.max_impacts = 1000; }, trial.engine);
+  trial.text = std::string(name_of(trial.engine)) + (round ? ", round scene " : ", random scene ") +
+               std::to_string(seed) + ": " + random_scenes::text_of(scene);
+  if (scene.until_amplitude) trial.text += ", until_amplitude " + std::to_string(*scene.until_amplitude);
+  return trial;
+}
+
+constexpr std::uint64_t first_seed = 1, seeds = 250;
+
+// `property` of a trial, told as text where it does not hold, for so many random and round scenes.
+template <class Choice, class Property>
+void holds_for(Property&& property) {
+  for (const bool round : {false, true}) {
+    for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+      Trial trial = trial_of<Choice>(seed, round);
+      const std::string failure = property(trial);
+      if (!failure.empty()) FAIL_CHECK(trial.text << "\n" << failure);
+    }
+  }
+}
+
+Record everything(const Scene& scene) {
+  return {.impacts = true, .contacts = true, .energy = true, .history = {{0, *scene.until_time, 60}}};
+}
+
+std::string row_text(const std::string& name, std::size_t row, double a, double b) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%s[%zu]: %.17g and %.17g", name.c_str(), row, a, b);
+  return text;
+}
+
+// What differs between what both runs record, or nothing.
+std::string difference(const Run& part, const Run& whole) {
+  if (part.stop_reason != whole.stop_reason || !same_bits(part.end_time, whole.end_time))
+    return row_text("end_time", 0, part.end_time, whole.end_time);
+  const Columns all = columns_of(whole);
+  for (const auto& [name, column] : columns_of(part)) {
+    const std::vector<double>& other = all.at(name);
+    if (column.size() != other.size())
+      return row_text(name + ".size()", 0, double(column.size()), double(other.size()));
+    for (std::size_t i = 0; i < column.size(); ++i)
+      if (!same_bits(column[i], other[i])) return row_text(name, i, column[i], other[i]);
+  }
+  return {};
+}
+
+std::string subsets_agree(Trial& trial) {
+  const Record all = everything(trial.scene);
+  const Run whole = simulate(trial.scene, trial.engine, all);
+  for (int i = 0; i < 8; ++i) {
+    // Nothing but one, then any.
+    const std::uint64_t kept = i < 5 ? 1u << i : trial.random.bits() % 32;
+    Record some{.half_cycles = (kept & 1) != 0,
+                .impacts = (kept & 2) != 0,
+                .contacts = (kept & 4) != 0,
+                .energy = (kept & 8) != 0};
+    if (kept & 16) some.history = all.history;
+    std::string found = difference(simulate(trial.scene, trial.engine, some), whole);
+    if (!found.empty()) return "recording " + std::to_string(kept) + ": " + found;
+  }
+  // Samples at other times, or begun by an amplitude.
+  Record other = all;
+  other.history.clear();
+  if (trial.scene.x0 != 0 && trial.random.chance(0.5)) {
+    other.history_below = {{std::fabs(trial.scene.x0) * 1.001, *trial.scene.until_time / 3, 17}};
+  } else {
+    other.history = {{trial.random.uniform(0, 1), *trial.scene.until_time * 0.9, 23}};
+  }
+  Run sampled = simulate(trial.scene, trial.engine, other);
+  sampled.history.reset();
+  std::string found = difference(sampled, whole);
+  return found.empty() ? found : "sampling otherwise: " + found;
+}
+
+// Where `cut`, which ends earlier, is not the beginning of `whole`, or nothing.
+std::string no_beginning(const Run& cut, const Run& whole) {
+  const Columns all = columns_of(whole), begun = columns_of(cut);
+  const double end = cut.end_time;
+  // A contact that the end cuts, and its loss, are not yet what they are in the longer run.
+  const bool in_contact = !cut.contacts->end.empty() && cut.contacts->end.back() == end;
+  for (const auto& [name, column] : begun) {
+    if (name == "energy.final" || name == "energy.sums") continue;
+    const std::vector<double>& other = all.at(name);
+    if (column.size() > other.size())
+      return row_text(name + ".size()", 0, double(column.size()), double(other.size()));
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      const bool last = i + 1 == column.size();
+      if (in_contact && last && (name == "contacts.end" || name == "energy.impact_loss")) continue;
+      if ((name == "impacts.phase_deg" || name == "impacts.amplitude") && column[i] == absent) continue;
+      if (!same_bits(column[i], other[i])) return row_text(name, i, column[i], other[i]);
+    }
+  }
+  // Nothing before the end is left out.
+  for (const char* times : {"half_cycles.zero_crossing", "impacts.time", "contacts.begin", "history.time"}) {
+    const std::size_t rows = begun.at(times).size();
+    if (rows < all.at(times).size() && all.at(times)[rows] < end)
+      return row_text(std::string(times) + " is left out", rows, all.at(times)[rows], end);
+  }
+  return {};
+}
+
+std::string cuts_are_beginnings(Trial& trial) {
+  const Record record = everything(trial.scene);
+  const Run whole = simulate(trial.scene, trial.engine, record);
+  const auto any = [&](const std::vector<double>& values) {
+    return values.empty() ? 0.0 : values[trial.random.bits() % values.size()];
+  };
+  const auto compared = [&](const std::string& by, const Scene& scene, const Engine& engine) {
+    const std::string found = no_beginning(simulate(scene, engine, record), whole);
+    return found.empty() ? found : "cut by " + by + ": " + found;
+  };
+  // At any time, and on the dot of events and samples.
+  for (const double time : {trial.random.uniform(0, whole.end_time), trial.random.uniform(0, whole.end_time),
+                            any(whole.impacts->time), any(whole.contacts->end),
+                            any(whole.half_cycles->zero_crossing), any(whole.half_cycles->peak_time),
+                            any(whole.history->time)}) {
+    if (!(time > 0)) continue;
+    Scene earlier = trial.scene;
+    earlier.until_time = time;
+    const std::string found = compared("until_time " + row_text("", 0, time, whole.end_time), earlier, trial.engine);
+    if (!found.empty()) return found;
+  }
+  if (const double amplitude = any(whole.half_cycles->amplitude); amplitude > 0) {
+    Scene earlier = trial.scene;
+    earlier.until_amplitude = std::max(amplitude * (1 + 1e-15), trial.scene.until_amplitude.value_or(0));
+    const std::string found = compared("until_amplitude", earlier, trial.engine);
+    if (!found.empty()) return found;
+  }
+  const auto budgeted = [&](const std::string& by, auto&& change) {
+    Engine smaller = trial.engine;
+    std::visit(change, smaller);
+    return compared(by, trial.scene, smaller);
+  };
+  const std::size_t impacts = whole.impacts->time.size(), rows = whole.half_cycles->amplitude.size();
+  const auto some = [&](std::size_t most) { return std::int64_t(trial.random.bits() % (most + 1)); };
+  const std::int64_t fewer_impacts = some(impacts), fewer_rows = 1 + some(rows), fewer_steps = 1 + some(9999);
+  std::string found =
+      budgeted("max_impacts", [&](auto& options) { options.budget.max_impacts = fewer_impacts; });
+  if (found.empty())
+    found = budgeted("max_half_cycles", [&](auto& options) { options.budget.max_half_cycles = fewer_rows; });
+  if (found.empty())
+    found = budgeted("max_time", [&](auto& options) { options.budget.max_time = whole.end_time * 0.7; });
+  if (found.empty() && std::holds_alternative<Cem>(trial.engine))
+    found = budgeted("max_steps", [&](auto& options) {
+      if constexpr (requires { options.max_steps; }) options.max_steps = fewer_steps;
+    });
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("any subset of what can be recorded gives the same columns", Choice, Exact, Restitution,
+                   Cem) {
+  holds_for<Choice>(subsets_agree);
+}
+
+TEST_CASE_TEMPLATE("a run that ends earlier is the beginning of a longer one", Choice, Exact, Restitution,
+                   Cem) {
+  holds_for<Choice>(cuts_are_beginnings);
+}
