@@ -96,10 +96,9 @@ class CemEngine {
   std::int64_t step_of(const Real& time) const { return whole_steps(double((time - origin_) / pace_.h)); }
   bool side_or_trend_unknown() const;
   std::int64_t steps_until_look() const;  // at least one
-  // At most so many steps, at least one. True: the last of them has an event.
-  bool take_steps(std::int64_t most);
+  void take_steps(std::int64_t most);  // at least one
   template <Regime regime, bool forced, bool ledger>
-  bool take_steps(std::int64_t most);
+  void take_steps(std::int64_t most);
   void look_at_last_step();
   void spend_look();
   std::optional<Real> wall_crossing() const;

@@ -59,9 +59,9 @@ Outcome CemEngine<Real, Observer>::run() {
       spend_look();
     }
     const bool unknown = side_or_trend_unknown();
-    const bool event = take_steps(unknown ? 1 : steps_until_look());
+    if (unknown) spend_look();
+    take_steps(unknown ? 1 : steps_until_look());
     look_at_last_step();
-    if (event || unknown) spend_look();
   }
   return *end_;
 }
@@ -101,23 +101,24 @@ std::int64_t CemEngine<Real, Observer>::steps_until_look() const {
 }
 
 template <class Real, class Observer>
-bool CemEngine<Real, Observer>::take_steps(std::int64_t most) {
+void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const auto choose = [&](auto in) {
     constexpr Regime regime = in;
     if (forced_) {
-      return ledger_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
+      ledger_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
+    } else {
+      ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
     }
-    return ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
   };
-  return wall_ ? choose(std::integral_constant<Regime, Regime::contact>())
-               : choose(std::integral_constant<Regime, Regime::flight>());
+  wall_ ? choose(std::integral_constant<Regime, Regime::contact>())
+        : choose(std::integral_constant<Regime, Regime::flight>());
 }
 
 // Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer where a force or
 // an energy balance is renewed).
 template <class Real, class Observer>
 template <Regime regime, bool forced, bool ledger>
-bool CemEngine<Real, Observer>::take_steps(std::int64_t most) {
+void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const CemStep<Real> a = regime == Regime::contact ? pace_.contact : pace_.flight;
   const Real side = side_, trend = trend_, overlap = wall_ == Wall::left ? Real(-1) : Real(1);
   const bool centred = damper_ == Damper::centred;
@@ -188,7 +189,6 @@ bool CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   if (rates_) steps_at_pace_ -= n;
   if constexpr (forced) force_at_steps_ = {f, df, curb};
   if constexpr (ledger) sums_ = {sum_vv, sum_ww, sum_fv};
-  return !uneventful;
 }
 
 template <class Real, class Observer>
@@ -201,14 +201,16 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   const auto too_late = [&](const Real& at) { return begin + at > end_time_; };
 
   std::optional<Real> change = wall_crossing();
+  const bool crosses = side_ * now_.x < 0, turns = trend_ * now_.dx < 0;
+  if (change || crosses || turns) spend_look();
   if (change && too_late(*change)) change.reset();
   const bool restart = change && locate_;
   const Real span = restart ? *change : last ? std::max(end_time_ - begin, Real(0)) : pace_.h;
   std::optional<Real> zero;
-  if (side_ * now_.x < 0) zero = x_arc().times(side_).fall(pace_.h);
+  if (crosses) zero = x_arc().times(side_).fall(pace_.h);
   if (zero && (too_late(*zero) || (restart && *zero > span))) zero.reset();
 
-  if (trend_ * now_.dx < 0) {
+  if (turns) {
     consider_peak(step_ == 1 ? Real(0) : -pace_.h / 2, span);
     trend_ = -trend_;
   } else if (restart) {
