@@ -34,12 +34,17 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
                    whole_steps(nominal_contact_time(scene) / double(small_.h))};
   }
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
-  // the first derivative of y that is not zero tells.
+  // y'' tells, or y''' where that is zero to rounding: by where y is a step later, y'' h^2/2 + y''' h^3/6.
   const State<Real>& s = initial_;
+  const Real h = small_.h;
   const Real bend = acceleration(Real(0), s).q, jerk = s.v - force_.amplitude * force_.frequency;
-  const Real inwards = s.w != 0 ? Real(0) : bend != 0 ? bend : jerk;
-  if (s.y < 0 || (s.y == 0 && inwards < 0)) wall_ = Wall::left;
-  if (s.y > 1 || (s.y == 1 && inwards > 0)) wall_ = Wall::right;
+  const bool at_rest_on_wall = (s.y == 0 || s.y == 1) && s.w == 0;
+  const Real moves = at_rest_on_wall ? bend + h / 3 * jerk : Real(0);
+  if (s.y < 0 || (s.y == 0 && moves < 0)) wall_ = Wall::left;
+  if (s.y > 1 || (s.y == 1 && moves > 0)) wall_ = Wall::right;
+  begin_segment(Real(0), initial_);
+  // The second-order start leaves y''' out, and y on the wall, where rounding would decide what comes next.
+  if (at_rest_on_wall && 3 * absolute(bend) < h * absolute(jerk)) now_.dq += h * h * h * jerk / 6;
 
   side_ = sign(s.x != 0 ? s.x : s.v);
   trend_ = sign(s.v);
@@ -48,7 +53,6 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
 
 template <class Real, class Observer>
 Outcome CemEngine<Real, Observer>::run() {
-  begin_segment(Real(0), initial_);
   if (ledger_) observer_.ledger().initial = energy(initial_);
   if (observer_.next_sample() <= 0) {
     observer_.sample(0, double(initial_.x), double(initial_.v), double(initial_.y), double(initial_.w));
