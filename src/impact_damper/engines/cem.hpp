@@ -96,7 +96,7 @@ class CemEngine {
   std::int64_t step_of(const Real& time) const { return whole_steps(double((time - origin_) / pace_.h)); }
   bool side_or_trend_unknown() const;
   std::int64_t steps_until_look() const;  // at least one
-  void take_steps(std::int64_t most);  // at least one
+  void take_steps(std::int64_t most);     // at least one
   template <Regime regime, bool forced, bool ledger>
   void take_steps(std::int64_t most);
   void look_at_last_step();
@@ -202,7 +202,7 @@ class CemEngine {
   std::int64_t steps_left_;  // until max_steps are done
   std::int64_t looks_left_;
   std::int64_t steps_at_pace_ = 0;  // with two rates: until the pace is chosen anew
-  std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
+  std::optional<Wall> wall_;        // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;
 
