@@ -215,9 +215,12 @@ std::string no_beginning(const Run& cut, const Run& whole) {
       if (!same_bits(column[i], other[i])) return row_text(name, i, column[i], other[i]);
     }
   }
-  // Nothing before the end is left out.
+  // Nothing before the end is left out, nothing after it is told.
   for (const char* times : {"half_cycles.zero_crossing", "impacts.time", "contacts.begin", "history.time"}) {
-    const std::size_t rows = begun.at(times).size();
+    const std::vector<double>& told = begun.at(times);
+    const std::size_t rows = told.size();
+    if (rows > 0 && told.back() > end)
+      return row_text(std::string(times) + " after the end", rows - 1, told.back(), end);
     if (rows < all.at(times).size() && all.at(times)[rows] < end)
       return row_text(std::string(times) + " is left out", rows, all.at(times)[rows], end);
   }
