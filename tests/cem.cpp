@@ -391,28 +391,6 @@ TEST_CASE("a mass pressed to the wall at the start is in contact but makes no im
   }
 }
 
-TEST_CASE("the mirrored scene gives the mirrored run") {
-  for (bool locate : {false, true}) {
-    Scene scene{.v0 = 0.3, .y0 = 0.2, .w0 = 0.1, .until_time = 30};
-    Scene mirrored = scene;
-    mirrored.x0 = -6, mirrored.v0 = -0.3, mirrored.y0 = 0.8, mirrored.w0 = -0.1;
-    const Record record{.impacts = true, .history = {{0, 30, 301}}};
-    const Run a = simulated(scene, {.locate = locate}, record),
-              b = simulated(mirrored, {.locate = locate}, record);
-    REQUIRE(a.impacts->time.size() > 20);
-    REQUIRE(a.impacts->time.size() == b.impacts->time.size());
-    // Only rounding differs, y against 1 - y; no chaos above an amplitude of 3.5.
-    for (std::size_t i = 0; i < a.impacts->time.size(); ++i) {
-      CHECK(std::abs(a.impacts->time[i] - b.impacts->time[i]) < 1e-8);
-      CHECK(a.impacts->wall[i] != b.impacts->wall[i]);
-    }
-    for (std::size_t i = 0; i < a.history->time.size(); ++i) {
-      CHECK(std::abs(a.history->x[i] + b.history->x[i]) < 1e-8);
-      CHECK(std::abs(a.history->y[i] - (1 - b.history->y[i])) < 1e-8);
-    }
-  }
-}
-
 TEST_CASE("over one impact the ledger's residual is of second order, located or not") {
   for (const Cem& options : {Cem{}, Cem{.locate = true}, Cem{.damper = Damper::lagged}}) {
     const auto residual = [&](double steps, double phase) {

@@ -14,6 +14,14 @@
 // parabola through three steps, errors O(h^3) in position and O(h^2) in velocity. Times are counted, n h
 // from the start, the last located event or the last change of step, not accumulated.
 //
+// Observing changes nothing. A segment is the sequence of equal steps since the start, the last located event
+// or the last change of step. Within it, whatever steps carry on from one to the next (the recurrence of the
+// force, the sums of the works, the number of steps until a step size is chosen) is renewed at fixed step
+// numbers or where the regime changes, never where the loop over steps was left in order to look. Crossings
+// and peaks are followed whether or not they are recorded, because they count against the limit on looks;
+// which step a time lies in follows from the segment alone. So the motion, the energy balance and the stop
+// are functions of scene and options, and a run that ends earlier is the beginning of a longer one.
+//
 // Energy. The scheme conserves |d/h|^2_M / 2 + u_n.K u_{n+1} / 2 within a regime but for the sums
 // of damping and forcing power at the steps, so those sums are the ledger's losses. The residual holds what
 // this form of the energy differs from the true one by, O(h^2); it is no measure of the first-order error.
@@ -84,18 +92,23 @@ class CemEngine {
   };
 
   void begin_segment(const Real& time, const State<Real>& state);
-  std::int64_t steps_until(const Real& time) const;
-  void take_steps(std::int64_t most);  // at least one
+  // The number of the step of this segment in which `time` lies; the first for earlier times.
+  std::int64_t step_of(const Real& time) const { return whole_steps(double((time - origin_) / pace_.h)); }
+  bool side_or_trend_unknown() const;
+  std::int64_t steps_until_look() const;  // at least one
+  void take_steps(std::int64_t most);     // at least one
   template <Regime regime, bool forced, bool ledger>
   void take_steps(std::int64_t most);
   void look_at_last_step();
+  void spend_look();
   std::optional<Real> wall_crossing() const;
   void change_regime(const Real& at);
   void enter(Wall wall, const Real& time, const Real& relative_velocity);
   void leave(const Real& time);
-  void cross_zero(const Real& at);
+  // `span`: up to where the last step counts.
+  void cross_zero(const Real& at, const Real& span);
   void consider_peak(const Real& from, const Real& to);
-  void give_samples(const Real& until);
+  void give_samples(const Real& until);  // those in the last step
   void finish(StopReason reason, const Real& at, bool by_horizon = false);
 
   // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
@@ -162,6 +175,7 @@ class CemEngine {
 
   Energy energy(const State<Real>& state);
   void add_powers(const Real& weight, const Real& time, const State<Real>& state);
+  void add_sums();
   void close_powers(const Real& at);
 
   const Budget budget_;
@@ -177,7 +191,6 @@ class CemEngine {
   const RegimeEquations<Real> flight_, contact_;
   const Pace<Real> small_;  // the time step
   const bool forced_, ledger_;
-  const bool peaks_;  // somebody looks at amplitudes
   const State<Real> initial_;
 
   std::optional<Rates> rates_;  // small_ beside them
@@ -188,7 +201,8 @@ class CemEngine {
   std::int64_t step_ = 0;    // number of now_
   std::int64_t steps_left_;  // until max_steps are done
   std::int64_t looks_left_;
-  std::optional<Wall> wall_;  // in contact with it; then q is counted from it, else from the left one
+  std::int64_t steps_at_pace_ = 0;  // with two rates: until the pace is chosen anew
+  std::optional<Wall> wall_;        // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;
 
@@ -197,6 +211,14 @@ class CemEngine {
   Real row_begin_ = 0, peak_ = 0, peak_time_ = 0;
   std::int64_t impacts_ = 0, rows_ = 0;
 
+  // The force at the next step, f_n, and its recurrence: f_{n+1} = f_n + df, df += -curb f_{n+1}.
+  struct ForceAtSteps {
+    Real f = 0, df = 0, curb = 0;
+  } force_at_steps_;
+  // Over steps not yet in the works below, of (2 h v)^2, (2 h w)^2 and f (2 h v), v and w centred.
+  struct Sums {
+    Real vv = 0, ww = 0, fv = 0;
+  } sums_;
   Real wall_work_ = 0;  // in the contact under way
   Real viscous_work_ = 0, forcing_work_ = 0, losses_ = 0;
   double largest_energy_ = 0;

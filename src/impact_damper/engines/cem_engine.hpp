@@ -23,7 +23,6 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       small_(pace_of(options.time_step.value())),
       forced_(bool(force_)),
       ledger_(observer.wants_energy()),
-      peaks_(observer.wants_half_cycles() || scene.until_amplitude),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
       pace_(small_),
       steps_left_(options.max_steps),
@@ -35,34 +34,48 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
                    whole_steps(nominal_contact_time(scene) / double(small_.h))};
   }
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
-  // the first derivative of y that is not zero tells.
+  // y'' tells, or y''' where that is zero to rounding: by where y is a step later, y'' h^2/2 + y''' h^3/6.
   const State<Real>& s = initial_;
+  const Real h = small_.h;
   const Real bend = acceleration(Real(0), s).q, jerk = s.v - force_.amplitude * force_.frequency;
-  const Real inwards = s.w != 0 ? Real(0) : bend != 0 ? bend : jerk;
-  if (s.y < 0 || (s.y == 0 && inwards < 0)) wall_ = Wall::left;
-  if (s.y > 1 || (s.y == 1 && inwards > 0)) wall_ = Wall::right;
+  const bool at_rest_on_wall = (s.y == 0 || s.y == 1) && s.w == 0;
+  const Real moves = at_rest_on_wall ? bend + h / 3 * jerk : Real(0);
+  if (s.y < 0 || (s.y == 0 && moves < 0)) wall_ = Wall::left;
+  if (s.y > 1 || (s.y == 1 && moves > 0)) wall_ = Wall::right;
+  begin_segment(Real(0), initial_);
+  // The second-order start leaves y''' out, and y on the wall, where rounding would decide what comes next.
+  if (at_rest_on_wall && 3 * absolute(bend) < h * absolute(jerk)) now_.dq += h * h * h * jerk / 6;
 
   side_ = sign(s.x != 0 ? s.x : s.v);
-  if (peaks_) trend_ = sign(s.v);
+  trend_ = sign(s.v);
   peak_ = absolute(s.x);
 }
 
 template <class Real, class Observer>
 Outcome CemEngine<Real, Observer>::run() {
-  begin_segment(Real(0), initial_);
   if (ledger_) observer_.ledger().initial = energy(initial_);
   if (observer_.next_sample() <= 0) {
     observer_.sample(0, double(initial_.x), double(initial_.v), double(initial_.y), double(initial_.w));
   }
   while (!end_) {
-    const Real sample = observer_.next_sample();
-    const std::int64_t most = rates_ ? std::min(choose_pace(), steps_left_) : steps_left_;
-    take_steps(std::min(steps_until(sample < end_time_ ? sample : end_time_), most));
+    if (rates_ && steps_at_pace_ == 0) {
+      steps_at_pace_ = choose_pace();
+      spend_look();
+    }
+    const bool unknown = side_or_trend_unknown();
+    if (unknown) spend_look();
+    take_steps(unknown ? 1 : steps_until_look());
     look_at_last_step();
-    // Steps that each end in an event, or in none that can be told, cost many times what the others do.
-    if (looks_left_-- <= 0 && !end_ && step_ > 0) finish(StopReason::step_budget, pace_.h);
   }
   return *end_;
+}
+
+// Steps that each end in an event, or in none that can be told, cost many times what the others do: when as
+// many as are allowed have been looked at, one step remains. Looks at samples do not count, as they must not
+// change where the run ends.
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::spend_look() {
+  if (--looks_left_ < 0) steps_left_ = std::min<std::int64_t>(steps_left_, 1);
 }
 
 // The second-order start: the step before the first is u - h u' + h^2 u''/2.
@@ -75,13 +88,20 @@ void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real
   if (ledger_) add_powers(-pace_.h / 2, time, s);
 }
 
-// At least one; a rounding error short of `time` is made good by the next call.
+// Where x or x' has been zero until now its first movement has to be seen, to know the sides: unless nothing
+// can move x before the next impact.
 template <class Real, class Observer>
-std::int64_t CemEngine<Real, Observer>::steps_until(const Real& time) const {
-  // Where x still rests, its first movement has to be seen, to know the sides.
+bool CemEngine<Real, Observer>::side_or_trend_unknown() const {
   const bool at_rest = !forced_ && !wall_ && now_.x == 0 && now_.dx == 0;
-  if ((side_ == 0 || (peaks_ && trend_ == 0)) && !at_rest) return 1;
-  return whole_steps(double((time - origin_) / pace_.h - Real(step_)));
+  return (side_ == 0 || trend_ == 0) && !at_rest;
+}
+
+template <class Real, class Observer>
+std::int64_t CemEngine<Real, Observer>::steps_until_look() const {
+  const Real sample = observer_.next_sample();
+  std::int64_t steps = std::min(step_of(sample < end_time_ ? sample : end_time_) - step_, steps_left_);
+  if (rates_) steps = std::min(steps, steps_at_pace_);
+  return std::max<std::int64_t>(steps, 1);
 }
 
 template <class Real, class Observer>
@@ -98,7 +118,8 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
         : choose(std::integral_constant<Regime, Regime::flight>());
 }
 
-// Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer with forcing).
+// Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer where a force
+// or an energy balance is renewed).
 template <class Real, class Observer>
 template <Regime regime, bool forced, bool ledger>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
@@ -107,17 +128,26 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const bool centred = damper_ == Damper::centred;
   Moment now = now_, before = now_;
 
-  // f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n, begun afresh before rounding can add up.
-  Real f = 0, df = 0, curb = 0;
-  if constexpr (forced) {
-    most = std::min<std::int64_t>(most, 1024);
-    const Real half = force_.frequency * pace_.h / 2, time = origin_ + Real(step_) * pace_.h;
-    const Real sin_half = sin_cos(half).sin;
-    f = forcing(time);
-    df = 2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos;
-    curb = 4 * sin_half * sin_half;
+  // At every 1024th step of a segment, before rounding can add up: the force,
+  // f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n, is computed afresh, and the sums are added up.
+  if constexpr (forced || ledger) {
+    constexpr std::int64_t block = 1024;
+    const std::int64_t in_block = step_ % block;
+    most = std::min(most, block - in_block);
+    if (in_block == 0) {
+      if constexpr (ledger) add_sums();
+      if constexpr (forced) {
+        const Real half = force_.frequency * pace_.h / 2, time = origin_ + Real(step_) * pace_.h;
+        const Real sin_half = sin_cos(half).sin;
+        force_at_steps_ = {
+            forcing(time),
+            2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos,
+            4 * sin_half * sin_half};
+      }
+    }
   }
-  Real sum_vv = 0, sum_ww = 0, sum_fv = 0;  // of 2 h v and 2 h w, v and w centred
+  auto [f, df, curb] = force_at_steps_;
+  auto [sum_vv, sum_ww, sum_fv] = sums_;
 
   bool uneventful;
   std::int64_t n = 0;
@@ -160,11 +190,9 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   now_ = now;
   step_ += n;
   steps_left_ -= n;
-  if constexpr (ledger) {
-    viscous_work_ += flight_.zeta * sum_vv / (2 * pace_.h);
-    if constexpr (regime == Regime::contact) wall_work_ += contact_.nu * contact_.c * sum_ww / (4 * pace_.h);
-    if constexpr (forced) forcing_work_ += sum_fv / 2;
-  }
+  if (rates_) steps_at_pace_ -= n;
+  if constexpr (forced) force_at_steps_ = {f, df, curb};
+  if constexpr (ledger) sums_ = {sum_vv, sum_ww, sum_fv};
 }
 
 template <class Real, class Observer>
@@ -173,37 +201,39 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   if (!std::isfinite(double(now_.x)) || !std::isfinite(double(now_.q))) {
     fail_of_overflow(double(begin), double(pace_.h));
   }
-  const bool last = !(begin + pace_.h < end_time_);
-  Real span = last ? std::max(end_time_ - begin, Real(0)) : pace_.h;
+  const bool last = step_ >= step_of(end_time_);
+  const auto too_late = [&](const Real& at) { return begin + at > end_time_; };
 
   std::optional<Real> change = wall_crossing();
-  if (change && *change > span) change.reset();
+  const bool crosses = side_ * now_.x < 0, turns = trend_ * now_.dx < 0;
+  if (change || crosses || turns) spend_look();
+  if (change && too_late(*change)) change.reset();
   const bool restart = change && locate_;
-  if (restart) span = *change;
+  const Real span = restart ? *change : last ? std::max(end_time_ - begin, Real(0)) : pace_.h;
   std::optional<Real> zero;
-  if (side_ * now_.x < 0) zero = x_arc().times(side_).fall(pace_.h);
-  if (zero && *zero > span) zero.reset();
+  if (crosses) zero = x_arc().times(side_).fall(pace_.h);
+  if (zero && (too_late(*zero) || (restart && *zero > span))) zero.reset();
 
-  if (trend_ * now_.dx < 0) {
+  if (turns) {
     consider_peak(step_ == 1 ? Real(0) : -pace_.h / 2, span);
     trend_ = -trend_;
-  } else if (restart && peaks_) {
+  } else if (restart) {
     consider_peak(Real(0), span);
   }
   if (side_ == 0) side_ = sign(now_.x);
-  if (peaks_ && trend_ == 0) trend_ = sign(now_.dx);
+  if (trend_ == 0) trend_ = sign(now_.dx);
 
   const bool zero_first = zero && !(change && *change < *zero);
-  if (zero_first) cross_zero(*zero);
+  if (zero_first) cross_zero(*zero, span);
   if (change && !end_) {
     give_samples(begin + *change);
     change_regime(*change);
   }
-  if (zero && !zero_first && !end_) cross_zero(*zero);
+  if (zero && !zero_first && !end_) cross_zero(*zero, span);
   if (end_ || restart) return;
   if (last) return finish(horizon_.stop_reason, span, true);
   if (steps_left_ == 0) return finish(StopReason::step_budget, span);
-  give_samples(begin + span);
+  give_samples(end_time_);
 }
 
 // Where in the last step the mass came to a wall or away from it.
@@ -226,6 +256,7 @@ std::optional<Real> CemEngine<Real, Observer>::wall_crossing() const {
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::change_regime(const Real& at) {
   const Real time = last_step_begin() + at;
+  if (ledger_) add_sums();
   State<Real> s = state_at(at);
   const Real y = now_.q + origin_of_q();
   // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
@@ -242,8 +273,9 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   const Real old_origin = origin_of_q();
   if (wall_) leave(time);
   if (met) enter(wall, time, s.w);
+  steps_at_pace_ = 0;
   if (locate_) {
-    if (peaks_) trend_ = sign(s.v);
+    trend_ = sign(s.v);
     begin_segment(time, s);
   } else {
     before_.q += old_origin - origin_of_q();
@@ -276,7 +308,7 @@ void CemEngine<Real, Observer>::leave(const Real& time) {
 }
 
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::cross_zero(const Real& at) {
+void CemEngine<Real, Observer>::cross_zero(const Real& at, const Real& span) {
   const Real time = last_step_begin() + at;
   if (observer_.wants_half_cycles()) {
     observer_.half_cycle(double(row_begin_), double(time), double(peak_time_), double(peak_));
@@ -285,10 +317,11 @@ void CemEngine<Real, Observer>::cross_zero(const Real& at) {
   ++rows_;
   const bool small = until_amplitude_ && peak_ < Real(*until_amplitude_);
   side_ = -side_;
-  if (peaks_) trend_ = sign(now_.dx);
+  trend_ = sign(now_.dx);
   row_begin_ = time;
   peak_ = 0;
   peak_time_ = time;
+  consider_peak(at, span);  // should x' have changed its sign after x did
   if (small) return finish(StopReason::amplitude, at);
   if (rows_ >= budget_.max_half_cycles) finish(StopReason::half_cycle_budget, at);
 }
@@ -304,8 +337,9 @@ void CemEngine<Real, Observer>::consider_peak(const Real& from, const Real& to) 
 
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::give_samples(const Real& until) {
-  while (observer_.next_sample() <= until) {
+  for (;;) {
     const double time = observer_.next_sample();
+    if (!(time <= until && step_of(time) <= step_)) return;
     const State<Real> s = motion_at(Real(time) - last_step_begin());
     observer_.sample(time, double(s.x), double(s.v), double(s.y), double(s.w));
   }
@@ -348,7 +382,16 @@ void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time,
 }
 
 template <class Real, class Observer>
+void CemEngine<Real, Observer>::add_sums() {
+  viscous_work_ += flight_.zeta * sums_.vv / (2 * pace_.h);
+  if (wall_) wall_work_ += contact_.nu * contact_.c * sums_.ww / (4 * pace_.h);
+  forcing_work_ += sums_.fv / 2;
+  sums_ = {};
+}
+
+template <class Real, class Observer>
 void CemEngine<Real, Observer>::close_powers(const Real& at) {
+  add_sums();
   add_powers((at - pace_.h) / 2, last_step_begin(), state_at(Real(0)));
   add_powers(at / 2, last_step_begin() + at, state_at(at));
 }

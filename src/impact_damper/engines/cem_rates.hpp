@@ -82,8 +82,9 @@ class Certificate {
 // The pace for what comes next, and for how many steps it is the right one.
 template <class Real, class Observer>
 std::int64_t CemEngine<Real, Observer>::choose_pace() {
-  if (wall_) return choose_pace_in_contact();
-  return step_ == 0 ? 1 : choose_pace_in_flight();
+  // A segment's first step tells what its motion is, but a contact's begins in small steps.
+  if (step_ == 0) return wall_ && pace_.h == small_.h ? rates_->steps_of_contact : 1;
+  return wall_ ? choose_pace_in_contact() : choose_pace_in_flight();
 }
 
 template <class Real, class Observer>
@@ -143,10 +144,8 @@ void CemEngine<Real, Observer>::change_pace(const Pace<Real>& pace, const State<
   const Real h = pace_.h, time = last_step_end();
   if (pace.h == h) return;
   if (ledger_) close_powers(h);
-  if (peaks_) {
-    consider_peak(step_ == 1 ? Real(0) : -h / 2, h);
-    trend_ = sign(s.v);
-  }
+  consider_peak(step_ == 1 ? Real(0) : -h / 2, h);
+  trend_ = sign(s.v);
   pace_ = pace;
   begin_segment(time, of_scheme(s, time, pace.h));
 }
