@@ -91,7 +91,7 @@ class CemEngine {
   void look_at_last_step();
   std::optional<Real> wall_crossing() const;
   void change_regime(const Real& at);
-  void enter(Wall wall, const Real& time, const Real& relative_velocity);
+  void enter(Wall wall, const Real& time, const State<Real>& s);
   void leave(const Real& time);
   void cross_zero(const Real& at);
   void consider_peak(const Real& from, const Real& to);
