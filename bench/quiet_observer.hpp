@@ -17,7 +17,7 @@ class QuietObserver {
   bool wants_energy() const { return energy_; }
 
   void half_cycle(double, double, double, double) { ++rows; }
-  void impact(double, Wall, double) { ++impacts; }
+  void impact(double, Wall, double, double) { ++impacts; }
   void contact(double, double, Wall) {}
   double next_sample() const { return std::numeric_limits<double>::infinity(); }
   void sample(double, double, double, double, double) {}

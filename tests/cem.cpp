@@ -24,9 +24,10 @@ template <class Real = double>
 Run simulated(const Scene& scene, const Cem& options, const Record& record) {
   Recorder recorder(record);
   const Outcome end = run_cem<Real>(scene, options, recorder);
-  Run run;
-  run.stop_reason = end.stop_reason;
-  run.end_time = end.end_time;
+  Run run{.stop_reason = end.stop_reason,
+          .end_time = end.end_time,
+          .scene = scene,
+          .engine = resolved(scene, options)};
   recorder.finish(run);
   return run;
 }

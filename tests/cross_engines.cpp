@@ -47,6 +47,49 @@ TEST_CASE("with the fixed-wall calibration the two models stay apart, by the res
   CHECK(difference(1e12, Calibration::fixed_wall) > 10 * difference(1e12, Calibration::two_body));
 }
 
+TEST_CASE("the displacement of an impact is x at its time, in each engine") {
+  Scene scene;
+  scene.damping_ratio = 0.01;
+  scene.force_amplitude = 0.2;
+  scene.until_time = 20;
+  Cem located;
+  located.locate = true;
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{}), Engine(located)}) {
+    CAPTURE(name_of(engine));
+    Record record;
+    record.impacts = true;
+    const std::vector<double> times = simulate(scene, engine, record).impacts->time;
+    REQUIRE(times.size() > 20);
+    // The engine's own state there, as a sample: the last of a window that ends with the impact.
+    for (std::size_t i = 0; i < times.size(); i += 3) {
+      record.history = {{0, times[i], 2}};
+      const Run run = simulate(scene, engine, record);
+      // The component element method's samples are the arcs that its impacts are read off.
+      CHECK(run.impacts->displacement[i] == doctest::Approx(run.history->x.back()).epsilon(1e-13).scale(1));
+    }
+  }
+}
+
+TEST_CASE("an undamped mass that is left behind is met where it was") {
+  // z = x + y stays at x0 until the right wall comes, at x = x0 - 1, when cos t = 1 - 1/x0.
+  for (const double x0 : {0.75, 1.5, 6.0, 1e3}) {
+    Scene scene;
+    scene.x0 = x0;
+    scene.until_time = 2.5;
+    Record record;
+    record.impacts = true;
+    for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+      const Impacts impacts = *simulate(scene, engine, record).impacts;
+      REQUIRE(!impacts.time.empty());
+      CHECK(impacts.displacement[0] == doctest::Approx(x0 - 1).epsilon(1e-15 * (1 + x0)).scale(1));
+      CHECK(std::cos(impacts.time[0]) == doctest::Approx(1 - 1 / x0).epsilon(1e-14).scale(1));
+    }
+    // Of first order: the impact is seen up to a step late.
+    const Impacts steps = *simulate(scene, Cem{}, record).impacts;
+    CHECK(steps.displacement[0] == doctest::Approx(x0 - 1).epsilon(1e-4 * (1 + x0)).scale(1));
+  }
+}
+
 TEST_CASE(
     "a primary mass that begins at zero sets out to the side to which contact, impact or force drive it") {
   // Which side that is shows first in x', x'' or x''' of the motion that begins there, not of a free flight.

@@ -40,12 +40,53 @@ TEST_CASE("equal options give equal ensembles, another seed another one, fewer m
   CHECK(ensemble_of(scene)[1].x0 == 6 * (1 + 1e-9 * (1 + double((0x910a2dec89025cc1u >> 1) % 1000))));
 }
 
-TEST_CASE("a scene at rest at x = 0 has its velocity shifted") {
+TEST_CASE("whatever sets a scene moving is shifted, and nothing else") {
+  Scene resting;
+  resting.x0 = 0;
+  resting.until_time = 60;
+  struct Release {
+    double Scene::*by;
+    double size;
+  };
+  for (const Release release : {Release{&Scene::v0, 3}, Release{&Scene::w0, -2}, Release{&Scene::y0, -0.25},
+                                Release{&Scene::y0, 1.25}, Release{&Scene::force_amplitude, 0.1}}) {
+    Scene scene = resting;
+    scene.*release.by = release.size;
+    CAPTURE(release.size);
+    const std::vector<Scene> members = ensemble_of(scene);
+    for (std::size_t i = 1; i < members.size(); ++i) {
+      Scene same = members[i];
+      const double shift = std::abs(same.*release.by - release.size);
+      CHECK(shift >= 0.2e-9);  // a step, of the least depth in a wall
+      CHECK(shift <= 3.01e-6);
+      same.*release.by = release.size;
+      CHECK(same == scene);
+    }
+    // No two members have the same motion.
+    const std::vector<Run> runs = simulate_ensemble(scene, Exact{}, {}, {.members = 3});
+    REQUIRE(runs[0].half_cycles->amplitude.size() > 2);
+    for (const std::size_t i : {1u, 2u})
+      CHECK(runs[i].half_cycles->amplitude[1] != runs[0].half_cycles->amplitude[1]);
+  }
+}
+
+TEST_CASE(
+    "a place between the walls sets nothing moving, so that rigid walls never have a mass inside them") {
   Scene scene;
   scene.x0 = 0;
-  scene.v0 = 3;
-  CHECK(ensemble_of(scene)[1].x0 == 0);
-  CHECK(ensemble_of(scene)[1].v0 != 3);
+  for (const double y0 : {0.0, 0.5, 1.0}) {
+    scene.y0 = y0;
+    for (const Scene& member : ensemble_of(scene)) CHECK(member == scene);
+  }
+}
+
+TEST_CASE("no member has a number that a scene does not admit") {
+  Scene scene;
+  scene.x0 = 1e12;
+  scene.w0 = -1e12;
+  scene.until_time = 1;
+  for (const Scene& member : ensemble_of(scene)) CHECK(problems_of(member).empty());
+  CHECK(ensemble_of(scene)[1] != scene);
 }
 
 TEST_CASE("an ensemble without members is refused") {

@@ -40,9 +40,8 @@ template <class Real>
 Run exact_in(const Scene& scene, const Record& record, const Exact& options = {}) {
   Recorder recorder(record);
   const Outcome outcome = run_exact<Real>(scene, options, recorder);
-  Run run;
-  run.stop_reason = outcome.stop_reason;
-  run.end_time = outcome.end_time;
+  Run run{
+      .stop_reason = outcome.stop_reason, .end_time = outcome.end_time, .scene = scene, .engine = options};
   recorder.finish(run);
   return run;
 }
@@ -408,7 +407,7 @@ struct AtCrossings {
   bool wants_contacts() const { return false; }
   bool wants_energy() const { return false; }
   void half_cycle(double, double end, double, double) { ends.push_back(end); }
-  void impact(double, Wall, double) {}
+  void impact(double, Wall, double, double) {}
   void contact(double, double, Wall) {}
   double next_sample() const {
     return x.size() < ends.size() ? ends[x.size()] : std::numeric_limits<double>::infinity();

@@ -47,6 +47,7 @@ void add_impact(Run& run, std::size_t row, double phase, double velocity = -1) {
   impacts.relative_velocity.push_back(velocity);
   impacts.phase_deg.push_back(phase);
   impacts.amplitude.push_back(run.half_cycles->amplitude[row]);
+  impacts.displacement.push_back(0);
   ++run.half_cycles->impacts[row];
 }
 void add_stuck(Run& run, std::size_t row, double from, double to) {

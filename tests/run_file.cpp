@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/files/sha256.hpp"
 
 using namespace impact_damper;
 
@@ -60,7 +62,8 @@ Run full_run(Engine engine = lagged_cem()) {
                         {Wall::right, Wall::left, Wall::right},
                         {0.1 + 0.2, -1e-300, 5e-324},
                         {std::nullopt, 1.0 / 3, std::nullopt},
-                        {6.0, 5.9, std::nullopt}};
+                        {6.0, 5.9, std::nullopt},
+                        {3.5, -4, 1.0 / 3}};
   run.contacts = Contacts{{1, 2}, {1.125, 2}, {Wall::right, Wall::left}};
   run.energy = EnergyLedger{{1, 2, 3, 4}, {0.1, 0.2, 0.3, 0.7}, {0.1, 0.2, 0.3}, 4, 5, 6, 7, 8, -1e-16};
   run.history = History{{0, 1}, {6, -0.0}, {0, -1}, {0, 0.5}, {1.7976931348623157e308, -1}};
@@ -106,7 +109,8 @@ TEST_CASE("a run file has the keys of the schema, in its order, each column on o
   "wall": [1,0,1],
   "relative_velocity": [0.30000000000000004,-1e-300,5e-324],
   "phase_deg": [null,0.3333333333333333,null],
-  "amplitude": [6,5.9,null]
+  "amplitude": [6,5.9,null],
+  "displacement": [3.5,-4,0.3333333333333333]
  },
  "contacts": {
   "begin": [1,2],
@@ -170,6 +174,55 @@ TEST_CASE("every bit of a number survives the file") {
   for (std::size_t i = 0; i < x.size(); ++i) {
     CHECK(std::bit_cast<std::uint64_t>(back[i]) == std::bit_cast<std::uint64_t>(x[i]));
   }
+}
+
+TEST_CASE("any other byte makes another digest, which is told unless something plainer is") {
+  const std::string text = run_text(full_run()), other_digest =
+                                                     "r.json: /provenance/sha256: must be the digest of the "
+                                                     "content, got another one: the file was altered or laid "
+                                                     "out anew since it was written; make the run again";
+  for (const auto& [old, by] :
+       std::vector<std::pair<std::string, std::string>>{{"\"x0\": 6,", "\"x0\": 6.5,"},
+                                                        {"7.25", "7.5"},
+                                                        {"[0.30000000000000004,", "[0.3,"},
+                                                        {"\"fixed-wall\"", "\"two-body\""},
+                                                        {"\"version\": \"", "\"version\": \"1"},
+                                                        {",\n \"end_time\"", ", \"end_time\""},
+                                                        {"\"}\n}\n", "\"}\n}\n\n"},
+                                                        {"\"}\n}\n", "\"}\n}"}}) {
+    CAPTURE(old);
+    CHECK(problems(replaced(text, old, by)) == Lines{other_digest});
+  }
+  const std::string digest = text.substr(text.size() - seal_end.size() - 64, 64);
+  CHECK(problems(replaced(text, digest, std::string(64, '0'))) == Lines{other_digest});
+  CHECK(problems(replaced(text, ", \"sha256\": \"" + digest + "\"", "")) ==
+        Lines{"r.json: /provenance/sha256: missing, a value must be given"});
+  CHECK(problems(replaced(text, "\"x0\": 6,", "\"x0\": \"6\",")).size() == 1);
+}
+
+TEST_CASE("a file whose content was changed and that is sealed anew is read") {
+  std::string text = replaced(run_text(full_run()), "\"end_time\": 7.25", "\"end_time\": 7.5");
+  text = sealed(text.substr(0, text.rfind(seal_begin)));
+  CHECK(parse_run("r.json", text).end_time == 7.5);
+}
+
+TEST_CASE("SHA-256 is that of the standard's examples, at every length about a block's") {
+  // FIPS 180-4's examples, and a million times "a".
+  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sha256(std::string(1'000'000, 'a')) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  // 119 bytes are the most that two blocks hold beside the end, 120 the least that three do (Python's
+  // hashlib).
+  CHECK(sha256(std::string(119, '\xff')) ==
+        "b863f94597d433ef2280e3b4656f13ea265a79bb8047287321c218905b03c99b");
+  CHECK(sha256(std::string(120, '\xff')) ==
+        "9088fee917e5a748c2f0b4f5458c1cbdabbd696291c69be6e605bae0ef779e8f");
+  CHECK(sha256(std::string(64, '\0')) == "f5a5fd42d16a20302798ef6ed309979b43003d2320d9f0e8ea9831a92759fb4b");
+  CHECK(sha256(std::string(55, 'x')) == "d5e285683cd4efc02d021a5c62014694958901005d6f71e89e0989fac77e4072");
+  CHECK(sha256(std::string(56, 'x')) == "04c26261370ee7541549d16dee320c723e3fd14671e66a099afe0a377c16888e");
 }
 
 TEST_CASE("a run with energies has a loss for each impact, none less and none more") {
@@ -272,8 +325,9 @@ TEST_CASE("all that the default budgets admit and the longest history make a fil
     const Column contacts(impacts + 1, longest);  // one may be there from the beginning
     Run run = full_run();
     run.half_cycles = HalfCycles{rows, rows, rows, std::vector(half_cycles, budget.max_impacts)};
-    run.impacts = Impacts{times, std::vector(impacts, Wall::left), times, Gaps(impacts, longest),
-                          Gaps(impacts, longest)};
+    run.impacts = Impacts{
+        times, std::vector(impacts, Wall::left), times, Gaps(impacts, longest), Gaps(impacts, longest),
+        times};
     run.contacts = Contacts{contacts, contacts, std::vector(impacts + 1, Wall::left)};
     run.energy->impact_loss = times;
     run.history = History{motion, motion, motion, motion, motion};

@@ -109,6 +109,11 @@ void add_threads_option(CLI::App& app) {
       ->type_name("N");
 }
 
+void add_scenes_option(CLI::App& app) {
+  app.add_option("--scenes", "folder of the scenes that runs are named after; default data/scenes")
+      ->type_name("FOLDER");
+}
+
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
 
 std::optional<Triple> parse_triple(std::string_view text) {

@@ -67,6 +67,9 @@ std::string swallowed_options(const CLI::App& command);
 void add_threads_option(CLI::App& app);
 Threads threads_of(Arguments& arguments);
 
+// --scenes FOLDER, of every command that reads runs: where the scenes are that they are named after.
+void add_scenes_option(CLI::App& app);
+
 // The numbers A:B:N of `text`, for options that ask for samples: two finite numbers and a count.
 struct Triple {
   double first = 0, second = 0;

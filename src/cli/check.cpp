@@ -1,5 +1,6 @@
 // `check`: files read strictly, and nothing else done with them.
 #include <array>
+#include <filesystem>
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -10,19 +11,31 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/manifest.hpp"
+#include "impact_damper/paper/scene_runs.hpp"
 
 namespace impact_damper::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
+// A run named after a scene of that folder is held against it, too.
+void check_run(const fs::path& file, const fs::path& scenes) {
+  const Run run = read_run(file);
+  require_consistent(run, file);
+  if (const fs::path scene = scenes / file.filename(); fs::is_regular_file(scene))
+    require_scene(run, file, scene);
+}
+
 struct Reader {
   std::string_view kind;
-  void (*read)(const std::string& file);
+  void (*read)(const std::string& file, const fs::path& scenes);
 };
-constexpr std::array<Reader, 5> readers{{{"scene", [](const std::string& file) { read_scene(file); }},
-                                         {"run", [](const std::string& file) { read_run(file); }},
-                                         {"catalogue", [](const std::string& file) { read_catalogue(file); }},
-                                         {"claims", [](const std::string& file) { read_claims(file); }},
-                                         {"manifest", [](const std::string& file) { read_manifest(file); }}}};
+constexpr std::array<Reader, 5> readers{
+    {{"scene", [](const std::string& file, const fs::path&) { read_scene(file); }},
+     {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
+     {"catalogue", [](const std::string& file, const fs::path&) { read_catalogue(file); }},
+     {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
+     {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
 
 // Not an option with many values: that would take "[]" for a list of none.
 std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
@@ -38,6 +51,7 @@ std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
 int check(const CLI::App& app) {
   Arguments arguments(app);
   const std::vector<std::string> files = files_of(app, arguments);
+  const fs::path scenes = arguments.file("--scenes").value_or("data/scenes");
   std::vector<std::string_view> kinds;
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
@@ -52,7 +66,7 @@ int check(const CLI::App& app) {
   std::vector<std::string> problems;
   for (const std::string& file : files) {
     try {
-      readers[*kind].read(file);
+      readers[*kind].read(file, scenes);
       admitted += file + ": admitted\n";
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
@@ -70,9 +84,12 @@ Command check_command(CLI::App& program) {
       program.add_subcommand("check", "Read files strictly and say all that is wrong with them.");
   app->add_option("KIND", "what they are: scene, run, catalogue, claims or manifest")->type_name("");
   app->add_option("FILE", "one or several")->type_name("");
+  add_scenes_option(*app);
   app->allow_extras();
   app->footer(
-      "The same is checked whenever a file is read. data/schema/ holds JSON Schemas of all these kinds.\n\n"
+      "The same is checked whenever a file is read, but for this: a run must agree with itself, and with\n"
+      "the scene that it is named after, if --scenes has one. data/schema/ holds JSON Schemas of all these\n"
+      "kinds.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json");

@@ -7,8 +7,8 @@
 #include "commands.hpp"
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/run_file.hpp"
 #include "impact_damper/paper/catalogue.hpp"
+#include "impact_damper/paper/scene_runs.hpp"
 #include "interruption.hpp"
 
 namespace impact_damper::cli {
@@ -42,13 +42,19 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
   return figures;
 }
 
-// A figure's runs; what is wrong with one is reported under the figure's name.
-void load(const Figure& figure, const fs::path& folder, FigureRuns& runs) {
+// A figure's runs; what is wrong with one is reported under the figure's name. All are of one engine,
+// whatever figure they were read for.
+void load(const Figure& figure, const SceneRuns& folders, FigureRuns& runs) {
   for (const std::string& scene : scenes_of(figure)) {
     if (runs.contains(scene)) continue;
-    const fs::path file = folder / (scene + ".json");
+    const fs::path file = folders.file_of(scene);
     try {
-      runs[scene] = {file, read_run(file)};
+      const FigureRun source{file, folders.read(scene)};
+      if (!runs.empty()) {
+        const FigureRun& first = runs.begin()->second;
+        require_same_engine(source.run, file, first.run, first.file);
+      }
+      runs[scene] = source;
     } catch (const InputError& error) {
       std::vector<std::string> problems;
       for (const std::string& problem : error.problems()) {
@@ -64,6 +70,7 @@ void load(const Figure& figure, const fs::path& folder, FigureRuns& runs) {
 int make_tables(Arguments arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
   const auto output = arguments.file("--output");
   const Threads threads = threads_of(arguments);
   const std::string catalogue_file = arguments.file("--catalogue").value_or("figures/catalogue.json");
@@ -75,7 +82,7 @@ int make_tables(Arguments arguments) {
                                      (output ? in_quotes(*output) : "none"));
   }
   std::vector<fs::path> inputs{catalogue_file};
-  for (const CatalogueScene& scene : catalogue.scenes) inputs.push_back(runs_folder / (scene.name + ".json"));
+  for (const CatalogueScene& scene : catalogue.scenes) inputs.push_back(folders.file_of(scene.name));
   arguments.refuse_overwriting("--output", output, inputs);
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
@@ -94,7 +101,7 @@ int make_tables(Arguments arguments) {
       if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
-    load(*figure, runs_folder, runs);
+    load(*figure, folders, runs);
     const std::string text = to_text(figure_table(*figure, runs, threads));
     if (!output) {
       write_standard_output(text);
@@ -112,6 +119,7 @@ Command series_command(CLI::App& program) {
   app->add_option("--catalogue", "which figure draws what; default figures/catalogue.json")
       ->type_name("FILE");
   app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
+  add_scenes_option(*app);
   app->add_option("--figure", "only this figure's table, 1 to 15; may be repeated; default all")
       ->type_name("NUMBER")
       ->expected(1)
@@ -122,7 +130,8 @@ Command series_command(CLI::App& program) {
   app->footer(
       "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
       "numbers.\n"
-      "A run that is missing, too short or not finite is refused with the figure's and the file's name.\n\n"
+      "A run that is missing, too short, altered, of another scene or of another engine than the others is\n"
+      "refused with the figure's and the file's name.\n\n"
       "Examples:\n"
       "  impact-damper series --runs build/runs/exact --figure 8\n"
       "  impact-damper series --runs build/runs/exact -o build/series/exact");

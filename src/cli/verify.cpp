@@ -4,7 +4,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -14,6 +16,7 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/scene_runs.hpp"
 #include "interruption.hpp"
 
 namespace impact_damper::cli {
@@ -160,12 +163,26 @@ void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
   if (!problems.empty()) throw InputError(problems);
 }
 
+// Every run that a claim rests on, before anything is measured: consistent, of its scene, and all of one
+// engine.
+void check_runs(const SceneRuns& folders, const std::vector<Claim>& claims) {
+  std::set<std::string> scenes;
+  for (const Claim& claim : claims) scenes.insert(claim.measure.scenes.begin(), claim.measure.scenes.end());
+  std::optional<Run> first;
+  for (const std::string& scene : scenes) {
+    Run run = folders.read(scene);
+    if (first) require_same_engine(run, folders.file_of(scene), *first, folders.file_of(*scenes.begin()));
+    if (!first) first = std::move(run);
+  }
+}
+
 int verify(Arguments arguments) {
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
   ensemble.threads = threads_of(arguments);
   const fs::path claims_file = arguments.file("--claims").value_or("data/claims.json"),
                  runs_folder = arguments.file("--runs").value_or("build/runs/exact");
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
@@ -177,13 +194,14 @@ int verify(Arguments arguments) {
   if (catalogue) check_catalogue(*catalogue, claims);
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
-    for (const std::string& scene : claim.measure.scenes) inputs.push_back(runs_folder / (scene + ".json"));
+    for (const std::string& scene : claim.measure.scenes) inputs.push_back(folders.file_of(scene));
   arguments.refuse_overwriting("--output", verdicts_file, inputs);
   arguments.refuse_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
   for (const auto& file : {verdicts_file, markdown_file})
     if (file) require_writable(*file);
 
+  check_runs(folders, claims);
   Runs runs(runs_folder, ensemble);
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
@@ -221,6 +239,7 @@ Command verify_command(CLI::App& program) {
   app->add_option("--claims", "what the paper reports; default data/claims.json")->type_name("FILE");
   app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
       ->type_name("FOLDER");
+  add_scenes_option(*app);
   app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
   app->add_option("--members",
                   "releases in each ensemble, the run file's own among them;\n1 to 100, default 16")
@@ -231,7 +250,8 @@ Command verify_command(CLI::App& program) {
   app->footer(
       "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
       "and extremes over an ensemble of minutely different releases), and the verdict: reproduced, not\n"
-      "reproduced, or corrected. Exit code 1 if a verdict differs from the recorded one, either way.\n\n"
+      "reproduced, or corrected. Exit code 1 if a verdict differs from the recorded one, either way. A run\n"
+      "that was altered, contradicts itself or is of another scene or engine than the others is refused.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");

@@ -41,6 +41,7 @@ struct Impacts {
   // half cycle at the end.
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // absent only in the unfinished half cycle
+  std::vector<double> displacement;              // x at the impact, by epsilon
 };
 
 // Compliant walls: every contact, from the wall position to the return to it. Restitution: the

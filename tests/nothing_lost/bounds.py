@@ -118,7 +118,7 @@ def known(b, tree):
 
     # Ensembles and threads.
     runs, claims = str(tree / "build" / "runs" / "exact"), str(scratch.SOURCE / "data" / "claims.json")
-    verify = ["verify", "--runs", runs, "--claims", claims]
+    verify = ["verify", "--runs", runs, "--claims", claims, "--scenes", str(scratch.SOURCE / "data" / "scenes")]
     for members in ("1000000000", "10000", "101"):
         b.refuses("--members: must be a whole number >= 1 and <= 100", [*verify, "--members", members])
     for threads in ("0", "-1", "100000", "1e9", "99999999999999999999"):

@@ -55,13 +55,14 @@ PROGRAMS, MAKES = ["run", "series", "verify"], ["make", "makes"]
 def programs(options, tree, folder, moments, check):
     program = str(options.program.resolve())
     runs, catalogue = str(tree / "build" / "runs" / "exact"), str(tree / "figures" / "catalogue.json")
-    claims = str(tree / "data" / "claims.json")
+    claims, scenes = str(tree / "data" / "claims.json"), str(tree / "data" / "scenes")
     commands = {
         "run": ([program, "run", "--engine", "cem", "--time-step", "1e-9", "--until-time", "10", "-o", "out.json"],
                 ["out.json"]),
-        "series": ([program, "series", "--catalogue", catalogue, "--runs", runs, "--threads", "4", "-o", "."], []),
-        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--members", "32", "--threads", "4", "-o",
-                    "verdicts.json"], ["verdicts.json"]),
+        "series": ([program, "series", "--catalogue", catalogue, "--runs", runs, "--scenes", scenes,
+                    "--threads", "4", "-o", "."], []),
+        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--scenes", scenes, "--members", "32",
+                    "--threads", "4", "-o", "verdicts.json"], ["verdicts.json"]),
     }
     for name, (command, files) in commands.items():
         if name not in options.parts:

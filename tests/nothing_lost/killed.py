@@ -163,7 +163,7 @@ def main():
     wanted = scratch.made_in(tree)
 
     program, runs = str(options.program.resolve()), str(tree / "build" / "runs" / "exact")
-    catalogue = str(tree / "figures" / "catalogue.json")
+    catalogue, scenes = str(tree / "figures" / "catalogue.json"), str(tree / "data" / "scenes")
     tables = sorted(file.name for file in (tree / "build" / "series" / "exact").glob("*.dat"))
     loss = next(file for file in reversed(tables) if file != "fig15.dat")
     number = str(int(loss[3:5]))
@@ -177,13 +177,14 @@ def main():
     victims = [
         victim("run", [program, "run", "--until-time", "300", "--record", "impacts,contacts,energy,history",
                        "--history", "0:300:30000", "-o", "out.json"], ["out.json"]),
-        victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "-o", "."], tables),
+        victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "--scenes", scenes, "-o",
+                          "."], tables),
         victim("draw", [str(tree / "figures" / "draw"), script,
                         str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig",
                         scratch.VERSION],
                ["fig.svg", "fig.pdf", "fig.png"]),
         victim("verify", [program, "verify", "--claims", str(tree / "data" / "claims.json"), "--runs", runs,
-                          "--members", "2", "-o", "verdicts.json", "--markdown", "claims.md"],
+                          "--scenes", scenes, "--members", "2", "-o", "verdicts.json", "--markdown", "claims.md"],
                ["verdicts.json", "claims.md"]),
     ]
     for each in victims:

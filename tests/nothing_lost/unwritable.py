@@ -24,6 +24,7 @@ class Programs:
         self.program = str(options.program.resolve())
         self.draw = str(tree / "figures" / "draw")
         self.runs = str(tree / "build" / "runs" / "exact")
+        self.scenes = str(tree / "data" / "scenes")
         self.catalogue = str(tree / "figures" / "catalogue.json")
         self.table = str(tree / "build" / "series" / "exact" / "fig07.dat")
         self.claims = str(tree / "claims.json")
@@ -33,10 +34,10 @@ class Programs:
                 *more]
 
     def series(self, *more):
-        return [self.program, "series", "--catalogue", self.catalogue, "--runs", self.runs, *more]
+        return [self.program, "series", "--catalogue", self.catalogue, "--runs", self.runs, "--scenes", self.scenes, *more]
 
     def verify(self, *more):
-        return [self.program, "verify", "--claims", self.claims, "--runs", self.runs, *more]
+        return [self.program, "verify", "--claims", self.claims, "--runs", self.runs, "--scenes", self.scenes, *more]
 
     def report(self, *more):
         return [self.program, "report", "--until-time", "10", "--members", "2", *more]

@@ -40,6 +40,8 @@ SCENES = {
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
     "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted"},
                          ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "released by w0": (["--x0", "0", "--w0", "3", "--until-time", "400"], {"prediction": "releases that differ"},
+                       ["decay", "phase", "begin", "best", "prediction"]),
     "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
                ["decay", "phase", "begin", "prediction"]),
 }
@@ -92,8 +94,12 @@ def windows(impacts):
     return {count: max(each, key=lambda ends: ends[1] - ends[0]) for count, each in series.items()}
 
 
-def shifted(x0):
-    """The other releases' x0: splitmix64 from 1, up to a thousand steps of 1e-9 of it either way."""
+MOVING = ["x0", "v0", "w0", "force_amplitude", "y0"]  # what can set a scene moving
+
+
+def shifted(scene):
+    """Options of the other releases: splitmix64 from 1, up to a thousand steps of 1e-9 either way of all that sets the
+    scene moving; y0 of how deep it is in a wall."""
     state, mask = 1, 2 ** 64 - 1
     for _ in range(int(MEMBERS) - 1):
         state = (state + 0x9e3779b97f4a7c15) & mask
@@ -101,16 +107,19 @@ def shifted(x0):
         z = ((z ^ (z >> 27)) * 0x94d049bb133111eb) & mask
         z ^= z >> 31
         steps = 1.0 + (z >> 1) % 1000
-        yield x0 * (1 + 1e-9 * (steps if z & 1 else -steps))
+        factor = 1 + 1e-9 * (steps if z & 1 else -steps)
+        numbers = {name: scene[name] * factor for name in MOVING[:-1]}
+        y0 = scene["y0"]
+        numbers["y0"] = y0 * factor if y0 < 0 else 1 + (y0 - 1) * factor if y0 > 1 else y0
+        yield [f"--{name.replace('_', '-')}={value!r}" for name, value in numbers.items()]
 
 
 def spread(run, options):
     """Greatest and last relative spread of the releases' amplitudes."""
     columns = [run["half_cycles"]["amplitude"]]
-    if "--x0" in options:
-        options = options[:options.index("--x0")] + options[options.index("--x0") + 2:]
-    for x0 in shifted(run["scene"]["x0"]):
-        other = call("run", *options, f"--x0={x0!r}")
+    pairs = [pair for pair in zip(options[::2], options[1::2]) if pair[0][2:].replace("-", "_") not in MOVING]
+    for release in shifted(run["scene"]):
+        other = call("run", *sum(pairs, ()), *release)
         columns.append(json.loads(other.stdout)["half_cycles"]["amplitude"])
     rows = [sorted(row) for row in zip(*columns)]
     spreads = [(row[-1] - row[0]) / ((row[1] + row[2]) / 2) for row in rows]
@@ -163,13 +172,13 @@ def compare(page, run, scales):
         for count, (first, last) in windows(rows["impacts"]).items():
             for value in (count, last - first + 1, amplitudes[first], amplitudes[last]):
                 holds(page, "regimes", value, f"window of {count} impacts")
-    if run["scene"]["x0"]:
-        greatest, last, lost = spread(run, options)
-        # Twelve digits of an amplitude are left in a spread of a millionth, six of them significant.
-        holds(page, "prediction", 100 * greatest, "greatest spread", 1e-6)
-        if lost is not None:
-            holds(page, "prediction", 100 * last, "last spread", 1e-6)
-            holds(page, "prediction", amplitudes[lost], "amplitude at which releases part")
+    greatest, last, lost = spread(run, options)
+    check(greatest > 0, f"{name}: the releases do not differ")
+    # Twelve digits of an amplitude are left in a spread of a millionth, six of them significant.
+    holds(page, "prediction", 100 * greatest, "greatest spread", 1e-6)
+    if lost is not None:
+        holds(page, "prediction", 100 * last, "last spread", 1e-6)
+        holds(page, "prediction", amplitudes[lost - 1], "last amplitude at which the releases agree")
 
 
 shutil.rmtree(folder, ignore_errors=True)

@@ -40,7 +40,7 @@ endfunction()
 
 set(run ${PROGRAM} run --scene figures/small.json --record half_cycles,impacts,contacts,history
         --history-below 0.2:12:200 -o runs/small.json)
-set(series ${PROGRAM} series --catalogue figures/catalogue.json --runs runs)
+set(series ${PROGRAM} series --catalogue figures/catalogue.json --runs runs --scenes figures)
 set(all_tables ${series} -o series)
 set(draw figures/draw figures/single.gp series/fig08.dat "It's a loss factor")
 
@@ -50,7 +50,8 @@ if(CASE STREQUAL missing_run)
   expect_none(series/*)
   return()
 elseif(CASE STREQUAL short_run)
-  step(${run} --until-time 20 --until-amplitude 0.03)
+  file(WRITE ${FOLDER}/figures/small.json "{\"x0\": 0.3, \"until_time\": 20, \"until_amplitude\": 0.03}")
+  step(${run})
   expect(0 "history has 0 of the 200 samples asked for")
   step(${series} --figure 8 -o series/fig08.dat)
   expect(3 "figure 8: runs/small.json: is too short")

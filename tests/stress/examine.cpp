@@ -1,8 +1,10 @@
 #include "examine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/simulate.hpp"
 #include "report.hpp"
 
@@ -38,31 +40,15 @@ void check_finite(const Run& run, std::string& broken) {
                     ledger.bounce_down_loss, ledger.viscous_work, ledger.forcing_work, ledger.residual});
 }
 
-void check_order(const Run& run, std::string& broken) {
-  const auto fault = [&](const std::string& what, std::size_t i) {
-    if (broken.empty()) broken = what + " at row " + std::to_string(i);
+void check_consistency(const Run& run, std::string& broken) {
+  const auto fault = [&](const std::string& what) {
+    if (broken.empty()) broken = what;
   };
-  const Impacts& impacts = *run.impacts;
-  for (std::size_t i = 0; i < impacts.time.size(); ++i) {
-    if (!(impacts.time[i] >= (i > 0 ? impacts.time[i - 1] : 0))) fault("impact before the one before it", i);
-    const double w = impacts.relative_velocity[i];
-    if (!(impacts.wall[i] == Wall::left ? w <= 0 : w >= 0))
-      fault("impact with " + full(w) + " off its wall", i);
-  }
-  const std::vector<double>& losses = run.energy->impact_loss;
-  for (std::size_t i = 0; i < losses.size(); ++i)
-    if (!(losses[i] >= 0)) fault("impact loss " + full(losses[i]), i);
-  const Contacts& contacts = *run.contacts;
-  for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
-    if (!(contacts.end[i] >= contacts.begin[i])) fault("contact ends before it begins", i);
-    if (i > 0 && !(contacts.begin[i] >= contacts.end[i - 1])) fault("contacts overlap", i);
-  }
-  const HalfCycles& rows = *run.half_cycles;
-  for (std::size_t i = 0; i < rows.amplitude.size(); ++i) {
-    if (i > 0 && !(rows.zero_crossing[i] > rows.zero_crossing[i - 1])) fault("half cycle of no length", i);
-    if (!(rows.amplitude[i] >= 0)) fault("negative amplitude", i);
-  }
-  if (!(run.end_time <= *run.scene.until_time)) fault("end after until_time", 0);
+  const std::vector<double>& times = run.impacts->time;
+  if (!std::ranges::is_sorted(times)) fault("impact before the one before it");
+  for (const double loss : run.energy->impact_loss)
+    if (!(loss >= 0)) fault("impact loss " + full(loss));
+  for (const Problem& problem : inconsistencies_of(run)) fault(problem.field + " " + problem.message);
 }
 
 void check_bounds(const Run& run, std::string& broken) {
@@ -137,7 +123,7 @@ Examined examine(const Scene& scene, const Engine& engine) {
   try {
     const Run run = simulate(scene, engine, record);
     check_finite(run, broken(Promise::finite));
-    check_order(run, broken(Promise::ordered));
+    check_consistency(run, broken(Promise::consistent));
     check_bounds(run, broken(Promise::bounded));
     result.outside = outside(run);
     if (!(result.outside <= roundings_beyond_a_wall))

@@ -11,13 +11,13 @@ namespace stress {
 
 enum class Promise {
   finite,          // every number of the run
-  ordered,         // times ascend, velocities have their wall's sign, losses are not negative
+  consistent,      // agrees with itself (consistency.hpp), impacts ascend, losses are not negative
   bounded,         // ends by time or by the impacts that were granted; no impacts heaped on one instant
   between_walls,   // 0 <= y <= 1 in flight, beyond the wall in contact
   end_on_the_dot,  // a contact that the end of the run cuts ends with it
   ledger,          // closes
 };
-inline constexpr std::array<const char*, 6> promises{"finite",        "ordered",        "bounded",
+inline constexpr std::array<const char*, 6> promises{"finite",        "consistent",     "bounded",
                                                      "between walls", "end on the dot", "ledger"};
 
 struct Examined {

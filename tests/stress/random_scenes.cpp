@@ -257,7 +257,7 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
   std::vector<Check> checks;
   constexpr std::array<const char*, promises.size()> sentences{
       "every number is finite",
-      "times and signs are in order",
+      "the run agrees with itself, its times in order",
       "the run ends by its time or its impacts, none of them found again and again",
       "0 <= y <= 1 in flight, beyond its wall in contact, by rounding",
       "a contact that the end of the run cuts ends with it",

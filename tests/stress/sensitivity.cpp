@@ -54,7 +54,7 @@ class Crossings {
   bool wants_contacts() const { return false; }
   bool wants_energy() const { return false; }
   void half_cycle(double, double end, double, double amplitude) { rows.push_back({end, amplitude, {}}); }
-  void impact(double, Wall, double) {}
+  void impact(double, Wall, double, double) {}
   void contact(double, double, Wall) {}
   // Several crossings may lie in one motion, all told of before the first sample is asked for.
   double next_sample() const {

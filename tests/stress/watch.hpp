@@ -19,7 +19,7 @@ class Watch {
   bool wants_contacts() const { return false; }
   bool wants_energy() const { return false; }
   void half_cycle(double, double, double, double) {}
-  void impact(double time, impact_damper::Wall, double) {
+  void impact(double time, impact_damper::Wall, double, double) {
     ++impacts;
     last_impact = time;
   }

@@ -18,6 +18,16 @@ std::uint64_t draw(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
+// All that sets the scene moving, times `factor`: a part of it that hardly does may be lost in the rounding
+// of others.
+Scene scaled(Scene scene, double factor) {
+  for (double Scene::*const part : {&Scene::x0, &Scene::v0, &Scene::w0, &Scene::force_amplitude})
+    scene.*part *= factor;
+  if (scene.y0 < 0) scene.y0 *= factor;
+  if (scene.y0 > 1) scene.y0 = 1 + (scene.y0 - 1) * factor;
+  return scene;
+}
+
 }  // namespace
 
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options) {
@@ -29,10 +39,11 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
     const std::uint64_t drawn = draw(state);
     const double steps =
         1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
-    const double factor = 1 + options.step * (drawn & 1 ? steps : -steps);
-    Scene shifted = scene;
-    (scene.x0 != 0 ? shifted.x0 : scene.v0 != 0 ? shifted.v0 : shifted.force_amplitude) *= factor;
-    scenes.push_back(shifted);
+    const double shift = options.step * (drawn & 1 ? steps : -steps);
+    const Scene shifted = scaled(scene, 1 + shift);
+    // Beyond the largest number that a scene admits there is none: then the other way.
+    const bool is_beyond = problems_of(shifted).size() > problems_of(scene).size();
+    scenes.push_back(is_beyond ? scaled(scene, 1 - shift) : shifted);
   }
   return scenes;
 }

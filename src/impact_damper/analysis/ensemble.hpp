@@ -15,15 +15,15 @@ namespace impact_damper {
 
 struct EnsembleOptions {
   std::int64_t members = 16;       // >= 1, the undisturbed scene among them
-  double step = 1e-9;              // relative to the initial displacement
+  double step = 1e-9;              // relative to what sets the scene moving
   std::int64_t most_steps = 1000;  // a member is shifted by a whole number of steps up to this, either way
   std::uint64_t seed = 1;
   Threads threads;  // that simulate the members; no result depends on it
 };
 
-// The scene itself, then members - 1 shifted ones: x0 (1 + step n), n drawn from the seed, never 0. With
-// x0 = 0 it is v0 that is shifted, and from rest in the middle the forcing's amplitude. Equal options give
-// equal scenes on every machine.
+// The scene itself, then members - 1 shifted ones: x0, v0, w0, the forcing's amplitude and how deep y0 is in
+// a wall, all times 1 + step n, n drawn from the seed, never 0. Only where nothing sets the scene moving they
+// are all equal. Equal options give equal scenes on every machine.
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options = {});
 
 // One run for each scene, in their order. Throws what simulate() throws for the first scene that fails.

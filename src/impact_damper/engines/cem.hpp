@@ -103,7 +103,7 @@ class CemEngine {
   void spend_look();
   std::optional<Real> wall_crossing() const;
   void change_regime(const Real& at);
-  void enter(Wall wall, const Real& time, const Real& relative_velocity);
+  void enter(Wall wall, const Real& time, const State<Real>& s);
   void leave(const Real& time);
   // `span`: up to where the last step counts.
   void cross_zero(const Real& at, const Real& span);

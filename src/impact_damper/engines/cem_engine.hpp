@@ -272,7 +272,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   }
   const Real old_origin = origin_of_q();
   if (wall_) leave(time);
-  if (met) enter(wall, time, s.w);
+  if (met) enter(wall, time, s);
   steps_at_pace_ = 0;
   if (locate_) {
     trend_ = sign(s.v);
@@ -284,12 +284,12 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
 }
 
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::enter(Wall wall, const Real& time, const Real& relative_velocity) {
+void CemEngine<Real, Observer>::enter(Wall wall, const Real& time, const State<Real>& s) {
   wall_ = wall;
   contact_begin_ = time;
   impact_began_contact_ = true;
   ++impacts_;
-  observer_.impact(double(time), wall, double(relative_velocity));
+  observer_.impact(double(time), wall, double(s.w), double(s.x));
 }
 
 template <class Real, class Observer>

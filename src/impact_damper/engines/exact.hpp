@@ -57,7 +57,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
       wall = met->wall;
-      if (!timeline.impact(wall, state.w)) break;
+      if (!timeline.impact(wall, state)) break;
       in_contact = by_impact = true;
     } else {
       const auto pass = [&](const auto& contact) {

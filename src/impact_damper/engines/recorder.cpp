@@ -37,7 +37,7 @@ void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, 
   }
 }
 
-void Recorder::impact(double time, Wall wall, double relative_velocity) {
+void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement) {
   ++impacts_in_row_;
   if (!wants_.impacts) return;
   impacts_.time.push_back(time);
@@ -45,6 +45,7 @@ void Recorder::impact(double time, Wall wall, double relative_velocity) {
   impacts_.relative_velocity.push_back(relative_velocity);
   impacts_.phase_deg.emplace_back();
   impacts_.amplitude.emplace_back();
+  impacts_.displacement.push_back(displacement);
 }
 
 void Recorder::contact(double begin, double end, Wall wall) {

@@ -21,8 +21,8 @@ class Recorder {
 
   // A row ended at `zero_crossing`; impacts told of since the last row are its own.
   void half_cycle(double begin, double zero_crossing, double peak_time, double amplitude);
-  // An impact on `wall` with y' = relative_velocity just before.
-  void impact(double time, Wall wall, double relative_velocity);
+  // An impact on `wall` with y' = relative_velocity just before, while x = displacement.
+  void impact(double time, Wall wall, double relative_velocity, double displacement);
   void contact(double begin, double end, Wall wall);
 
   // When the next history sample is wanted; infinity where none is known of yet. A half cycle may open a

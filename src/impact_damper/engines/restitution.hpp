@@ -93,7 +93,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
     if (timeline.stopped()) break;
     wall = met->wall;
-    if (!timeline.impact(wall, state.w)) break;
+    if (!timeline.impact(wall, state)) break;
     if (observer.wants_energy()) {
       const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));
       losses += loss;

@@ -105,14 +105,15 @@ class Timeline {
   // How much of the last motion has passed.
   const Real& passed() const { return passed_; }
 
-  // An impact that is about to happen. False: it was one too many, and the scene ends before it.
-  bool impact(Wall wall, const Real& relative_velocity) {
+  // An impact that is about to happen, in state `s`. False: it was one too many, and the scene ends before
+  // it.
+  bool impact(Wall wall, const State<Real>& s) {
     if (impacts_ >= budget_.max_impacts) {
       stopped_ = StopReason::impact_budget;
       return false;
     }
     ++impacts_;
-    observer_.impact(double(now()), wall, double(relative_velocity));
+    observer_.impact(double(now()), wall, double(s.w), double(s.x));
     return true;
   }
 

@@ -1,8 +1,10 @@
 // Runs as JSON files, schema "impact-damper/run/1": the scene, the engine with every option that can
 // change the result, why and when the run ended, the recorded sections as columns, and provenance.
 //
-// Equal runs make equal bytes, but for "provenance". Numbers are written so that they read back with the
-// same bits; each column stands on a line of its own; a section that was not recorded is not there.
+// Equal runs make equal bytes, but for "provenance", the last line. That ends with "sha256", the digest of
+// all bytes before it: a run that was altered, cut or put under another scene is told from one as it was
+// written. Numbers are written so that they read back with the same bits; each column stands on a line of its
+// own; a section that was not recorded is not there.
 #pragma once
 
 #include <filesystem>
@@ -20,13 +22,18 @@ inline constexpr std::string_view run_schema = "impact-damper/run/1";
 // admit and the longest history, however long their numbers are.
 inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
+// A file ends with these, and the digest between them.
+inline constexpr std::string_view seal_begin = ", \"sha256\": \"", seal_end = "\"}\n}\n";
+// `text`, the beginning of a file up to the last field of "provenance" but the digest, with these.
+std::string sealed(std::string text);
+
 // The run as the text of its file. Throws NumericalError naming the column that holds a number which is
 // not finite: JSON has none, and no result has one.
 std::string run_text(const Run& run);
 
 // The run out of a file or a text, strictly: every key known and given, columns of a section equally
-// long, times ascending, sums equal to their parts. Throws IoError if `file` cannot be read, InputError
-// naming everything that is not admitted.
+// long, times ascending, sums equal to their parts, and the digest that of the content. Throws IoError if
+// `file` cannot be read, InputError naming everything that is not admitted.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(const std::string& name, const std::string& text);
 

@@ -7,6 +7,7 @@
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/run_file.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/files/sha256.hpp"
 
 namespace impact_damper {
 namespace {
@@ -115,6 +116,7 @@ Impacts read_impacts(ObjectReader object) {
   columns.read("relative_velocity", impacts.relative_velocity);
   columns.read("phase_deg", impacts.phase_deg, within(0, 180));
   columns.read("amplitude", impacts.amplitude, at_least(0));
+  columns.read("displacement", impacts.displacement);
   return impacts;
 }
 
@@ -200,7 +202,17 @@ void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   }
 }
 
-Run read_whole(JsonDocument document) {
+// Whether a run file ends with the digest of what stands before it.
+bool is_sealed(std::string_view text) {
+  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
+  if (text.size() < length) return false;
+  const std::string_view seal = text.substr(text.size() - length),
+                         digest = seal.substr(seal_begin.size(), digits);
+  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
+         digest == sha256(text.substr(0, text.size() - length));
+}
+
+Run read_whole(JsonDocument document, bool sealed) {
   Run run;
   ObjectReader object = document.root();
   if (object.require("schema")) object.word("schema", {run_schema});
@@ -227,16 +239,30 @@ Run read_whole(JsonDocument document) {
     std::string any;
     made_by.optional(key, any);
   }
+  made_by.require("sha256");
   document.finish();
+  if (!sealed) {  // says nothing new beside other problems
+    made_by.refuse(
+        "sha256",
+        "must be the digest of the content, got another one: the file was altered or laid out anew "
+        "since it was written; make the run again");
+    document.finish();
+  }
   return run;
 }
 
 }  // namespace
 
-Run read_run(const std::filesystem::path& file) { return read_whole(JsonDocument::read(file, run_kind)); }
+Run read_run(const std::filesystem::path& file) {
+  std::string text = read_text(file, run_kind);
+  const bool sealed = is_sealed(text);
+  JsonDocument document = JsonDocument::parse(file.string(), text);
+  text = {};  // its memory is as large as that of the columns
+  return read_whole(std::move(document), sealed);
+}
 
 Run parse_run(const std::string& name, const std::string& text) {
-  return read_whole(JsonDocument::parse(name, text));
+  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
 }
 
 }  // namespace impact_damper

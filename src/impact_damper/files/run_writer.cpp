@@ -8,6 +8,7 @@
 #include "impact_damper/files/provenance.hpp"
 #include "impact_damper/files/run_file.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/files/sha256.hpp"
 
 namespace impact_damper {
 namespace {
@@ -52,10 +53,7 @@ class Writer {
     text_ += value;
   }
 
-  std::string finish() {
-    text_ += '\n';
-    return std::move(text_);
-  }
+  std::string finish() { return std::move(text_); }
 
  private:
   struct Level {
@@ -159,6 +157,7 @@ void write(Writer& out, const Impacts& impacts) {
   out.field("relative_velocity", impacts.relative_velocity);
   out.field("phase_deg", impacts.phase_deg);
   out.field("amplitude", impacts.amplitude);
+  out.field("displacement", impacts.displacement);
   out.close();
 }
 
@@ -213,10 +212,14 @@ void write(Writer& out, const Provenance& made_by) {
   out.field("build_type", made_by.build_type);
   out.field("flags", made_by.flags);
   out.field("system", made_by.system);
-  out.close();
 }
 
 }  // namespace
+
+std::string sealed(std::string text) {
+  const std::string digest = sha256(text);
+  return std::move(text) + std::string(seal_begin) + digest + std::string(seal_end);
+}
 
 std::string run_text(const Run& run) {
   Writer out;
@@ -232,8 +235,7 @@ std::string run_text(const Run& run) {
   if (run.energy) write(out, *run.energy);
   if (run.history) write(out, *run.history);
   write(out, provenance());
-  out.close();
-  return out.finish();
+  return sealed(out.finish());
 }
 
 }  // namespace impact_damper

@@ -39,13 +39,6 @@ Samples find_window(const Figure& figure, const FigureRun& source) {
   return {first, last};
 }
 
-double interpolated(const History& history, const std::vector<double>& column, double time) {
-  const auto above = std::ranges::lower_bound(history.time, time);
-  const std::size_t i = std::max<std::size_t>(1, static_cast<std::size_t>(above - history.time.begin()));
-  const double part = (time - history.time[i - 1]) / (history.time[i] - history.time[i - 1]);
-  return column[i - 1] + part * (column[i] - column[i - 1]);
-}
-
 }  // namespace
 
 void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table& table) {
@@ -71,7 +64,7 @@ void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table
   std::size_t next = static_cast<std::size_t>(std::ranges::lower_bound(all.time, begin) - all.time.begin());
   for (std::size_t i = first; i <= last; ++i) {
     for (; next < all.time.size() && all.time[next] <= history.time[i]; ++next) {
-      const double time = all.time[next], x = interpolated(history, history.x, time);
+      const double time = all.time[next], x = all.displacement[next];
       const double wall = static_cast<double>(all.wall[next]);
       const double row[] = {time, wall, x + wall};
       for (std::size_t c = 0; c < 3; ++c) impacts.columns[c].values.push_back(row[c]);

@@ -239,10 +239,14 @@ std::string prediction_html(const Findings& findings) {
     return paragraph_html(text + "Their amplitudes never part by more than " + percent_html(greatest) +
                           ": within this run the motion can be predicted.");
   const HalfCycles& rows = *findings.run.half_cycles;
+  const std::string agreement =
+      *findings.lost_row == 0
+          ? "Not even their first amplitudes agree within " + percent_html(lost_spread)
+          : "Up to an amplitude of " + speech.length(rows.amplitude[*findings.lost_row - 1]) + ", " +
+                speech.time(rows.peak_time[*findings.lost_row - 1]) +
+                " after the release, they agree within " + percent_html(lost_spread);
   return paragraph_html(
-      text + "Up to an amplitude of " + speech.length(rows.amplitude[*findings.lost_row]) + ", " +
-      speech.time(rows.peak_time[*findings.lost_row]) + " after the release, they agree within " +
-      percent_html(lost_spread) +
+      text + agreement +
       "; then these differences have grown beyond that, as they do where the motion is chaotic, and no "
       "single run tells the amplitude at a given time any better. The greatest spread is " +
       percent_html(greatest) + ", the last " + percent_html(last) + ".");

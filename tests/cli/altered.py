@@ -1,0 +1,126 @@
+"""`check` and `verify` find a run that was altered, and `verify` and `series` one of another scene or engine.
+
+    altered.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the runs
+
+Each alteration is tried twice: as it is, which the digest tells, and with the digest made anew, which only what
+follows from the rest of the run can tell, or the scene of its name, or nothing.
+"""
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+SCENE = "nu2-e06"
+scenes = source / "data" / "scenes"
+faults = []
+
+
+def call(code, *words, says=""):
+    done = subprocess.run([str(program), *map(str, words)], capture_output=True, text=True, cwd=folder)
+    if done.returncode != code or says not in done.stderr:
+        faults.append(f"{words}: exit code {done.returncode} instead of {code}, \"{says}\" in: {done.stderr}{done.stdout}")
+    if code and not re.fullmatch(r"([^\n]+\n)+", done.stderr):
+        faults.append(f"{words}: not one line for each problem: {done.stderr}")
+
+
+def number(text, column, row, by):
+    """Element `row` of the column of that path, replaced."""
+    section, name = column.split("/")
+    begin = text.index(f'"{name}": [', text.index(f' "{section}": {{')) + len(f'"{name}": [')
+    end = text.index("]", begin)
+    values = text[begin:end].split(",")
+    values[row] = by(values[row])
+    return text[:begin] + ",".join(values) + text[end:]
+
+
+def replaced(old, new):
+    def alter(text):
+        assert text.count(old) == 1, old
+        return text.replace(old, new)
+    return alter
+
+
+def scaled(column, row, factor):
+    return lambda text: number(text, column, row, lambda value: repr(float(value) * factor))
+
+
+def plus(column, row, more):
+    return lambda text: number(text, column, row, lambda value: str(int(value) + more))
+
+
+# What, how, whether it contradicts the rest of the run or the scene.
+ALTERATIONS = [
+    ("amplitude[0] beside x0", lambda text: number(text, "half_cycles/amplitude", 0, lambda _: "5.9"), True),
+    ("an amplitude later on", scaled("half_cycles/amplitude", 100, 1.01), True),
+    ("an impact's wall", lambda text: number(text, "impacts/wall", 50, lambda wall: str(1 - int(wall))), True),
+    ("an impact's time", scaled("impacts/time", 50, 1.00001), True),
+    ("an impact's speed", scaled("impacts/relative_velocity", 50, 1.05), False),
+    ("an impact's direction", scaled("impacts/relative_velocity", 50, -1), True),
+    ("an impact's phase", scaled("impacts/phase_deg", 50, 1.01), True),
+    ("a count of impacts", plus("half_cycles/impacts", 10, 1), True),
+    ("two counts of impacts", lambda text: plus("half_cycles/impacts", 11, -1)(plus("half_cycles/impacts", 10, 1)(text)), True),
+    ("end time", lambda text: re.sub(r'"end_time": [^,]*', '"end_time": 700', text), True),
+    ("stop reason", lambda text: re.sub(r'"stop_reason": "\w*"', '"stop_reason": "half_cycle_budget"', text), True),
+    ("calibration", replaced('"fixed-wall"', '"two-body"'), False),
+    ("wall stiffness", replaced('"wall_stiffness": 10000', '"wall_stiffness": 20000'), True),
+    ("restitution", replaced('"restitution": 0.6', '"restitution": 0.61'), True),
+    ("x0", replaced('"x0": 6,', '"x0": 6.5,'), True),
+    ("version", lambda text: re.sub(r'"version": "[^"]*"', '"version": "9.9.9"', text), False),
+]
+
+shutil.rmtree(folder, ignore_errors=True)
+folder.mkdir(parents=True)
+(folder / "runs").mkdir()
+run = folder / "runs" / f"{SCENE}.json"
+record = ["--record", "half_cycles,impacts,contacts"]
+
+
+def simulate(scene, *options):
+    call(0, "run", "--scene", scenes / f"{scene}.json", *record, *options, "-o", folder / "runs" / f"{scene}.json")
+
+
+simulate(SCENE)
+simulate("nu1-e06")
+claims = json.loads((source / "data" / "claims.json").read_text())
+claim = next(claim for claim in claims["claims"] if claim["measure"].get("scenes") == [SCENE])
+other = {**claim, "id": "other", "measure": {**claim["measure"], "scenes": ["nu1-e06"]}}
+(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim]}))
+check = ["check", "run", run, "--scenes", scenes]
+verify = ["verify", "--claims", "claims.json", "--runs", "runs", "--scenes", scenes, "--members", "1"]
+series = ["series", "--catalogue", source / "figures" / "catalogue.json", "--runs", "runs", "--scenes", scenes,
+          "--figure", "15"]
+text = run.read_text()
+call(0, *check)
+call(0, *verify)
+call(0, *series)
+for what, alter, follows in ALTERATIONS:
+    altered = alter(text)
+    assert altered != text, what
+    run.write_text(altered)
+    for command in (check, verify, series):
+        call(3, *command, says=f"{SCENE}.json: /provenance/sha256: must be the digest of the content")
+    subprocess.run([sys.executable, source / "tests" / "seal.py", run], check=True)
+    for command in (check, verify, series):
+        call(3 if follows else 0, *command, says=f"{SCENE}.json: /" if follows else "")
+
+# A run of another scene, under this one's name.
+shutil.copy(folder / "runs" / "nu1-e06.json", run)
+for command in (check, verify, series):
+    call(3, *command, says=f"{SCENE}.json: /scene/mass_ratio: must be 0.02 as in {scenes}/{SCENE}.json, got 0.01: "
+                           "a run of another scene")
+
+# One run of another engine, or of another wall, among the others: each is right by itself.
+(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim, other]}))
+for options in (["--engine", "cem"], ["--calibration", "two-body"], ["--max-impacts", "100000"]):
+    simulate(SCENE, *options)
+    call(0, *check)
+    call(3, *verify, says="/engine: must be that of runs/nu1-e06.json, exact, with its options, got ")
+    call(3, *series[:-1], "8", says="runs of several engines are not put together")
+
+print(f"{len(ALTERATIONS)} alterations, {len(faults)} faults")
+for fault in faults[:20]:
+    print(fault)
+sys.exit(bool(faults))

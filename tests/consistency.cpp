@@ -1,0 +1,280 @@
+#include "impact_damper/analysis/consistency.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// Everything recorded; damped and forced where that is asked for. Bounces, sticking and single impacts.
+Run full_run(const Engine& engine, bool driven) {
+  Scene scene;
+  scene.until_time = 40;
+  if (driven) {
+    scene.damping_ratio = 0.02;
+    scene.force_amplitude = 0.1;
+  }
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = {{0, 40, 1001}};
+  return simulate(scene, engine, record);
+}
+
+struct Alteration {
+  const char* of;  // the field that is said to be wrong begins with this
+  const char* means;
+  std::function<void(Run&)> make;
+};
+
+std::string fields_of(const std::vector<Problem>& problems) {
+  std::string all;
+  for (const Problem& problem : problems) all += problem.field + ": " + problem.message + "\n";
+  return all;
+}
+
+void check_found(const Run& run, const std::vector<Alteration>& alterations) {
+  REQUIRE(fields_of(inconsistencies_of(run)) == "");
+  for (const Alteration& alteration : alterations) {
+    CAPTURE(std::string(alteration.means));
+    Run altered = run;
+    alteration.make(altered);
+    const std::string found = fields_of(inconsistencies_of(altered));
+    CAPTURE(found);
+    CHECK(('\n' + found).find('\n' + std::string(alteration.of)) != std::string::npos);
+  }
+}
+
+std::size_t row_with_impacts(const Run& run) {
+  std::size_t row = 1;
+  while (run.half_cycles->impacts[row] < 2) ++row;
+  return row;
+}
+
+// An impact in the middle of the run, and a sample near the peak of a row.
+std::size_t impact_of(const Run& run) { return run.impacts->time.size() / 2; }
+std::size_t sample_at_peak(const Run& run, std::size_t row) {
+  const std::vector<double>& time = run.history->time;
+  return static_cast<std::size_t>(std::ranges::lower_bound(time, run.half_cycles->peak_time[row]) -
+                                  time.begin());
+}
+
+const std::vector<Alteration> of_any_engine{
+    {"/end_time", "another end than until_time", [](Run& run) { run.scene.until_time = 41; }},
+    {"/end_time", "an end after until_time", [](Run& run) { run.end_time = 41; }},
+    {"/end_time", "an end after max_time",
+     [](Run& run) { std::visit([](auto& engine) { engine.budget.max_time = 39; }, run.engine); }},
+    {"/stop_reason", "stopped by an amplitude that was not asked for",
+     [](Run& run) { run.stop_reason = StopReason::amplitude; }},
+    {"/end_time", "half cycles used up before the end",
+     [](Run& run) { run.stop_reason = StopReason::half_cycle_budget; }},
+    {"/impacts/time", "impacts used up, of which there are fewer",
+     [](Run& run) { run.stop_reason = StopReason::impact_budget; }},
+    {"/end_time", "stopped by max_time, at another time",
+     [](Run& run) { run.stop_reason = StopReason::time_budget; }},
+    {"/stop_reason", "stopped by an amplitude, with none below it",
+     [](Run& run) {
+       run.scene.until_amplitude = 1e-3;
+       run.stop_reason = StopReason::amplitude;
+     }},
+    {"/half_cycles/amplitude/1", "went on below until_amplitude",
+     [](Run& run) { run.scene.until_amplitude = 0.999 * run.half_cycles->amplitude[0]; }},
+    {"/impacts/time", "more impacts than max_impacts",
+     [](Run& run) { std::visit([](auto& engine) { engine.budget.max_impacts = 3; }, run.engine); }},
+    {"/half_cycles/zero_crossing", "more half cycles than max_half_cycles",
+     [](Run& run) { std::visit([](auto& engine) { engine.budget.max_half_cycles = 3; }, run.engine); }},
+    {"/half_cycles/zero_crossing/3", "a half cycle of no length",
+     [](Run& run) { run.half_cycles->zero_crossing[3] = run.half_cycles->zero_crossing[2]; }},
+    {"/half_cycles/zero_crossing/", "a crossing after the end",
+     [](Run& run) { run.half_cycles->zero_crossing.back() = 41; }},
+    {"/half_cycles/peak_time/2", "a peak in the next row",
+     [](Run& run) { run.half_cycles->peak_time[2] = run.half_cycles->peak_time[3]; }},
+    {"/half_cycles/amplitude/0", "a first amplitude below x0",
+     [](Run& run) { run.half_cycles->amplitude[0] = 5.9; }},
+    {"/half_cycles/amplitude/0", "a first amplitude above x0, at the release",
+     [](Run& run) { run.half_cycles->amplitude[0] = 6.1; }},
+    {"/history/x/0", "another x0 than the history begins with", [](Run& run) { run.scene.x0 = 5.9; }},
+    {"/history/y/0", "another y0 than the history begins with", [](Run& run) { run.scene.y0 = 1e-6; }},
+    {"/half_cycles/impacts", "a count that is more than all impacts",
+     [](Run& run) { run.half_cycles->impacts.back() = 5000; }},
+    {"/impacts/time/", "an impact moved from one row to the next",
+     [](Run& run) {
+       const std::size_t row = row_with_impacts(run);
+       --run.half_cycles->impacts[row];
+       ++run.half_cycles->impacts[row + 1];
+     }},
+    {"/impacts/time/", "an impact of the last row that none counts",
+     [](Run& run) { --run.half_cycles->impacts.back(); }},
+    {"/impacts/time/", "an impact that has changed places with the next row's",
+     [](Run& run) {
+       const auto first = static_cast<std::size_t>(run.half_cycles->impacts[0]);
+       run.impacts->time[first] = run.half_cycles->zero_crossing[0] - 0.1;
+     }},
+    {"/impacts/phase_deg/", "a phase of one impact",
+     [](Run& run) { *run.impacts->phase_deg[impact_of(run)] += 1; }},
+    {"/impacts/phase_deg/0", "a phase before the first zero crossing",
+     [](Run& run) { run.impacts->phase_deg[0] = 90; }},
+    {"/impacts/amplitude/", "the amplitude of one impact",
+     [](Run& run) { *run.impacts->amplitude[impact_of(run)] *= 1.01; }},
+    {"/impacts/displacement/", "an impact outside the amplitude",
+     [](Run& run) {
+       run.impacts->displacement[impact_of(run)] = 1.01 * *run.impacts->amplitude[impact_of(run)];
+     }},
+    {"/impacts/phase_deg/", "no phase in the middle, with no half cycles beside it",
+     [](Run& run) {
+       run.half_cycles.reset();
+       run.impacts->phase_deg[impact_of(run)].reset();
+     }},
+    {"/impacts/relative_velocity/", "an impact on the other wall",
+     [](Run& run) {
+       Wall& wall = run.impacts->wall[impact_of(run)];
+       wall = wall == Wall::left ? Wall::right : Wall::left;
+     }},
+    {"/impacts/relative_velocity/", "an impact that goes away from its wall",
+     [](Run& run) { run.impacts->relative_velocity[impact_of(run)] *= -1; }},
+    {"/impacts/time/", "an impact after the end", [](Run& run) { run.impacts->time.back() = 41; }},
+    {"/contacts/begin/", "a contact that stands there twice",
+     [](Run& run) {
+       Contacts& contacts = *run.contacts;
+       contacts.begin.push_back(contacts.begin.back());
+       contacts.end.push_back(contacts.end.back());
+       contacts.wall.push_back(contacts.wall.back());
+     }},
+    {"/contacts/end/", "a contact that ends after the end", [](Run& run) { run.contacts->end.back() = 41; }},
+    {"/history/time/1000", "a sample after the end", [](Run& run) { run.history->time.back() = 41; }},
+    {"/history/x/", "a sample above the amplitude",
+     [](Run& run) { run.history->x[sample_at_peak(run, 3)] *= 1.001; }},
+    {"/history/x/", "an amplitude below the samples",
+     [](Run& run) { run.half_cycles->amplitude[3] *= 0.999; }},
+    {"/history/x/", "a change of sign without a crossing",
+     [](Run& run) { run.history->x[sample_at_peak(run, 3)] *= -0.5; }},
+    {"/history/x/", "a row that is left out",
+     [](Run& run) {
+       HalfCycles& rows = *run.half_cycles;
+       for (auto* column : {&rows.zero_crossing, &rows.peak_time, &rows.amplitude})
+         column->erase(column->begin() + 3, column->begin() + 5);
+     }},
+    {"/history/x/", "a sample that is not zero at a crossing",
+     [](Run& run) {
+       const std::size_t i = sample_at_peak(run, 3);
+       run.half_cycles->zero_crossing[3] = run.history->time[i];
+     }},
+    {"/energy/initial/kinetic", "the kinetic energy at the release",
+     [](Run& run) { run.energy->initial.kinetic = 0.1; }},
+    {"/energy/initial/spring", "the spring's energy at the release",
+     [](Run& run) { run.energy->initial.spring *= 1.01; }},
+    {"/energy/initial/wall", "the wall's energy at the release",
+     [](Run& run) { run.energy->initial.wall = 1e-9; }},
+    {"/energy/initial/paper", "the paper's energy at the release",
+     [](Run& run) { run.energy->initial.paper *= 1.01; }},
+    {"/energy/final/kinetic", "the kinetic energy at the end",
+     [](Run& run) { run.energy->final.kinetic *= 1.01; }},
+    {"/energy/final/spring", "the spring's energy at the end",
+     [](Run& run) { run.energy->final.spring *= 1.01; }},
+    {"/energy/final/paper", "the paper's energy at the end",
+     [](Run& run) { run.energy->final.paper *= 1.01; }},
+    {"/energy/residual", "the loss of one impact",
+     [](Run& run) { run.energy->impact_loss[impact_of(run)] += 0.05 * run.energy->initial.total(); }},
+    {"/energy/residual", "the energy at the end", [](Run& run) { run.energy->final.wall += 1; }},
+    {"/energy/residual", "a residual that the terms do not leave",
+     [](Run& run) { run.energy->residual = 0.1; }},
+    {"/energy/viscous_work", "a damper that puts energy in",
+     [](Run& run) { run.energy->viscous_work = -0.1; }},
+};
+
+}  // namespace
+
+TEST_CASE("an alteration of any number that follows from others is found, whatever the engine") {
+  Cem steps;
+  steps.locate = true;
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{}), Engine(steps)}) {
+    for (const bool driven : {false, true}) {
+      CAPTURE(name_of(engine));
+      CAPTURE(driven);
+      check_found(full_run(engine, driven), of_any_engine);
+    }
+  }
+}
+
+TEST_CASE("an alteration of what only compliant walls have is found") {
+  for (const Engine& engine : {Engine(Exact{}), Engine(Cem{})}) {
+    CAPTURE(name_of(engine));
+    check_found(full_run(engine, false),
+                {{"/contacts/begin", "a contact too few",
+                  [](Run& run) {
+                    run.contacts->begin.pop_back();
+                    run.contacts->end.pop_back();
+                    run.contacts->wall.pop_back();
+                  }},
+                 {"/contacts/begin/", "an impact a little later",
+                  [](Run& run) { run.impacts->time[impact_of(run)] += 1e-9; }},
+                 {"/contacts/wall/", "a contact with the other wall",
+                  [](Run& run) {
+                    run.contacts->wall[3] = run.contacts->wall[3] == Wall::left ? Wall::right : Wall::left;
+                  }},
+                 {"/energy/bounce_downs", "a bounce-down", [](Run& run) { run.energy->bounce_downs = 1; }},
+                 {"/energy/bounce_down_loss", "a bounce-down's loss",
+                  [](Run& run) { run.energy->bounce_down_loss = 0.1; }},
+                 {"/energy/residual", "a contact's loss", [](Run& run) { run.energy->contact_loss = 1; }}});
+  }
+}
+
+TEST_CASE("an alteration of what only rigid walls have is found") {
+  check_found(
+      full_run(Restitution{}, false),
+      {{"/impacts/time/", "an impact of a mass that is stuck",
+        [](Run& run) {
+          const double middle = (run.contacts->begin[2] + run.contacts->end[2]) / 2;
+          *std::ranges::lower_bound(run.impacts->time, middle) = middle;
+        }},
+       {"/energy/impact_loss/", "an impact's speed",
+        [](Run& run) { run.impacts->relative_velocity[impact_of(run)] *= 1.0001; }},
+       {"/energy/impact_loss/", "another restitution", [](Run& run) { run.scene.restitution = 0.61; }},
+       {"/energy/impact_loss/", "another mass ratio", [](Run& run) { run.scene.mass_ratio = 0.021; }},
+       {"/energy/contact_loss", "a loss in a wall", [](Run& run) { run.energy->contact_loss = 0.1; }},
+       {"/energy/bounce_down_loss", "a loss in no bounce-down",
+        [](Run& run) { run.energy->bounce_downs = 0; }},
+       {"/energy/residual", "a bounce-down's loss", [](Run& run) { run.energy->bounce_down_loss = 1; }}});
+}
+
+TEST_CASE("an alteration of a work is found, even where the residual's divisor is not recorded") {
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+    CAPTURE(name_of(engine));
+    check_found(
+        full_run(engine, true),
+        {{"/energy/residual", "more viscous work", [](Run& run) { run.energy->viscous_work *= 1.01; }},
+         {"/energy/residual", "the force's work with the other sign",
+          [](Run& run) { run.energy->forcing_work *= -1; }},
+         {"/energy/viscous_work", "work of a damper that is not there",
+          [](Run& run) { run.scene.damping_ratio = 0; }},
+         {"/energy/forcing_work", "work of a force that is not there",
+          [](Run& run) { run.scene.force_amplitude = 0; }},
+         {"/energy/", "one impact's loss", [](Run& run) { run.energy->impact_loss[0] *= 1.01; }}});
+  }
+}
+
+TEST_CASE("a run that ends by an amplitude or a budget agrees with itself") {
+  Scene scene;
+  scene.until_time = 100;
+  scene.until_amplitude = 5.8;
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  for (const Budget& budget :
+       {Budget{}, Budget{.max_impacts = 7}, Budget{.max_half_cycles = 3}, Budget{.max_time = 9}}) {
+    for (Engine engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{})}) {
+      std::visit([&](auto& options) { options.budget = budget; }, engine);
+      const Run run = simulate(scene, engine, record);
+      CAPTURE(name_of(run.stop_reason));
+      CHECK(run.stop_reason != StopReason::time);
+      CHECK(fields_of(inconsistencies_of(run)) == "");
+      Run later = run;
+      later.end_time = std::nextafter(run.end_time, 100);
+      if (run.stop_reason != StopReason::impact_budget) CHECK(fields_of(inconsistencies_of(later)) != "");
+    }
+  }
+}

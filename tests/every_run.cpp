@@ -1,0 +1,26 @@
+// Every run that a test program makes, in its own code or through the library's, is held against itself: the
+// linker
+// (--wrap, CMakeLists.txt) leads simulate()'s call of Recorder::finish(), by which a run is complete, here.
+#include <doctest/doctest.h>
+
+#include "impact_damper/analysis/consistency.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/files/scene_file.hpp"
+
+namespace every_run {
+
+using namespace impact_damper;
+
+// The member function itself and what is called in its place, by the names that the linker gives them.
+void finish(Recorder* recorder, Run& run) asm("__real_" FINISH);
+void finish_and_examine(Recorder* recorder, Run& run) asm("__wrap_" FINISH);
+
+void finish_and_examine(Recorder* recorder, Run& run) {
+  finish(recorder, run);
+  if (!doctest::is_running_in_test) return;
+  for (const Problem& problem : inconsistencies_of(run))
+    FAIL_CHECK(std::string(name_of(run.engine)), " run of ", scene_text(run.scene), ": ", problem.field, ": ",
+               problem.message);
+}
+
+}  // namespace every_run
