@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Is every number that the program gives out looked at by some test? Alters each, and writes who noticed: outputs.md.
+
+The program build/tests/mutation/outputs lists what is given out, and which faults can be planted in it; planter.cpp,
+which is linked into every test program, plants the one that PLANTED_FAULT names. Nothing is built anew, so that the
+thousand faults take a minute. A fault is caught if a test program fails with it: the case that outputs.md names is
+tried first, then the programs of FIRST, whose tests compare with closed forms and with integrations of their own,
+then all others. Not among them are the comparisons with data/reference/, which would notice any change, right or wrong.
+
+Exit code 1 if a fault survives, or if outputs.md is not what was found (--renew writes it anew).
+"""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+PAGE = Path(__file__).resolve().parent / "outputs.md"
+SOURCE = PAGE.parents[2]
+FIRST = ["recorded", "tables", "measures_of_runs", "measures", "run_file"]
+HEAD = """# Faults planted in what is given out, and who noticed
+
+By [outputs.py](outputs.py), a test: {faults} faults in {outputs} numbers and columns, {caught} caught. What is altered where: \
+[planter.hpp](planter.hpp). The first part of a name is where the fault is planted: in what an engine returns (`exact`, \
+`restitution`, `cem`), in what is written to a run file (`file`) or read from one (`read`), in a figure's table \
+(`table`, with block and column), in a measure (`measure`).
+
+| output | faults | caught by |
+|---|---|---|
+"""
+
+
+def known(page):
+    """(output, fault) -> who caught it, by the page."""
+    rows = re.findall(r"^\| (\S+/\S+) \| (.*?) \| (.*) \|$", page, re.MULTILINE)
+    return {(output, kind): by for output, kinds, by in rows for kind in kinds.split(", ")}
+
+
+def failing_case(program, fault, case=None):
+    """The first test case of the program that fails with the fault, or none."""
+    # A comma would separate two filters, so any character stands for it.
+    some = ["-tc=" + re.sub(r"[,\\]", "?", case)] if case else []
+    done = subprocess.run([program, "--abort-after=1", "--no-colors", *some], env=os.environ | {"PLANTED_FAULT": fault},
+                          cwd=program.parent, capture_output=True, text=True, errors="replace", timeout=600)
+    if done.returncode == 0:
+        return None
+    found = re.search(r"^TEST CASE:\s+(.*)", done.stdout, re.MULTILINE)
+    return found[1] if found else "(ends with an error)"
+
+
+def who_notices(programs, output, kind, before):
+    fault = f"{output}/{kind}"
+    if before:
+        name, case = before.split(": ", 1)
+        if name in programs and failing_case(programs[name], fault, case):
+            return before
+    for name, program in programs.items():
+        if case := failing_case(program, fault):
+            return f"{name}: {case}"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--renew", action="store_true", help="write outputs.md anew")
+    parser.add_argument("--only", default="", metavar="REGEX", help="only faults that match")
+    parser.add_argument("--first", action="store_true", help="by no other programs than " + ", ".join(FIRST))
+    options = parser.parse_args()
+
+    tests = options.build.resolve() / "tests"
+    names = [file.name.removeprefix("test_") for file in sorted(tests.glob("test_*")) if file.suffix == ""]
+    rest = [] if options.first else [name for name in names if name not in FIRST]
+    programs = {name: tests / f"test_{name}" for name in FIRST + rest if name in names}
+    listed = subprocess.run([tests / "mutation/outputs", SOURCE], check=True, stdout=subprocess.PIPE, text=True).stdout
+    faults = [(output, kind) for output, *kinds in map(str.split, listed.splitlines()) for kind in kinds
+              if re.search(options.only, f"{output}/{kind}")]
+    page = PAGE.read_text() if PAGE.exists() else ""
+    before = known(page)
+    with ThreadPoolExecutor(2) as threads:
+        found = list(threads.map(lambda fault: who_notices(programs, *fault, before.get(fault)), faults))
+
+    rows = defaultdict(list)
+    for (output, kind), by in zip(faults, found):
+        if by:
+            rows[output, by].append(kind)
+        else:
+            print(f"survives: {output}/{kind}")
+    new = HEAD.format(faults=len(faults), outputs=len({output for output, _ in faults}),
+                      caught=len(found) - found.count(None))
+    new += "".join(f"| {output} | {', '.join(kinds)} | {by} |\n" for (output, by), kinds in rows.items())
+    print(f"{len(faults)} faults, {found.count(None)} survive")
+    if options.renew:
+        PAGE.write_text(new)
+    elif not options.only and new != page:
+        sys.exit(f"{PAGE} is not what was found: {__file__} {options.build} --renew")
+    sys.exit(1 if None in found else 0)
+
+
+if __name__ == "__main__":
+    main()
