@@ -11,11 +11,12 @@ using namespace impact_damper;
 
 namespace {
 
-constexpr int samples = 96;
-const Record everything{true, true, true, true, {{0, 9.5, samples}}, {}};
+constexpr int samples = 110;
+constexpr double duration = 10.9;
+const Record everything{true, true, true, true, {{0, duration, samples}}, {}};
 
 // Damped and forced at no round numbers, from a start that is pressed against its wall, or in it, to an end that
-// is in a contact. Short of where the motion amplifies errors more than a hundredfold.
+// is in a contact, with impacts before the first zero crossing and behind the last. Short of where the motion amplifies errors more than a hundredfold.
 Scene eventful(bool rigid) {
   return {.mass_ratio = 0.3,
           .restitution = 0.7,
@@ -27,7 +28,7 @@ Scene eventful(bool rigid) {
           .w0 = rigid ? 0 : 0.1,
           .force_amplitude = 0.5,
           .force_frequency = 0.7,
-          .until_time = 9.5,
+          .until_time = duration,
           .until_amplitude = 0.01};
 }
 constexpr Budget budget{.max_impacts = 1000, .max_half_cycles = 1001, .max_time = 1002};
@@ -63,6 +64,7 @@ void same(const Run& run, const Run& expected, double allowed) {
   CHECK(run.stop_reason == StopReason::time);
   CHECK(run.end_time == *expected.scene.until_time);
   CHECK(run.scene == expected.scene);
+  CHECK(!run.impacts->amplitude.back());
   same("zero_crossing", run.half_cycles->zero_crossing, expected.half_cycles->zero_crossing, allowed);
   same("peak_time", run.half_cycles->peak_time, expected.half_cycles->peak_time, allowed);
   same("amplitude", run.half_cycles->amplitude, expected.half_cycles->amplitude, allowed);
@@ -96,17 +98,14 @@ Run without_slow_impacts(Run run) {
   const Run all = run;
   const auto& crossing = all.half_cycles->zero_crossing;
   run.impacts.emplace(), run.energy->impact_loss.clear();
-  double before = 1;  // speed of the impact before
   for (std::size_t i = 0; i < all.impacts->time.size(); ++i) {
-    const double time = all.impacts->time[i], speed = std::abs(all.impacts->relative_velocity[i]);
-    if (all.scene.restitution * before < reference::PlainIntegration::slowest) {
+    const double time = all.impacts->time[i];
+    if (std::abs(all.impacts->relative_velocity[i]) < reference::PlainIntegration::slowest) {
       const auto row = std::size_t(std::ranges::upper_bound(crossing, time) - crossing.begin());
       if (row < crossing.size()) --run.half_cycles->impacts[row];
       run.energy->bounce_down_loss += all.energy->impact_loss[i];
-      before = speed;
       continue;
     }
-    before = speed;
     run.impacts->time.push_back(time);
     run.impacts->wall.push_back(all.impacts->wall[i]);
     run.impacts->relative_velocity.push_back(all.impacts->relative_velocity[i]);
@@ -142,7 +141,7 @@ TEST_CASE("all that the restitution engine records of a mass that bounces to res
   scene.x0 = 7;
   // The tolerance is such that the engine steps through all the impacts that the plain integration does.
   const Run run = simulate(scene, Restitution{.accumulation_tolerance = 1e-10}, everything);
-  CHECK(run.contacts->begin.size() == 2);
+  CHECK(run.contacts->begin.size() == 3);
   same(without_slow_impacts(run), reference::PlainIntegration(scene, true, samples).run(), 1e-7);
 }
 
@@ -160,7 +159,7 @@ TEST_CASE("a bounce-down's loss is the energy that was left after the last impac
     loss += scene.mass_ratio * w * w / (2 * (1 + scene.mass_ratio));
   }
   CHECK(run.energy->bounce_downs == std::int64_t(run.contacts->begin.size()));
-  CHECK(run.energy->bounce_down_loss == doctest::Approx(loss).epsilon(1e-12));
+  CHECK(run.energy->bounce_down_loss == doctest::Approx(loss).epsilon(1e-12).scale(0));
 }
 
 // Second order in the step: h^2 omega^2 is 4e-8 of the contact's omega.

@@ -28,7 +28,7 @@ Run full_run(const Engine& engine) {
   const bool rigid = std::holds_alternative<Restitution>(engine);
   const Scene scene{.mass_ratio = 0.3, .restitution = 0.3, .damping_ratio = 0.02, .x0 = -2, .v0 = 0.3,
                     .y0 = rigid ? 0 : -0.01, .w0 = rigid ? 0 : 0.1, .force_amplitude = 0.5, .force_frequency = 0.7,
-                    .until_time = 39};
+                    .until_time = 39, .until_amplitude = 1e-3};
   return simulate(scene, engine, {true, true, true, true, {{0, 40, 401}}, {}});
 }
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 PAGE = Path(__file__).resolve().parent / "outputs.md"
 SOURCE = PAGE.parents[2]
-FIRST = ["recorded", "tables", "measures_of_runs", "measures", "run_file"]
+FIRST = ["recorded", "series", "measures_of_runs", "measures", "run_file"]
 HEAD = """# Faults planted in what is given out, and who noticed
 
 By [outputs.py](outputs.py), a test: {faults} faults in {outputs} numbers and columns, {caught} caught. What is altered where: \
