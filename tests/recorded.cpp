@@ -166,7 +166,7 @@ TEST_CASE("a bounce-down's loss is the energy that was left after the last impac
 TEST_CASE("all that the component element method records is what a plain integration finds") {
   const Scene scene = eventful(false);
   Cem cem{.time_step = 1e-5, .damper = Damper::centred, .locate = true, .large_step = {}, .unstable = true};
-  cem.max_steps = 1'000'003;
+  cem.max_steps = 2'000'003;
   cem.budget = budget;
   const Run run = simulate(scene, cem, everything);
   CHECK(run.engine == Engine(cem));

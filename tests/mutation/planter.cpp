@@ -1,6 +1,7 @@
 #include "planter.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -202,7 +203,9 @@ bool alter(Spread& spread, std::string_view output, std::string_view kind) {
   for (auto [name, value] :
        {std::pair{"median", &spread.median}, {"low", &spread.low}, {"high", &spread.high}}) {
     if (name != output) continue;
+    const double before = *value;
     Change{kind}(*value);
+    if (std::abs(*value - before) < 1e-9) *value += 1e-9;
     return true;
   }
   return false;

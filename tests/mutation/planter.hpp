@@ -7,6 +7,7 @@
 //   negated  the other sign
 //   shifted  a column's first row put behind its last
 //   filled   1 where a scalar is zero, 90 where an entry is absent
+// A measure, which may be zero but for rounding, is altered by 1e-9 at least.
 #pragma once
 
 #include <array>
