@@ -53,7 +53,8 @@ TEST_CASE("curves a factor apart have the spread of that factor, equal ones none
 }
 
 TEST_CASE("the spread is averaged over twelve bins, equal in the logarithm") {
-  // 1 and the root of x, each at points dense in ln x: the root's mean from l to h is 2 (sqrt h - sqrt l) / ln(h/l).
+  // 1 and the root of x, each at points dense in ln x: the root's mean from l to h is 2 (sqrt h - sqrt l) /
+  // ln(h/l).
   const double from = 0.1, to = 6, width = std::log(to / from) / 12;
   double sum = 0;
   for (int bin = 0; bin < 12; ++bin) {
@@ -91,7 +92,8 @@ TEST_CASE("the iterative damping ratio errs by what the closed form says of it")
     const double zeta = zeta_m_iterative(e).zeta_m, decrement = -std::log(e);
     const double delivered = std::exp(-pi * zeta / std::sqrt((1 - zeta) * (1 + zeta)));
     // Errors of about 1e-9, in which a hundred steps leave roundings of 1e-14.
-    CHECK(value("zeta_error", {{"restitution", e}}) == doctest::Approx(std::abs(delivered - e)).epsilon(1e-4).scale(0));
+    CHECK(value("zeta_error", {{"restitution", e}}) ==
+          doctest::Approx(std::abs(delivered - e)).epsilon(1e-4).scale(0));
     CHECK(value("zeta_difference", {{"restitution", e}}) ==
           doctest::Approx(std::abs(zeta - decrement / std::hypot(pi, decrement))).epsilon(1e-4).scale(0));
     CHECK(value("zeta_error", {{"restitution", e}}) < 1e-8);

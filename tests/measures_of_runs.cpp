@@ -1,7 +1,6 @@
 // The measures that read run files, on runs made by hand: a decay in half cycles of length pi with whatever
 // amplitudes, impacts and contacts a test wants, so that each number can be worked out on paper.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -60,7 +59,7 @@ void add_stuck(Run& run, std::size_t row, double from, double to) {
 double measured(const std::string& name, std::map<std::string, double> numbers,
                 const std::vector<Run>& scenes) {
   const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("impact-damper-measures-of-runs-" + std::to_string(getpid()));
+      std::filesystem::temp_directory_path() / "impact-damper-measures-of-runs";
   std::filesystem::create_directories(folder);
   MeasureCall call{name, {}, std::move(numbers)};
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -205,9 +204,9 @@ Run slower(Run run, double factor) {
 // Largest less least, in percent of the mean.
 double percent_apart(double a, double b) { return 100 * std::abs(a - b) / ((a + b) / 2); }
 
-// A mass at rest that no wall reaches, on a damped primary mass, released from x0: peaks at n p of height x0 q^n,
-// whatever the walls. The parabola's value and slope at the middle one of eleven peaks are those of Savitzky and
-// Golay (1964): W times that peak, and D times it.
+// A mass at rest that no wall reaches, on a damped primary mass, released from x0: peaks at n p of height x0
+// q^n, whatever the walls. The parabola's value and slope at the middle one of eleven peaks are those of
+// Savitzky and Golay (1964): W times that peak, and D times it.
 struct Idle {
   static constexpr double zeta = 0.05;
   const double p = pi / std::sqrt(1 - zeta * zeta), q = std::exp(-zeta * p);
@@ -256,7 +255,8 @@ TEST_CASE("the amplitude of the largest product is that of the steepest envelope
   const auto amplitude = [](int i) { return 6 - 0.01 * i - 0.0004 * i * i; };
   const Run run = decay(100, amplitude);
   const auto of = [&](double from, double averaged_over) {
-    return measured("product_peak_amplitude", {{"from", from}, {"to", 5}, {"averaged_over", averaged_over}}, {run});
+    return measured("product_peak_amplitude", {{"from", from}, {"to", 5}, {"averaged_over", averaged_over}},
+                    {run});
   };
   CHECK(of(0, 10) == doctest::Approx(amplitude(94)));
   CHECK(of(0, 18) == doctest::Approx(amplitude(90)));
@@ -266,8 +266,8 @@ TEST_CASE("the amplitude of the largest product is that of the steepest envelope
 TEST_CASE("single impacts are better by the largest loss in and below their window") {
   Run run = linear_decay(120, 6, 0.05);
   for (std::size_t row = 1; row < 120; ++row) run.half_cycles->impacts[row] = row < 60 ? 2 : 1;
-  // eta is as 1/A: 0.3 is the last amplitude that has a point. That of row 60, where the window begins, may by
-  // rounding be counted with those above or not.
+  // eta is as 1/A: 0.3 is the last amplitude that has a point. That of row 60, where the window begins, may
+  // by rounding be counted with those above or not.
   const double advantage = measured("single_impact_advantage", {}, {run});
   CHECK((std::abs(advantage - 3 / 0.3) < 1e-9 || std::abs(advantage - 3.05 / 0.3) < 1e-9));
 }
@@ -281,27 +281,32 @@ TEST_CASE("a first missed impact is put in proportion to another scene's") {
   CHECK(measured("first_missed_ratio", {}, {sooner, later}) == doctest::Approx(3.5 / 2));
 }
 
-TEST_CASE("curves of two models, releases or walls lie apart as far as an idle mass's do from a wrong time scale") {
+TEST_CASE(
+    "curves of two models, releases or walls lie apart as far as an idle mass's do from a wrong time scale") {
   const Idle idle;
   // Twice as fast: twice the loss factor, at equal amplitudes.
   const double apart = percent_apart(2 * idle.eta - 2 * idle.zeta, idle.eta - 2 * idle.zeta);
   const Run wrong = idle.run(0.3, 0.5);
   const auto of = [&](const std::string& name, std::map<std::string, double> numbers, const Run& run) {
-    numbers.insert({{"from", 0.02}, {"to", 0.3 * std::pow(idle.q, 4.8)}});  // both releases have all these points
+    numbers.insert(
+        {{"from", 0.02}, {"to", 0.3 * std::pow(idle.q, 4.8)}});  // both releases have all these points
     return measured(name, numbers, {run});
   };
-  // The parabola's bias is a hundredth of eta, and what is left of it after 2 zeta carries a hundred times its
-  // rounding errors.
+  // The parabola's bias is a hundredth of eta, and what is left of it after 2 zeta carries a hundred times
+  // its rounding errors.
   CHECK(of("models_difference_percent", {}, wrong) == doctest::Approx(apart).epsilon(1e-8));
   CHECK(of("stiffness_effect_percent", {{"stiffness", 10}}, wrong) == doctest::Approx(apart).epsilon(1e-8));
-  CHECK(of("later_release_difference_percent", {{"x0", 0.3 / idle.q}}, wrong) == doctest::Approx(apart).epsilon(1e-8));
+  CHECK(of("later_release_difference_percent", {{"x0", 0.3 / idle.q}}, wrong) ==
+        doctest::Approx(apart).epsilon(1e-8));
 
-  // Beside itself a scene has no difference; where the walls are met it has one from softer walls and from rigid ones.
+  // Beside itself a scene has no difference; where the walls are met it has one from softer walls and from
+  // rigid ones.
   Scene scene;
   scene.mass_ratio = 0.1;
   scene.until_amplitude = 2;
   const std::map<std::string, double> range{{"from", 3}, {"to", 5}};
-  const auto itself = [&](const std::string& name, std::map<std::string, double> numbers, const Engine& engine) {
+  const auto itself = [&](const std::string& name, std::map<std::string, double> numbers,
+                          const Engine& engine) {
     numbers.insert(range.begin(), range.end());
     return measured(name, numbers, {simulate(scene, engine, {true, true, true})});
   };

@@ -1,10 +1,11 @@
-// A scene stepped through with Runge and Kutta's fourth-order rule, and everything recorded that a run can hold. It
-// shares nothing with the engines: no closed form, no root search (events are bisected inside the step that shows
-// them), works as further differential equations. Its steps are 1/1000 of a radian of the primary mass and 1/100 of
-// one of the contact, so its own error is about 1e-12 and 1e-10 per radian; events closer together than a step are
-// beyond it. Between rigid walls a mass that leaves its wall slower than `slowest`, and is pressed back, bounces on
-// under constant acceleration for 2 w / (a (1 - e)) and sticks: that acceleration changes by 4e-5 of itself
-// meanwhile, so the time errs by 1e-9. (Slower bounces are lost in the rounding of y at the right wall.)
+// A scene stepped through with Runge and Kutta's fourth-order rule, and everything recorded that a run can
+// hold. It shares nothing with the engines: no closed form, no root search (events are bisected inside the
+// step that shows them), works as further differential equations. Its steps are 1/1000 of a radian of the
+// primary mass and 1/100 of one of the contact, so its own error is about 1e-12 and 1e-10 per radian; events
+// closer together than a step are beyond it. Between rigid walls a mass that leaves its wall slower than
+// `slowest`, and is pressed back, bounces on under constant acceleration for 2 w / (a (1 - e)) and sticks:
+// that acceleration changes by 4e-5 of itself meanwhile, so the time errs by 1e-9. (Slower bounces are lost
+// in the rounding of y at the right wall.)
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,8 @@ class PlainIntegration {
  public:
   static constexpr double slowest = 1e-5;
 
-  // Rigid walls are those of the restitution engine. Samples the history `samples` times from 0 to until_time.
+  // Rigid walls are those of the restitution engine. Samples the history `samples` times from 0 to
+  // until_time.
   PlainIntegration(const Scene& scene, bool rigid, int samples) : scene_(scene), rigid_(rigid) {
     const double decrement = -std::log(scene.restitution);
     wall_damping_ = 2 * std::sqrt(k_over_nu()) * decrement / std::hypot(std::numbers::pi, decrement);
@@ -107,7 +109,8 @@ class PlainIntegration {
   void advance(double until) {
     const double rate = std::sqrt(k_over_nu() * (1 + scene_.mass_ratio));
     double h = std::min(regime_ == Regime::contact ? 0.01 / rate : 1e-3, until - time_);
-    if (regime_ == Regime::flight && time_ == regime_since_ && now_[3] != 0)  // or it may be back at the wall within the step
+    if (regime_ == Regime::flight && time_ == regime_since_ &&
+        now_[3] != 0)  // or it may be back at the wall within the step
       h = std::min(h, 0.25 * std::abs(now_[3] / rates(time_, now_)[3]));
     const bool ends = !goes_on(time_ + h, stepped(h));
     if (ends) h = last_of(h, [&](double t, const State& s) { return goes_on(t, s); });
@@ -125,7 +128,8 @@ class PlainIntegration {
     }
     if (now_[0] * next[0] < 0) {
       auto& rows = *run_.half_cycles;
-      rows.zero_crossing.push_back(time_ + last_of(h, [&](double, const State& s) { return s[0] * now_[0] > 0; }));
+      rows.zero_crossing.push_back(time_ +
+                                   last_of(h, [&](double, const State& s) { return s[0] * now_[0] > 0; }));
       rows.peak_time.push_back(peak_time_);
       rows.amplitude.push_back(peak_);
       rows.impacts.push_back(0);
@@ -175,8 +179,10 @@ class PlainIntegration {
     run_.contacts->begin.push_back(regime_since_);
     run_.contacts->end.push_back(time_);
     run_.contacts->wall.push_back(wall_);
-    if (by_impact_) run_.energy->impact_loss.push_back(now_[6] - lost_before_);
-    else run_.energy->contact_loss += now_[6] - lost_before_;
+    if (by_impact_)
+      run_.energy->impact_loss.push_back(now_[6] - lost_before_);
+    else
+      run_.energy->contact_loss += now_[6] - lost_before_;
   }
   Energy energy() const {
     const auto& [x, v, y, w, viscous, forcing, lost] = now_;

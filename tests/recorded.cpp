@@ -1,5 +1,6 @@
-// Every number that a run records, in each engine, against an integration that shares nothing with them, and where
-// that cannot tell against what follows from other columns. mutation/outputs.py sees to it that none is forgotten.
+// Every number that a run records, in each engine, against an integration that shares nothing with them, and
+// where that cannot tell against what follows from other columns. mutation/outputs.py sees to it that none is
+// forgotten.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,8 +16,9 @@ constexpr int samples = 110;
 constexpr double duration = 10.9;
 const Record everything{true, true, true, true, {{0, duration, samples}}, {}};
 
-// Damped and forced at no round numbers, from a start that is pressed against its wall, or in it, to an end that
-// is in a contact, with impacts before the first zero crossing and behind the last. Short of where the motion amplifies errors more than a hundredfold.
+// Damped and forced at no round numbers, from a start that is pressed against its wall, or in it, to an end
+// that is in a contact, with impacts before the first zero crossing and behind the last. Short of where the
+// motion amplifies errors more than a hundredfold.
 Scene eventful(bool rigid) {
   return {.mass_ratio = 0.3,
           .restitution = 0.7,
@@ -34,7 +36,8 @@ Scene eventful(bool rigid) {
 constexpr Budget budget{.max_impacts = 1000, .max_half_cycles = 1001, .max_time = 1002};
 
 template <class Value>
-void same(const char* name, const std::vector<Value>& found, const std::vector<Value>& expected, double allowed) {
+void same(const char* name, const std::vector<Value>& found, const std::vector<Value>& expected,
+          double allowed) {
   CAPTURE(name);
   REQUIRE(found.size() == expected.size());
   CHECK(!found.empty());
@@ -135,7 +138,9 @@ TEST_CASE("all that the restitution engine records is what a plain integration f
   same(run, reference::PlainIntegration(scene, true, samples).run(), 1e-7);
 }
 
-TEST_CASE("all that the restitution engine records of a mass that bounces to rest is what a plain integration finds") {
+TEST_CASE(
+    "all that the restitution engine records of a mass that bounces to rest is what a plain integration "
+    "finds") {
   Scene scene = eventful(true);
   scene.restitution = 0.4;
   scene.x0 = 7;
@@ -174,10 +179,10 @@ TEST_CASE("all that the component element method records is what a plain integra
 }
 
 TEST_CASE("the residual is what the recorded terms leave open, in units of the energy that was handled") {
-  // Unforced that is the initial energy. Long runs of lossless impacts, so that rounding errors add up to more than
-  // a hundred times those of this sum's own.
-  const Scene scene{.mass_ratio = 0.02, .restitution = 1, .damping_ratio = 1e-4, .x0 = 3.59, .y0 = 0.2,
-                    .until_time = 3000};
+  // Unforced that is the initial energy. Long runs of lossless impacts, so that rounding errors add up to
+  // more than a hundred times those of this sum's own.
+  const Scene scene{
+      .mass_ratio = 0.02, .restitution = 1, .damping_ratio = 1e-4, .x0 = 3.59, .y0 = 0.2, .until_time = 3000};
   const double rounding = 1e-15;
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{.locate = true})}) {
     CAPTURE(name_of(engine));

@@ -132,8 +132,8 @@ TEST_CASE("where x'' varies the bounces accumulate where a sum of stepped bounce
     speed = -e * (speed + rise(s));
     time += s;
   }
-  // Set out from the wall, or thrown off it where x'' is at its extremum: there its rate of change, which is zero,
-  // tells nothing of how it will have changed before the bounces accumulate.
+  // Set out from the wall, or thrown off it where x'' is at its extremum: there its rate of change, which is
+  // zero, tells nothing of how it will have changed before the bounces accumulate.
   for (const double velocity : {w0, -w0 / e}) {
     CAPTURE(velocity);
     const Scene scene = scene_until(1.4, [&](Scene& s) {

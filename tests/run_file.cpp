@@ -367,7 +367,8 @@ void same(const Run& a, const Run& b) {
 }  // namespace
 
 TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neither") {
-  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
+  for (const Engine& engine :
+       {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
     Run run = full_run(engine);
     same(parse_run("run.json", run_text(run)), run);
     run.scene = {0.1, 0.2, 0.3, 4, 5, 6, 0.7, 8, 9, 10, 11, {}};
@@ -384,9 +385,12 @@ TEST_CASE("a run file says which program made it") {
   const std::string text = run_text(full_run());
   const Provenance made_by = provenance();
   CHECK(text.find("\"schema\": \"impact-damper/run/1\"") != text.npos);
-  for (const auto& [key, value] :
-       {std::pair{"version", made_by.version}, {"commit", made_by.commit}, {"compiler", made_by.compiler},
-        {"build_type", made_by.build_type}, {"flags", made_by.flags}, {"system", made_by.system}}) {
+  for (const auto& [key, value] : {std::pair{"version", made_by.version},
+                                   {"commit", made_by.commit},
+                                   {"compiler", made_by.compiler},
+                                   {"build_type", made_by.build_type},
+                                   {"flags", made_by.flags},
+                                   {"system", made_by.system}}) {
     CAPTURE(key);
     CHECK(text.find('"' + std::string(key) + "\": \"" + std::string(value) + '"') != text.npos);
   }

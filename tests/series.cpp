@@ -382,8 +382,8 @@ TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts
                   std::domain_error);
 }
 
-// What follows holds every column of every table against numbers worked out on paper: mutation/outputs.py sees to it
-// that none is forgotten.
+// What follows holds every column of every table against numbers worked out on paper: mutation/outputs.py
+// sees to it that none is forgotten.
 
 // A straight envelope, A = 6 - 0.05 i at t = i pi. A parabola meets it exactly, so that eta = (0.1 / pi) / A.
 Run linear_decay(int half_cycles, int with_impacts) {
@@ -412,8 +412,9 @@ double ordinate_of(LossOrdinate which, const Scene& scene, double amplitude, dou
   return 0;
 }
 
-constexpr LossOrdinate ordinates[] = {LossOrdinate::eta, LossOrdinate::specific, LossOrdinate::specific_secondary,
-                                      LossOrdinate::amplitude_times, LossOrdinate::by_restitution};
+constexpr LossOrdinate ordinates[] = {LossOrdinate::eta, LossOrdinate::specific,
+                                      LossOrdinate::specific_secondary, LossOrdinate::amplitude_times,
+                                      LossOrdinate::by_restitution};
 
 const std::vector<double>& column(const TableBlock& block, std::size_t number) {
   REQUIRE(number <= block.columns.size());
@@ -421,7 +422,8 @@ const std::vector<double>& column(const TableBlock& block, std::size_t number) {
   return block.columns[number - 1].values;
 }
 
-TEST_CASE("the curves of a straight envelope are its own, in each ordinate, before and after impact failure") {
+TEST_CASE(
+    "the curves of a straight envelope are its own, in each ordinate, before and after impact failure") {
   Run run = linear_decay(120, 100);
   run.scene.damping_ratio = 0.001;
   run.scene.restitution = 0.25;
@@ -434,8 +436,8 @@ TEST_CASE("the curves of a straight envelope are its own, in each ordinate, befo
     const auto expected = [&](double amplitude) {
       return ordinate_of(which, run.scene, amplitude, 0.1 / pi / amplitude);
     };
-    // A point averages the five peaks on either side: the first is that of peak 5, the last that of 114, and from
-    // 105 on they average no peak with impacts.
+    // A point averages the five peaks on either side: the first is that of peak 5, the last that of 114, and
+    // from 105 on they average no peak with impacts.
     int peak = 5;
     for (const char* name : {"curve-1", "failed-1"}) {
       const TableBlock& points = block(table, name);
@@ -467,7 +469,7 @@ double single_speed(double amplitude) {
 }
 const double fold = b / std::sqrt(pi * pi + 4 * b * b);
 // Where A cos(theta) = 2 / (pi^2 - 4), and pi V = 1 + 2 A cos(theta), A sin(theta) = b V.
-const double equally_spaced_until = std::hypot(2 / (pi * pi - 4), b * (1 + 4 / (pi * pi - 4)) / pi);
+const double equally_spaced_until = std::hypot(2 / (pi * pi - 4), b*(1 + 4 / (pi * pi - 4)) / pi);
 // When a mass released at x = 0 by a wall of speed A meets the other wall: A (t - sin t) = 1.
 double flight_time(double amplitude) {
   double low = 0, high = pi;
@@ -490,7 +492,8 @@ TEST_CASE("the closed forms in the tables of the loss factor are those for a nea
       const std::vector<double>&amplitude = column(form, 1), &loss = column(form, 2);
       const double factor = amplitude[2] / amplitude[1];
       CHECK(factor > 1.001);
-      CHECK(std::min(amplitude[0] / from, factor) / std::max(1.0, from / amplitude[0]) == doctest::Approx(1).epsilon(0.011));
+      CHECK(std::min(amplitude[0] / from, factor) / std::max(1.0, from / amplitude[0]) ==
+            doctest::Approx(1).epsilon(0.011));
       CHECK(amplitude.back() == doctest::Approx(to).epsilon(1e-10));
       for (std::size_t i = 0; i < amplitude.size(); ++i) {
         if (i > 0) CHECK(amplitude[i] / amplitude[i - 1] == doctest::Approx(factor).epsilon(1e-9));
@@ -510,8 +513,8 @@ TEST_CASE("the closed forms in the tables of the loss factor are those for a nea
   }
 }
 
-// Half cycles of length 1 after row 0, with two impacts each in rows 1 to 14 and one in rows 15 to 29; one of them
-// recorded, at 30 degrees and one more in each row; the mass sticks in rows 2, 3 and 5.
+// Half cycles of length 1 after row 0, with two impacts each in rows 1 to 14 and one in rows 15 to 29; one of
+// them recorded, at 30 degrees and one more in each row; the mass sticks in rows 2, 3 and 5.
 Run made_by_hand() {
   Run run;
   run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
@@ -567,12 +570,14 @@ TEST_CASE("the table of phases is what it is for impacts made by hand and a near
   const std::size_t rows = column(one, 1).size(), missing = 121 - rows;
   CHECK(missing <= 1);
   for (std::size_t i = 0; i < rows; ++i) {
-    const double a = fold + (equally_spaced_until - fold) * double(i + missing) / 120, speed = single_speed(a);
+    const double a = fold + (equally_spaced_until - fold) * double(i + missing) / 120,
+                 speed = single_speed(a);
     CHECK(column(one, 1)[i] == doctest::Approx(a).epsilon(1e-9));
     const double behind_peak = std::atan2(b * speed, (pi * speed - 1) / 2);
     CHECK(column(one, 2)[i] == doctest::Approx(90 + 180 / pi * behind_peak).epsilon(1e-6));
   }
-  // At the end of bounce-down itself the mass is hardly pressed and bounces for long; elsewhere it bounces once.
+  // At the end of bounce-down itself the mass is hardly pressed and bounces for long; elsewhere it bounces
+  // once.
   for (const char* name : {"bounce-1", "accumulation"}) {
     CAPTURE(name);
     const TableBlock& form = block(table, name);
@@ -629,7 +634,8 @@ TEST_CASE("the table of a decay has its peaks and their times") {
   }
 }
 
-TEST_CASE("an ensemble's band is the least and the greatest of its members' curves at amplitudes equally spaced") {
+TEST_CASE(
+    "an ensemble's band is the least and the greatest of its members' curves at amplitudes equally spaced") {
   const Run run = simulate({.x0 = 3, .until_amplitude = 2}, Exact{}, {});
   Figure figure = loss_figure(LossOrdinate::amplitude_times);
   std::vector<Table> members;
@@ -646,7 +652,8 @@ TEST_CASE("an ensemble's band is the least and the greatest of its members' curv
     last_step = step;
     double least = 1e9, most = 0;
     for (const Table& member : members) {
-      const std::vector<double>&a = column(block(member, "curve-1"), 1), &y = column(block(member, "curve-1"), 2);
+      const std::vector<double>&a = column(block(member, "curve-1"), 1),
+            &y = column(block(member, "curve-1"), 2);
       std::size_t k = 1;
       while (k + 1 < a.size() && a[k] >= amplitude) ++k;
       const double value = y[k - 1] + (y[k] - y[k - 1]) * (amplitude - a[k - 1]) / (a[k] - a[k - 1]);

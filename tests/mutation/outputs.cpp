@@ -2,9 +2,10 @@
 //
 //   exact/impacts.time scaled negated shifted
 //
-// Run entries for each engine ("exact", "restitution", "cem") and once more as they are written ("file") and read
-// ("read"), table columns, measures. The keys are those of the run files, the columns those of the catalogue's
-// figures. Fails where a key has no planter.
+// Run entries for each engine ("exact", "restitution", "cem") and once more as they are written ("file") and
+// read
+// ("read"), table columns, measures. The keys are those of the run files, the columns those of the
+// catalogue's figures. Fails where a key has no planter.
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -26,9 +27,18 @@ std::map<std::string, std::set<std::string_view>> outputs;  // and the kinds of 
 // A decay with all that can be recorded in it: damped and forced, it begins stuck or in a wall, and ends so.
 Run full_run(const Engine& engine) {
   const bool rigid = std::holds_alternative<Restitution>(engine);
-  const Scene scene{.mass_ratio = 0.3, .restitution = 0.3, .damping_ratio = 0.02, .x0 = -2, .v0 = 0.3,
-                    .y0 = rigid ? 0 : -0.01, .w0 = rigid ? 0 : 0.1, .force_amplitude = 0.5, .force_frequency = 0.7,
-                    .until_time = 39, .until_amplitude = 1e-3};
+  const Scene scene{.mass_ratio = 0.3,
+                    .restitution = 0.3,
+                    .damping_ratio = 0.02,
+                    .wall_stiffness = 300,
+                    .x0 = -2,
+                    .v0 = 0.3,
+                    .y0 = rigid ? 0 : -0.01,
+                    .w0 = rigid ? 0 : 0.1,
+                    .force_amplitude = 0.5,
+                    .force_frequency = 0.7,
+                    .until_time = 36.5,
+                    .until_amplitude = 1e-3};
   return simulate(scene, engine, {true, true, true, true, {{0, 40, 401}}, {}});
 }
 
@@ -49,7 +59,8 @@ bool list_run(const Run& run) {
     for (const std::string_view kind : planted::kinds) {
       Run altered = run;
       std::string altered_text = text;
-      const bool in_run = planted::alter(altered, key, kind), in_file = planted::alter(altered_text, key, kind);
+      const bool in_run = planted::alter(altered, key, kind),
+                 in_file = planted::alter(altered_text, key, kind);
       if (!in_file || in_run == in_file_only(key)) {
         std::cerr << engine << ": " << key << ": planter.cpp cannot alter it\n";
         all_known = false;

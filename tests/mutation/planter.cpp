@@ -27,24 +27,30 @@ struct Change {
     if (is("filled") && value == 0) value = 1;
     number(value);
   }
-  void operator()(std::int64_t& value) const { value = is("scaled") ? value + 1 : is("negated") ? -value : value; }
+  void operator()(std::int64_t& value) const {
+    value = is("scaled") ? value + 1 : is("negated") ? -value : value;
+  }
   void operator()(bool& value) const { value ^= is("scaled"); }
   template <class Word>
-    requires std::is_enum_v<Word>
+  requires std::is_enum_v<Word>
   void operator()(Word& value) const {
     if (is("scaled")) value = value == Word{} ? Word{1} : Word{};
   }
   template <class Value>
   void operator()(std::optional<Value>& value) const {
-    if (value) (*this)(*value);
-    else if (is("filled")) value = 90;
+    if (value)
+      (*this)(*value);
+    else if (is("filled"))
+      value = 90;
   }
   template <class Value>
   void operator()(std::vector<Value>& column) const {
     if (is("shifted") && !column.empty()) std::rotate(column.begin(), column.begin() + 1, column.end());
     for (Value& each : column) {
-      if constexpr (std::is_same_v<Value, double>) number(each);
-      else (*this)(each);
+      if constexpr (std::is_same_v<Value, double>)
+        number(each);
+      else
+        (*this)(each);
     }
   }
   void operator()(nlohmann::json& value) const {
@@ -88,11 +94,14 @@ void each_option(Cem& engine, Visit visit) {
   visit("max_steps", engine.max_steps);
 }
 
-// Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own keys.
+// Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own
+// keys.
 template <class Visit>
 void each_entry(Run& run, Visit all) {
   const auto under = [&](std::string section) {
-    return [&all, section](std::string_view name, auto& member) { all(section + '.' + std::string(name), member); };
+    return [&all, section](std::string_view name, auto& member) {
+      all(section + '.' + std::string(name), member);
+    };
   };
   all("stop_reason", run.stop_reason);
   all("end_time", run.end_time);
@@ -131,7 +140,8 @@ void each_entry(Run& run, Visit all) {
   }
   if (run.energy) {
     EnergyLedger& ledger = *run.energy;
-    for (auto [name, energy] : {std::pair{"energy.initial", &ledger.initial}, {"energy.final", &ledger.final}}) {
+    for (auto [name, energy] :
+         {std::pair{"energy.initial", &ledger.initial}, {"energy.final", &ledger.final}}) {
       const auto visit = under(name);
       visit("kinetic", energy->kinetic);
       visit("spring", energy->spring);
@@ -216,9 +226,7 @@ std::string kind_of_table(const Figure& figure) {
          (figure.ordinate ? '-' + std::string(name_of(*figure.ordinate)) : "");
 }
 
-std::string family(std::string block) {
-  return block.substr(0, block.find_last_not_of("-0123456789") + 1);
-}
+std::string family(std::string block) { return block.substr(0, block.find_last_not_of("-0123456789") + 1); }
 
 namespace {
 
@@ -240,16 +248,17 @@ const Fault& fault() {
 template <class Result>
 Result with_fault(std::string_view where, Result result, const std::string& above = {}) {
   const auto& [place, output, kind] = fault();
-  if (place == where && output.starts_with(above)) alter(result, std::string_view(output).substr(above.size()), kind);
+  if (place == where && output.starts_with(above))
+    alter(result, std::string_view(output).substr(above.size()), kind);
   return result;
 }
 
 }  // namespace
 
-// The linker leads every call of a function F to "__wrap_F", and what is called "__real_F" to F itself. The symbols'
-// names are in CMakeLists.txt.
-#define WRAPPED(RESULT, NAME, SYMBOL, ...)                    \
-  RESULT real_##NAME(__VA_ARGS__) asm("__real_" SYMBOL);      \
+// The linker leads every call of a function F to "__wrap_F", and what is called "__real_F" to F itself. The
+// symbols' names are in CMakeLists.txt.
+#define WRAPPED(RESULT, NAME, SYMBOL, ...)                     \
+  RESULT real_##NAME(__VA_ARGS__) asm("__real_" SYMBOL);       \
   RESULT with_fault_##NAME(__VA_ARGS__) asm("__wrap_" SYMBOL); \
   RESULT with_fault_##NAME(__VA_ARGS__)
 
@@ -263,7 +272,8 @@ WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file) {
 WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& text) {
   return with_fault("read", real_parse_run(name, text));
 }
-WRAPPED(Table, figure_table, FIGURE_TABLE, const Figure& figure, const FigureRuns& runs, const Threads& threads) {
+WRAPPED(Table, figure_table, FIGURE_TABLE, const Figure& figure, const FigureRuns& runs,
+        const Threads& threads) {
   return with_fault("table", real_figure_table(figure, runs, threads), kind_of_table(figure) + '.');
 }
 WRAPPED(Spread, measure, MEASURE, Runs& runs, const MeasureCall& call) {
