@@ -10,6 +10,7 @@
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/run_file.hpp"
+#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/paper/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -20,7 +21,10 @@ namespace {
 Runs no_runs("no such folder");
 
 double value(const std::string& name, std::map<std::string, double> numbers) {
-  return measure(no_runs, {name, {}, std::move(numbers)}).median;
+  const Spread spread = measure(no_runs, {name, {}, std::move(numbers)});
+  CHECK(spread.low == spread.median);
+  CHECK(spread.high == spread.median);
+  return spread.median;
 }
 
 Curve power(double factor, double exponent, int points = 200) {
@@ -48,6 +52,21 @@ TEST_CASE("curves a factor apart have the spread of that factor, equal ones none
   CHECK(std::isnan(spread_percent({power(1, -1), power(1, -1)}, 10, 20)));
 }
 
+TEST_CASE("the spread is averaged over twelve bins, equal in the logarithm") {
+  // 1 and the root of x, each at points dense in ln x: the root's mean from l to h is 2 (sqrt h - sqrt l) /
+  // ln(h/l).
+  const double from = 0.1, to = 6, width = std::log(to / from) / 12;
+  double sum = 0;
+  for (int bin = 0; bin < 12; ++bin) {
+    const double l = from * std::exp(width * bin), h = l * std::exp(width);
+    const double mean = 2 * (std::sqrt(h) - std::sqrt(l)) / width;
+    sum += std::abs(mean - 1) / ((mean + 1) / 2);
+  }
+  // The points at a bin's ends, one in several thousand, count for either.
+  CHECK(spread_percent({power(1, 0, 60000), power(1, 0.5, 60000)}, from, to) ==
+        doctest::Approx(100 * sum / 12).epsilon(1e-4));
+}
+
 TEST_CASE("measures have names of their own, in order, each with its meaning") {
   for (std::size_t i = 0; i < measures().size(); ++i) {
     CHECK(!measures()[i].meaning.empty());
@@ -64,6 +83,30 @@ TEST_CASE("a wall delivers the closed form's restitution, to a moving primary ma
       CHECK(value("wall_restitution", {{"mass_ratio", nu}, {"restitution", e}}) ==
             doctest::Approx(delivered_restitution(e, nu)).epsilon(2 * nu * 1e-4 + 1e-8));
     }
+  }
+}
+
+TEST_CASE("the iterative damping ratio errs by what the closed form says of it") {
+  using std::numbers::pi;
+  for (const double e : {0.3, 0.6, 0.8}) {
+    const double zeta = zeta_m_iterative(e).zeta_m, decrement = -std::log(e);
+    const double delivered = std::exp(-pi * zeta / std::sqrt((1 - zeta) * (1 + zeta)));
+    // Errors of about 1e-9, in which a hundred steps leave roundings of 1e-14.
+    CHECK(value("zeta_error", {{"restitution", e}}) ==
+          doctest::Approx(std::abs(delivered - e)).epsilon(1e-4).scale(0));
+    CHECK(value("zeta_difference", {{"restitution", e}}) ==
+          doctest::Approx(std::abs(zeta - decrement / std::hypot(pi, decrement))).epsilon(1e-4).scale(0));
+    CHECK(value("zeta_error", {{"restitution", e}}) < 1e-8);
+    CHECK(value("zeta_steps", {{"restitution", e}}) == 100);
+  }
+}
+
+TEST_CASE("a contact lasts half a period of two free masses on the wall's spring and damper") {
+  for (const double nu : {0.02, 0.5}) {
+    const double decrement = -std::log(0.6), zeta = decrement / std::hypot(std::numbers::pi, decrement);
+    // The primary mass's own spring takes part to the order of nu/k.
+    CHECK(value("contact_frequency", {{"mass_ratio", nu}, {"restitution", 0.6}}) ==
+          doctest::Approx(std::sqrt((1 + nu) / nu * (1 - zeta * zeta * (1 + nu)))).epsilon(nu * 1e-4));
   }
 }
 

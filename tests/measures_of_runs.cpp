@@ -68,9 +68,12 @@ double measured(const std::string& name, std::map<std::string, double> numbers,
     write_file(folder / (call.scenes.back() + ".json"), run_text(scenes[i]));
   }
   Runs runs(folder, {.members = 1});
-  const double value = measure(runs, call).median;
+  const Spread spread = measure(runs, call);
   std::filesystem::remove_all(folder);
-  return value;
+  // Of one release there is no spread.
+  CHECK((spread.low == spread.median || std::isnan(spread.median)));
+  CHECK((spread.high == spread.median || std::isnan(spread.median)));
+  return spread.median;
 }
 
 }  // namespace
@@ -187,4 +190,158 @@ TEST_CASE("time is saved by the engine that is sooner at an amplitude") {
   const double ours = run.half_cycles->peak_time.back(), theirs = rigid.half_cycles->peak_time.back();
   CHECK(measured("time_saved_percent", {{"amplitude", 4}}, {slow}) ==
         doctest::Approx(100 * (1 - 2 * ours / theirs)).epsilon(1e-9));
+}
+
+namespace {
+
+// The same amplitudes in `factor` times the time.
+Run slower(Run run, double factor) {
+  for (auto* column : {&run.half_cycles->zero_crossing, &run.half_cycles->peak_time})
+    for (double& time : *column) time *= factor;
+  run.scene.until_time = run.end_time *= factor;
+  return run;
+}
+
+// Largest less least, in percent of the mean.
+double percent_apart(double a, double b) { return 100 * std::abs(a - b) / ((a + b) / 2); }
+
+// A mass at rest that no wall reaches, on a damped primary mass, released from x0: peaks at n p of height x0
+// q^n, whatever the walls. The parabola's value and slope at the middle one of eleven peaks are those of
+// Savitzky and Golay (1964): W times that peak, and D times it.
+struct Idle {
+  static constexpr double zeta = 0.05;
+  const double p = pi / std::sqrt(1 - zeta * zeta), q = std::exp(-zeta * p);
+  double W = 0, eta = 0;
+
+  Idle() {
+    double D = 0;
+    for (int j = -5; j <= 5; ++j) {
+      W += (89 - 5 * j * j) / 429.0 * std::pow(q, j);
+      D += j * std::pow(q, j) / (110 * p);
+    }
+    eta = -2 * D / W;
+  }
+  // With all its peaks, but a wrong time scale: what the measures compare with their own simulation.
+  Run run(double x0, double factor) const {
+    Run run = slower(decay(40, [&](int i) { return x0 * std::pow(q, i); }), p / pi * factor);
+    run.scene.damping_ratio = zeta;
+    run.scene.x0 = x0;
+    run.scene.y0 = 0.05;
+    return run;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("curves collapse as far as their ordinates agree") {
+  // One point each, at A = 3, where eta = 0.1/pi / 3; the second decay takes 1.25 times as long.
+  Run one = linear_decay(120, 6, 0.05), other = slower(one, 1.25);
+  one.scene.damping_ratio = 0.001;
+  other.scene.damping_ratio = 0.002;
+  other.scene.mass_ratio = 0.03;
+  other.scene.restitution = 0.5;
+  const double eta = 0.1 / pi / 3, its = eta / 1.25;
+  const auto of = [&](const std::string& name) {
+    return measured(name, {{"from", 2.99}, {"to", 3.01}}, {one, other});
+  };
+  CHECK(of("collapse_eta_percent") == doctest::Approx(percent_apart(eta, its)));
+  CHECK(of("collapse_specific_percent") == doctest::Approx(percent_apart(eta / 0.02, its / 0.03)));
+  const double left = (eta - 0.002) / 0.02, its_left = (its - 0.004) / 0.03;
+  CHECK(of("collapse_secondary_percent") == doctest::Approx(percent_apart(left, its_left)));
+  CHECK(of("collapse_restitution_percent") == doctest::Approx(percent_apart(left / 0.4, its_left / 0.5)));
+}
+
+TEST_CASE("the amplitude of the largest product is that of the steepest envelope among the averaged peaks") {
+  // A A' falls throughout, and a parabola meets the envelope exactly: the last peak that has a point.
+  const auto amplitude = [](int i) { return 6 - 0.01 * i - 0.0004 * i * i; };
+  const Run run = decay(100, amplitude);
+  const auto of = [&](double from, double averaged_over) {
+    return measured("product_peak_amplitude", {{"from", from}, {"to", 5}, {"averaged_over", averaged_over}},
+                    {run});
+  };
+  CHECK(of(0, 10) == doctest::Approx(amplitude(94)));
+  CHECK(of(0, 18) == doctest::Approx(amplitude(90)));
+  CHECK(of(amplitude(80) - 1e-6, 10) == doctest::Approx(amplitude(80)));
+}
+
+TEST_CASE("single impacts are better by the largest loss in and below their window") {
+  Run run = linear_decay(120, 6, 0.05);
+  for (std::size_t row = 1; row < 120; ++row) run.half_cycles->impacts[row] = row < 60 ? 2 : 1;
+  // eta is as 1/A: 0.3 is the last amplitude that has a point. That of row 60, where the window begins, may
+  // by rounding be counted with those above or not.
+  const double advantage = measured("single_impact_advantage", {}, {run});
+  CHECK((std::abs(advantage - 3 / 0.3) < 1e-9 || std::abs(advantage - 3.05 / 0.3) < 1e-9));
+}
+
+TEST_CASE("a first missed impact is put in proportion to another scene's") {
+  Run sooner = linear_decay(120, 6, 0.05), later = sooner;
+  for (std::size_t row = 1; row < 80; ++row) {
+    sooner.half_cycles->impacts[row] = row < 50;
+    later.half_cycles->impacts[row] = 1;
+  }
+  CHECK(measured("first_missed_ratio", {}, {sooner, later}) == doctest::Approx(3.5 / 2));
+}
+
+TEST_CASE(
+    "curves of two models, releases or walls lie apart as far as an idle mass's do from a wrong time scale") {
+  const Idle idle;
+  // Twice as fast: twice the loss factor, at equal amplitudes.
+  const double apart = percent_apart(2 * idle.eta - 2 * idle.zeta, idle.eta - 2 * idle.zeta);
+  const Run wrong = idle.run(0.3, 0.5);
+  const auto of = [&](const std::string& name, std::map<std::string, double> numbers, const Run& run) {
+    numbers.insert(
+        {{"from", 0.02}, {"to", 0.3 * std::pow(idle.q, 4.8)}});  // both releases have all these points
+    return measured(name, numbers, {run});
+  };
+  // The parabola's bias is a hundredth of eta, and what is left of it after 2 zeta carries a hundred times
+  // its rounding errors.
+  CHECK(of("models_difference_percent", {}, wrong) == doctest::Approx(apart).epsilon(1e-8));
+  CHECK(of("stiffness_effect_percent", {{"stiffness", 10}}, wrong) == doctest::Approx(apart).epsilon(1e-8));
+  CHECK(of("later_release_difference_percent", {{"x0", 0.3 / idle.q}}, wrong) ==
+        doctest::Approx(apart).epsilon(1e-8));
+
+  // Beside itself a scene has no difference; where the walls are met it has one from softer walls and from
+  // rigid ones.
+  Scene scene;
+  scene.mass_ratio = 0.1;
+  scene.until_amplitude = 2;
+  const std::map<std::string, double> range{{"from", 3}, {"to", 5}};
+  const auto itself = [&](const std::string& name, std::map<std::string, double> numbers,
+                          const Engine& engine) {
+    numbers.insert(range.begin(), range.end());
+    return measured(name, numbers, {simulate(scene, engine, {true, true, true})});
+  };
+  CHECK(itself("models_difference_percent", {}, Restitution{}) == 0);
+  CHECK(itself("models_difference_percent", {}, Exact{}) > 0.1);
+  CHECK(itself("stiffness_effect_percent", {{"stiffness", 1e4}}, Exact{}) == 0);
+  CHECK(itself("stiffness_effect_percent", {{"stiffness", 30}}, Exact{}) > 0.1);
+}
+
+TEST_CASE("a later release takes longer by the half cycles from one amplitude to the other") {
+  const Idle idle;
+  // The first peak below 0.1 from 0.3 has number 7, from 0.42 number 10.
+  const auto peak = [&](double x0) { return std::ceil(std::log(x0 / 0.1) / -std::log(idle.q)); };
+  CHECK(peak(0.3) == 7);
+  CHECK(peak(0.42) == 10);
+  CHECK(measured("later_release_ratio", {{"x0", 0.42}, {"amplitude", 0.1}}, {idle.run(0.3, 0.5)}) ==
+        doctest::Approx(10 / (0.5 * 7)).epsilon(1e-9));
+}
+
+TEST_CASE("a smaller step is better by the sum of its amplitudes' errors") {
+  Scene scene;
+  scene.mass_ratio = 0.1;
+  scene.wall_stiffness = 100;
+  scene.until_time = 30;
+  const Run exact = simulate(scene, Exact{}, Record{});
+  const auto error = [&](double step) {
+    const Run run = simulate(scene, Cem{.time_step = step}, Record{});
+    double sum = 0;
+    for (std::size_t row = 0; row < exact.half_cycles->amplitude.size(); ++row)
+      sum += std::abs(run.half_cycles->amplitude.at(row) - exact.half_cycles->amplitude[row]);
+    return sum;
+  };
+  const double contact = pi / std::sqrt(scene.wall_stiffness * 1.1 / 0.1);
+  CHECK(measured("step_refinement", {{"steps_per_contact", 20}, {"factor", 5}},
+                 {simulate(scene, Exact{}, {true, true, true})}) ==
+        doctest::Approx(error(contact / 20) / error(contact / 100)).epsilon(1e-9));
 }

@@ -10,6 +10,7 @@
 
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/provenance.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/files/sha256.hpp"
 
@@ -372,4 +373,79 @@ TEST_CASE("a scene file's problems are reported together") {
   }
   CHECK_THROWS_WITH_AS(parse_scene("s.json", "{}"),
                        "s.json: /until_time: until_time, until_amplitude or both must be given", InputError);
+}
+
+namespace {
+
+void same(const Energy& a, const Energy& b) {
+  CHECK(a.kinetic == b.kinetic);
+  CHECK(a.spring == b.spring);
+  CHECK(a.wall == b.wall);
+  CHECK(a.paper == b.paper);
+}
+
+// All but the sums, which the reader holds against their parts.
+void same(const Run& a, const Run& b) {
+  CHECK(a.stop_reason == b.stop_reason);
+  CHECK(a.end_time == b.end_time);
+  CHECK(a.scene == b.scene);
+  CHECK(a.engine == b.engine);
+  CHECK(a.half_cycles->zero_crossing == b.half_cycles->zero_crossing);
+  CHECK(a.half_cycles->peak_time == b.half_cycles->peak_time);
+  CHECK(a.half_cycles->amplitude == b.half_cycles->amplitude);
+  CHECK(a.half_cycles->impacts == b.half_cycles->impacts);
+  CHECK(a.impacts->time == b.impacts->time);
+  CHECK(a.impacts->wall == b.impacts->wall);
+  CHECK(a.impacts->relative_velocity == b.impacts->relative_velocity);
+  CHECK(a.impacts->phase_deg == b.impacts->phase_deg);
+  CHECK(a.impacts->amplitude == b.impacts->amplitude);
+  CHECK(a.contacts->begin == b.contacts->begin);
+  CHECK(a.contacts->end == b.contacts->end);
+  CHECK(a.contacts->wall == b.contacts->wall);
+  same(a.energy->initial, b.energy->initial);
+  same(a.energy->final, b.energy->final);
+  CHECK(a.energy->impact_loss == b.energy->impact_loss);
+  CHECK(a.energy->contact_loss == b.energy->contact_loss);
+  CHECK(a.energy->bounce_downs == b.energy->bounce_downs);
+  CHECK(a.energy->bounce_down_loss == b.energy->bounce_down_loss);
+  CHECK(a.energy->viscous_work == b.energy->viscous_work);
+  CHECK(a.energy->forcing_work == b.energy->forcing_work);
+  CHECK(a.energy->residual == b.energy->residual);
+  CHECK(a.history->time == b.history->time);
+  CHECK(a.history->x == b.history->x);
+  CHECK(a.history->v == b.history->v);
+  CHECK(a.history->y == b.history->y);
+  CHECK(a.history->w == b.history->w);
+}
+
+}  // namespace
+
+TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neither") {
+  for (const Engine& engine :
+       {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
+    Run run = full_run(engine);
+    same(parse_run("run.json", run_text(run)), run);
+    run.scene = {0.1, 0.2, 0.3, 4, 5, 6, 0.7, 8, 9, 10, 11, {}};
+    same(parse_run("run.json", run_text(run)), run);
+    run.scene.until_amplitude = 0.5;
+    run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.y0 = run.scene.w0 = 0;
+    run.scene.force_amplitude = run.end_time = 0;
+    run.energy = EnergyLedger{.initial = {}, .final = {}, .impact_loss = {0, 0, 0}};
+    same(parse_run("run.json", run_text(run)), run);
+  }
+}
+
+TEST_CASE("a run file says which program made it") {
+  const std::string text = run_text(full_run());
+  const Provenance made_by = provenance();
+  CHECK(text.find("\"schema\": \"impact-damper/run/1\"") != text.npos);
+  for (const auto& [key, value] : {std::pair{"version", made_by.version},
+                                   {"commit", made_by.commit},
+                                   {"compiler", made_by.compiler},
+                                   {"build_type", made_by.build_type},
+                                   {"flags", made_by.flags},
+                                   {"system", made_by.system}}) {
+    CAPTURE(key);
+    CHECK(text.find('"' + std::string(key) + "\": \"" + std::string(value) + '"') != text.npos);
+  }
 }

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <set>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/scene_file.hpp"
@@ -383,6 +384,290 @@ TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts
   CHECK_THROWS_AS(check({.blocks = {{.name = "empty"}}}), std::domain_error);
   CHECK_THROWS_AS(check({.blocks = {{.name = "uneven", .columns = {{"a", "", {1}}, {"b", "", {}}}}}}),
                   std::domain_error);
+}
+
+// What follows holds every column of every table against numbers worked out on paper: mutation/outputs.py
+// sees to it that none is forgotten.
+
+// A straight envelope, A = 6 - 0.05 i at t = i pi. A parabola meets it exactly, so that eta = (0.1 / pi) / A.
+Run linear_decay(int half_cycles, int with_impacts) {
+  Run run = exponential_decay(0, half_cycles);
+  for (std::size_t i = 0; i < run.half_cycles->amplitude.size(); ++i) {
+    run.half_cycles->amplitude[i] = 6 - 0.05 * double(i);
+    run.half_cycles->impacts[i] = int(i) < with_impacts;
+  }
+  return run;
+}
+
+double ordinate_of(LossOrdinate which, const Scene& scene, double amplitude, double eta) {
+  const double left = eta - 2 * scene.damping_ratio;
+  switch (which) {
+    case LossOrdinate::eta:
+      return eta;
+    case LossOrdinate::specific:
+      return eta / scene.mass_ratio;
+    case LossOrdinate::specific_secondary:
+      return left / scene.mass_ratio;
+    case LossOrdinate::amplitude_times:
+      return amplitude * left / scene.mass_ratio;
+    case LossOrdinate::by_restitution:
+      return amplitude * left / scene.mass_ratio / (1 - scene.restitution);
+  }
+  return 0;
+}
+
+constexpr LossOrdinate ordinates[] = {LossOrdinate::eta, LossOrdinate::specific,
+                                      LossOrdinate::specific_secondary, LossOrdinate::amplitude_times,
+                                      LossOrdinate::by_restitution};
+
+const std::vector<double>& column(const TableBlock& block, std::size_t number) {
+  REQUIRE(number <= block.columns.size());
+  REQUIRE(!block.columns[number - 1].values.empty());
+  return block.columns[number - 1].values;
+}
+
+TEST_CASE(
+    "the curves of a straight envelope are its own, in each ordinate, before and after impact failure") {
+  Run run = linear_decay(120, 100);
+  run.scene.damping_ratio = 0.001;
+  run.scene.restitution = 0.25;
+  run.scene.mass_ratio = 0.05;
+  for (const LossOrdinate which : ordinates) {
+    CAPTURE(name_of(which));
+    Figure figure = loss_figure(which);
+    figure.range = {1.97, 4.03};  // amplitudes from 2 to 4
+    const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+    const auto expected = [&](double amplitude) {
+      return ordinate_of(which, run.scene, amplitude, 0.1 / pi / amplitude);
+    };
+    // A point averages the five peaks on either side: the first is that of peak 5, the last that of 114, and
+    // from 105 on they average no peak with impacts.
+    int peak = 5;
+    for (const char* name : {"curve-1", "failed-1"}) {
+      const TableBlock& points = block(table, name);
+      for (std::size_t i = 0; i < column(points, 1).size(); ++i, ++peak) {
+        const double amplitude = 6 - 0.05 * peak;
+        CHECK(column(points, 1)[i] == doctest::Approx(amplitude).epsilon(1e-12));
+        CHECK(column(points, 2)[i] == doctest::Approx(expected(amplitude)).epsilon(1e-10));
+      }
+      CHECK(peak == (name[0] == 'c' ? 105 : 115));
+    }
+    const TableBlock& spread = block(table, "spread");
+    const double least = std::min(expected(2), expected(4)), most = std::max(expected(2), expected(4));
+    CHECK(column(spread, 1) == figure.range);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(column(spread, 2)[i] == doctest::Approx(least).epsilon(1e-10));
+      CHECK(column(spread, 3)[i] == doctest::Approx(most).epsilon(1e-10));
+      CHECK(column(spread, 4)[i] == doctest::Approx((least + most) / 2).epsilon(1e-10));
+    }
+  }
+}
+
+// With e -> 0 the closed forms are explicit: the bounce-down ends as it begins.
+constexpr double nearly_plastic = 1e-6, b = (1 - nearly_plastic) / (1 + nearly_plastic);
+
+// One impact per half cycle at amplitude A: absolute speed V of the secondary mass.
+double single_speed(double amplitude) {
+  const double c = pi * pi + 4 * b * b;
+  return (pi + std::sqrt(std::max(0.0, pi * pi - c * (1 - 4 * amplitude * amplitude)))) / c;
+}
+const double fold = b / std::sqrt(pi * pi + 4 * b * b);
+// Where A cos(theta) = 2 / (pi^2 - 4), and pi V = 1 + 2 A cos(theta), A sin(theta) = b V.
+const double equally_spaced_until = std::hypot(2 / (pi * pi - 4), b*(1 + 4 / (pi * pi - 4)) / pi);
+// When a mass released at x = 0 by a wall of speed A meets the other wall: A (t - sin t) = 1.
+double flight_time(double amplitude) {
+  double low = 0, high = pi;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (amplitude * (middle - std::sin(middle)) < 1 ? low : high) = middle;
+  }
+  return low;
+}
+
+TEST_CASE("the closed forms in the tables of the loss factor are those for a nearly plastic impact") {
+  Run run = linear_decay(40, 40);
+  run.scene.restitution = nearly_plastic;
+  for (const LossOrdinate which : ordinates) {
+    CAPTURE(name_of(which));
+    const Table table = figure_table(loss_figure(which), {{"decay", {"decay.json", run}}});
+    const auto check = [&](const char* name, double from, double to, double (*specific_loss)(double)) {
+      CAPTURE(name);
+      const TableBlock& form = block(table, name);
+      const std::vector<double>&amplitude = column(form, 1), &loss = column(form, 2);
+      const double factor = amplitude[2] / amplitude[1];
+      CHECK(factor > 1.001);
+      CHECK(std::min(amplitude[0] / from, factor) / std::max(1.0, from / amplitude[0]) ==
+            doctest::Approx(1).epsilon(0.011));
+      CHECK(amplitude.back() == doctest::Approx(to).epsilon(1e-10));
+      for (std::size_t i = 0; i < amplitude.size(); ++i) {
+        if (i > 0) CHECK(amplitude[i] / amplitude[i - 1] == doctest::Approx(factor).epsilon(1e-9));
+        const double eta = run.scene.mass_ratio * specific_loss(amplitude[i]);
+        CHECK(loss[i] == doctest::Approx(ordinate_of(which, run.scene, amplitude[i], eta)).epsilon(1e-4));
+      }
+    };
+    check("one-impact-1", fold, equally_spaced_until, [](double amplitude) {
+      const double speed = single_speed(amplitude);
+      return 4 * b * speed * speed / (pi * amplitude * amplitude);
+    });
+    // All of the relative energy is lost.
+    check("bounce-down-1", 1 / pi, 6, [](double amplitude) {
+      const double w = amplitude * (1 - std::cos(flight_time(amplitude)));
+      return w * w / (pi * amplitude * amplitude);
+    });
+  }
+}
+
+// Half cycles of length 1 after row 0, with two impacts each in rows 1 to 14 and one in rows 15 to 29; one of
+// them recorded, at 30 degrees and one more in each row; the mass sticks in rows 2, 3 and 5.
+Run made_by_hand() {
+  Run run;
+  run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
+  run.scene.restitution = nearly_plastic;
+  run.half_cycles.emplace(), run.impacts.emplace();
+  for (int i = 0; i < 30; ++i) {
+    run.half_cycles->zero_crossing.push_back(i);
+    run.half_cycles->peak_time.push_back(i - 0.5);
+    run.half_cycles->amplitude.push_back(6 - 0.1 * i);
+    run.half_cycles->impacts.push_back(i < 15 ? 2 : 1);
+    run.impacts->time.push_back(i - 1 + (30 + i) / 180.0);
+    run.impacts->wall.push_back(Wall::left);
+    run.impacts->relative_velocity.push_back(-1);
+    run.impacts->phase_deg.push_back(i == 0 ? std::nullopt : std::optional(30.0 + i));
+    run.impacts->amplitude.push_back(6 - 0.1 * i);
+  }
+  run.contacts = Contacts{{1.5, 2.75, 4.25}, {1.75, 2.875, 4.5}, {Wall::left, Wall::right, Wall::left}};
+  return run;
+}
+
+void same(const std::vector<double>& found, const std::vector<double>& expected) {
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    CAPTURE(i);
+    CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the table of phases is what it is for impacts made by hand and a nearly plastic impact") {
+  const Run run = made_by_hand();
+  Figure figure;
+  figure.number = "15";
+  figure.table = TableKind::phase;
+  figure.curves = {{"made", {}}};
+  const Table table = figure_table(figure, {{"made", {"made.json", run}}});
+
+  std::vector<double> amplitude, phase;
+  for (int i = 1; i < 30; ++i) {
+    amplitude.push_back(6 - 0.1 * i);
+    phase.push_back(30 + i);
+  }
+  same(column(block(table, "impacts"), 1), amplitude);
+  same(column(block(table, "impacts"), 2), phase);
+  same(column(block(table, "stuck"), 1), {5.8, 5.7, 5.5});
+  same(column(block(table, "stuck"), 2), {90, 135, 45});
+  same(column(block(table, "stuck"), 3), {135, 157.5, 90});
+  same(column(block(table, "windows"), 1), {2, 1});
+  same(column(block(table, "windows"), 2), {5.9, 4.5});
+  same(column(block(table, "windows"), 3), {4.6, 3.1});
+
+  // Amplitudes are equally spaced; the fold itself may be missing.
+  const TableBlock& one = block(table, "one-impact");
+  const std::size_t rows = column(one, 1).size(), missing = 121 - rows;
+  CHECK(missing <= 1);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double a = fold + (equally_spaced_until - fold) * double(i + missing) / 120,
+                 speed = single_speed(a);
+    CHECK(column(one, 1)[i] == doctest::Approx(a).epsilon(1e-9));
+    const double behind_peak = std::atan2(b * speed, (pi * speed - 1) / 2);
+    CHECK(column(one, 2)[i] == doctest::Approx(90 + 180 / pi * behind_peak).epsilon(1e-6));
+  }
+  // At the end of bounce-down itself the mass is hardly pressed and bounces for long; elsewhere it bounces
+  // once.
+  for (const char* name : {"bounce-1", "accumulation"}) {
+    CAPTURE(name);
+    const TableBlock& form = block(table, name);
+    const std::size_t count = column(form, 1).size(), none = 121 - count;
+    CHECK(none <= 1);
+    for (std::size_t i = 2; i < count; ++i) {
+      const double a = 1 / pi + (6 - 1 / pi) * double(i + none) / 120;
+      CHECK(column(form, 1)[i] == doctest::Approx(a).epsilon(1e-3));
+      CHECK(column(form, 2)[i] == doctest::Approx(180 / pi * flight_time(a)).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("the table of a motion has each sample and each impact in its place") {
+  Run run = triangle_motion();
+  run.contacts = Contacts{{1, 3}, {2, 3.5}, {Wall::right, Wall::left}};
+  Figure figure;
+  figure.number = "4";
+  figure.table = TableKind::motion;
+  figure.curves = {{"triangle", {}}};
+  figure.window = 7;
+  const Table table = figure_table(figure, {{"triangle", {"triangle.json", run}}});
+  // The impacts, at odd multiples of pi/4, are samples, too, but for rounding.
+  const TableBlock& motion = block(table, "motion");
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i < column(motion, 1).size(); ++i) {
+    const double t = column(motion, 1)[i], part = std::fmod(t / (pi / 2) + 0.5, 2.0);
+    if (std::abs(t - 2 * pi * double(samples) / 400) < 1e-12) ++samples;
+    const double x = std::sin(t), y = part < 1 ? part : 2 - part;
+    CHECK(column(motion, 2)[i] == doctest::Approx(x).epsilon(1e-9).scale(1));
+    CHECK(column(motion, 3)[i] == doctest::Approx(x + 1).epsilon(1e-9).scale(1));
+    CHECK(column(motion, 4)[i] == doctest::Approx(x + y).epsilon(1e-9).scale(1));
+    CHECK(column(motion, 5)[i] == doctest::Approx(y).epsilon(1e-9).scale(1));
+  }
+  CHECK(samples == 401);
+  const double root = std::sqrt(0.5);
+  same(column(block(table, "impacts"), 1), {pi / 4, 3 * pi / 4, 5 * pi / 4, 7 * pi / 4});
+  same(column(block(table, "impacts"), 2), {1, 0, 1, 0});
+  same(column(block(table, "impacts"), 3), {root + 1, root, 1 - root, -root});
+  same(column(block(table, "stuck"), 1), {1, 3});
+  same(column(block(table, "stuck"), 2), {2, 3.5});
+  same(column(block(table, "stuck"), 3), {1, 0});
+}
+
+TEST_CASE("the table of a decay has its peaks and their times") {
+  Figure figure;
+  figure.number = "7";
+  figure.table = TableKind::decay;
+  figure.curves = {{"decay", {}}};
+  const Table table = figure_table(figure, {{"decay", {"decay.json", linear_decay(50, 50)}}});
+  for (int i = 0; i < 50; ++i) {
+    CHECK(column(block(table, "curve-1"), 1)[std::size_t(i)] == doctest::Approx(i * pi));
+    CHECK(column(block(table, "curve-1"), 2)[std::size_t(i)] == doctest::Approx(6 - 0.05 * i));
+  }
+}
+
+TEST_CASE(
+    "an ensemble's band is the least and the greatest of its members' curves at amplitudes equally spaced") {
+  const Run run = simulate({.x0 = 3, .until_amplitude = 2}, Exact{}, {});
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  std::vector<Table> members;
+  for (const Scene& scene : ensemble_of(run.scene, {.members = 4}))
+    members.push_back(figure_table(figure, {{"decay", {"decay.json", simulate(scene, Exact{}, {})}}}));
+  figure.curves[0].ensemble = 4;
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const TableBlock& band = block(table, "band-1");
+  const double from = std::ranges::min(column(block(table, "curve-1"), 1));
+  double last_step = 0;
+  for (std::size_t i = 0; i < column(band, 1).size(); ++i) {
+    const double amplitude = column(band, 1)[i], step = 240 * std::log(amplitude / from) / std::log(3 / from);
+    CHECK(step == doctest::Approx(i == 0 ? std::round(step) : last_step + 1));
+    last_step = step;
+    double least = 1e9, most = 0;
+    for (const Table& member : members) {
+      const std::vector<double>&a = column(block(member, "curve-1"), 1),
+            &y = column(block(member, "curve-1"), 2);
+      std::size_t k = 1;
+      while (k + 1 < a.size() && a[k] >= amplitude) ++k;
+      const double value = y[k - 1] + (y[k] - y[k - 1]) * (amplitude - a[k - 1]) / (a[k] - a[k - 1]);
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    CHECK(column(band, 2)[i] == doctest::Approx(least).epsilon(1e-9));
+    CHECK(column(band, 3)[i] == doctest::Approx(most).epsilon(1e-9));
+  }
+  CHECK(column(band, 1).size() > 100);
 }
 
 }  // namespace impact_damper

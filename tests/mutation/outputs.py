@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Is every number that the program gives out looked at by some test? Alters each, and writes who noticed: outputs.md.
+
+The program build/tests/mutation/outputs lists what is given out, and which faults can be planted in it; planter.cpp,
+which is linked into every test program, plants the one that PLANTED_FAULT names. Nothing is built anew, so that the
+thousand faults take half a minute. A fault is caught if a test program fails with it: those of OWN are tried first,
+whose tests compare with closed forms and integrations of their own, then all others. Not among them are the comparisons
+with data/reference/, which would notice any change, right or wrong.
+
+Exit code 1 if a fault survives, or if outputs.md is not what was found (--renew writes it anew).
+"""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+PAGE = Path(__file__).resolve().parent / "outputs.md"
+SOURCE = PAGE.parents[2]
+# Where faults are planted, and the test programs that look there.
+OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "file": ["run_file"],
+       "read": ["run_file"], "table": ["series"], "measure": ["measures", "measures_of_runs"]}
+FIRST = list(dict.fromkeys(sum(OWN.values(), [])))
+HEAD = """# Faults planted in what is given out, and who noticed
+
+By [outputs.py](outputs.py), a test: {faults} faults in {outputs} numbers and columns, {caught} caught. What is altered \
+where, and how: [planter.hpp](planter.hpp). The first part of a name is where the fault is planted: in what an engine returns (`exact`, \
+`restitution`, `cem`), in what is written to a run file (`file`) or read from one (`read`), in a figure's table \
+(`table`, with block and column), in a measure (`measure`).
+
+| output | faults | caught by |
+|---|---|---|
+"""
+
+
+def failing_case(program, fault):
+    """The first test case of the program that fails with the fault, or none."""
+    # Tests of one name write files of one name: each has a folder of its own, or they fail for no fault.
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, "--abort-after=1", "--no-colors"], cwd=program.parent, text=True,
+                              env=os.environ | {"PLANTED_FAULT": fault, "TMPDIR": folder}, capture_output=True,
+                              errors="replace", timeout=600)
+    if done.returncode == 0:
+        return None
+    found = re.search(r"^TEST CASE:\s+(.*)", done.stdout, re.MULTILINE)
+    return found[1] if found else "(ends with an error)"
+
+
+def who_notices(programs, output, kind):
+    own = OWN[output.split("/")[0]]
+    for name, program in sorted(programs.items(), key=lambda item: item[0] not in own):
+        if case := failing_case(program, f"{output}/{kind}"):
+            return f"{name}: {case}"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--renew", action="store_true", help="write outputs.md anew")
+    parser.add_argument("--only", default="", metavar="REGEX", help="only faults that match")
+    parser.add_argument("--first", action="store_true", help="by no other programs than " + ", ".join(FIRST))
+    options = parser.parse_args()
+
+    tests = options.build.resolve() / "tests"
+    names = [file.name.removeprefix("test_") for file in sorted(tests.glob("test_*")) if file.suffix == ""]
+    rest = [] if options.first else [name for name in names if name not in FIRST]
+    programs = {name: tests / f"test_{name}" for name in FIRST + rest if name in names}
+    listed = subprocess.run([tests / "mutation/outputs", SOURCE], stdout=subprocess.PIPE, text=True)
+    if listed.returncode != 0:
+        sys.exit("an output cannot be altered: planter.cpp has to know it")
+    faults = [(output, kind) for output, *kinds in map(str.split, listed.stdout.splitlines()) for kind in kinds
+              if re.search(options.only, f"{output}/{kind}")]
+    with ThreadPoolExecutor(2) as threads:
+        for name, case in zip(FIRST, threads.map(lambda name: failing_case(programs[name], ""), FIRST)):
+            if case:
+                sys.exit(f"without a fault there fails {name}: {case}")
+        found = list(threads.map(lambda fault: who_notices(programs, *fault), faults))
+
+    rows = defaultdict(list)
+    for (output, kind), by in zip(faults, found):
+        if by:
+            rows[output, by].append(kind)
+        else:
+            print(f"survives: {output}/{kind}")
+    new = HEAD.format(faults=len(faults), outputs=len({output for output, _ in faults}),
+                      caught=len(found) - found.count(None))
+    new += "".join(f"| {output} | {', '.join(kinds)} | {by} |\n" for (output, by), kinds in rows.items())
+    print(f"{len(faults)} faults, {found.count(None)} survive")
+    if options.renew:
+        PAGE.write_text(new)
+    elif not options.only and new != PAGE.read_text():
+        sys.exit(f"{PAGE} is not what was found: {__file__} {options.build} --renew")
+    sys.exit(1 if None in found else 0)
+
+
+if __name__ == "__main__":
+    main()
