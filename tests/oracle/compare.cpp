@@ -20,10 +20,11 @@ using impact_damper::Energy;
 // is still to be linear; and up to which predicted error, relative to its size, a number is compared.
 struct Accuracy {
   double rounding, noise, predictable, operations;
+  double instant;  // how long what the method takes for one instant lasts, at the release too
 };
-constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations};
+constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations, 0};
 // Central differences with a hundred steps for each contact or period: (2 pi / 200)^2 / 24 and more.
-constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3};
+constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3, 3e-4};  // a step
 
 constexpr int samples_of_a_run = 65;
 
@@ -447,7 +448,7 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   };
   const auto predicted = [&](Kind kind, Quad t) {
     Quad unit = growth(kind, t);
-    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t;
+    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t + accuracy.instant;
     unit += rounded_motion(t);
     if (kind == y_) unit += Quad(rounding);
     if (kind == w_) unit += Quad(rounding) * size(w_, t);
@@ -493,7 +494,11 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     const std::size_t row = std::lower_bound(crossings.begin(), crossings.end(), p.time) - crossings.begin();
     const bool coincides = (row < crossings.size() && crossings[row] - p.time <= near) ||
                            (row > 0 && p.time - crossings[row - 1] <= near);
-    if (coincides || both.mismatch) continue;
+    // Of a row that was three phases and amplitudes are those of one of them.
+    const auto was_three = [row](const Events& events) {
+      return row < events.merged.size() && events.merged[row];
+    };
+    if (coincides || both.mismatch || was_three(mine) || was_three(its)) continue;
     if (row == crossings.size()) {
       if (run.impacts->phase_deg[j] || run.impacts->amplitude[j])
         judge.differ("impact" + row_index(j) + " has a phase or an amplitude in an unfinished half cycle");
@@ -618,9 +623,15 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   };
   energies("initial", ledger.initial, answer.initial, false);
   energies("final", ledger.final, answer.final, true);
-  judge.number("loss of all impacts", double(recorded + Quad(ledger.bounce_down_loss)),
-               listed + answer.chatter_loss, totals[4] + totals[6] + floor);
-  judge.number("contact loss", ledger.contact_loss, answer.contact_loss, totals[5] + floor);
+  if (std::holds_alternative<Cem>(run.engine)) {
+    // A contact that begins without speed may begin with an impact here: only the sum is known.
+    judge.number("all losses", double(recorded + Quad(ledger.contact_loss)), listed + answer.contact_loss,
+                 totals[4] + totals[5] + floor);
+  } else {
+    judge.number("loss of all impacts", double(recorded + Quad(ledger.bounce_down_loss)),
+                 listed + answer.chatter_loss, totals[4] + totals[6] + floor);
+    judge.number("contact loss", ledger.contact_loss, answer.contact_loss, totals[5] + floor);
+  }
   judge.number("viscous work", ledger.viscous_work, answer.viscous_work, totals[7] + floor);
   judge.number("forcing work", ledger.forcing_work, answer.forcing_work, totals[8] + floor);
   judge.number("residual", ledger.residual, 0, Quad(rounding) * 10);
