@@ -20,11 +20,10 @@ using impact_damper::Energy;
 // is still to be linear; and up to which predicted error, relative to its size, a number is compared.
 struct Accuracy {
   double rounding, noise, predictable, operations;
-  double instant;  // how long what the method takes for one instant lasts, at the release too
 };
-constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations, 0};
+constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations};
 // Central differences with a hundred steps for each contact or period: (2 pi / 200)^2 / 24 and more.
-constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3, 3e-4};  // a step
+constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3};
 
 constexpr int samples_of_a_run = 65;
 
@@ -446,9 +445,12 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     const Quad given = scene.mass_ratio / (1 + scene.mass_ratio) * size(w_, t);  // by the secondary mass
     return Quad(rounding) * (force + given + size(x_, t) + size(v_, t));
   };
+  // Central differences take a step for an instant, at the release too.
+  const Cem* const cem = std::get_if<Cem>(&run.engine);
+  const double instant = cem ? cem->time_step.value_or(0) : 0;
   const auto predicted = [&](Kind kind, Quad t) {
     Quad unit = growth(kind, t);
-    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t + accuracy.instant;
+    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t + instant;
     unit += rounded_motion(t);
     if (kind == y_) unit += Quad(rounding);
     if (kind == w_) unit += Quad(rounding) * size(w_, t);
@@ -458,10 +460,17 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   const auto met = [&](Quad t, Quad place, Quad speed) {
     return predicted(time_, t) + (speed != 0 ? place / magnitude(speed) : Quad(0));
   };
+  // What an acceleration gives in a step that was zero at its begin.
+  const auto within_step = [&](Quad t) {
+    const Quad grows = std::abs(scene.force_amplitude) * scene.force_frequency + size(x_, t) + size(v_, t);
+    return Quad(instant) * instant * grows;
+  };
   const auto negligible = [&](Kind kind) {
     return [&, kind](Quad t) {
-      return Quad(accuracy.operations) *
-             (predicted(kind, t) + (kind == x_ ? predicted(time_, t) * size(v_, t) : Quad(0)));
+      Quad unit = predicted(kind, t);
+      if (kind == x_) unit += predicted(time_, t) * size(v_, t);
+      if (kind == w_) unit += within_step(t);
+      return accuracy.operations * unit;
     };
   };
   const Negligible below{negligible(time_), negligible(w_), negligible(x_)};
@@ -623,7 +632,7 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   };
   energies("initial", ledger.initial, answer.initial, false);
   energies("final", ledger.final, answer.final, true);
-  if (std::holds_alternative<Cem>(run.engine)) {
+  if (cem) {
     // A contact that begins without speed may begin with an impact here: only the sum is known.
     judge.number("all losses", double(recorded + Quad(ledger.contact_loss)), listed + answer.contact_loss,
                  totals[4] + totals[5] + floor);
