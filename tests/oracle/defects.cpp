@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compare.hpp"
+#include "impact_damper/files/run_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -127,6 +128,6 @@ TEST_CASE("extreme mass ratios that are allowed give finite numbers") {
     Record record;
     record.impacts = record.contacts = record.energy = true;
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
-      CHECK_NOTHROW(simulate(scene, engine, record));
+      CHECK_NOTHROW(run_text(simulate(scene, engine, record)));  // refuses what is not finite
   }
 }

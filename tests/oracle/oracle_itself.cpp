@@ -191,6 +191,7 @@ TEST_CASE("the energy balance closes in decays with impacts, contacts, force and
         question.scene.force_amplitude = force;
         question.scene.force_frequency = 0.7;
         question.scene.until_time = 12;
+        question.most_steps = 4000;
         const Answer answer = answer_to(question);
         CAPTURE(zeta);
         CAPTURE(force);
