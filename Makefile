@@ -110,7 +110,7 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 test:  ## run every test
 	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-bare:  ## run both commands of README.md on a bare Debian 12 (as root, most of an hour); before every release
+bare:  ## run both commands of README.md on a bare Debian 12 (as root, half an hour); before every release
 	@$(alone) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
