@@ -13,63 +13,44 @@ endif
 FUZZ_SECONDS ?= 60
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
-PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev doctest-dev libmpfr-dev \
-  gnuplot-nox librsvg2-bin fonts-dejavu-core
+# What the program and the figures need, and nothing else: `make bare` holds it against a bare system.
+PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev locales \
-  clang-tidy cppcheck gcovr valgrind pandoc chromium
+CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev \
+  locales clang-tidy cppcheck gcovr valgrind pandoc chromium
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
+# What a bare system is made with.
+BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bench deps-check deps-paper build figures verify paper test bench bench-record stress \
-  stress-results check fuzz kills lint sanitize coverage mutation same-bits reference archive clean
+.PHONY: help deps deps-bare deps-bench deps-check deps-paper build figures verify paper test bench bench-record stress \
+  stress-results check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
 	@sed -n 's/^\([a-z-]*\):[^#]*## */\1\t/p' $(firstword $(MAKEFILE_LIST)) | while IFS="$$(printf '\t')" read -r name what; do \
 	  printf '  %-13s %s\n' "$$name" "$$what"; done
 
-# A shell command that installs what is missing of the packages $(1).
-define install
-if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then \
-  echo "Wanted, under the names your system has for them (these are Debian's):"; \
-  echo "  $(1)"; \
-  exit 0; \
-fi; \
-missing=; \
-for package in $(1); do \
-  dpkg-query -W -f='$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
-done; \
-if [ -z "$$missing" ]; then echo "Nothing is missing."; exit 0; fi; \
-sudo=; \
-if [ "$$(id -u)" -ne 0 ]; then \
-  if ! command -v sudo >/dev/null; then \
-    echo "make deps: neither root nor sudo; as root: apt-get install$$missing" >&2; exit 1; \
-  fi; \
-  sudo=sudo; \
-fi; \
-echo "Installing$$missing"; \
-$$sudo apt-get update -q && \
-$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing
-endef
-
 deps:  ## install what is missing (Debian); elsewhere say what is wanted
-	@$(call install,$(PACKAGES))
+	@.ci/install $(PACKAGES)
 
 deps-check:  ## the same for the tests: make deps-check check
-	@$(call install,$(PACKAGES) $(CHECK_PACKAGES))
+	@.ci/install $(PACKAGES) $(CHECK_PACKAGES)
 
 deps-bench:  ## the same for the bench: its peers and its higher precision
-	@$(call install,$(PACKAGES) $(BENCH_PACKAGES))
+	@.ci/install $(PACKAGES) $(BENCH_PACKAGES)
 	@$(alone) rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
 
 deps-paper:  ## the same for the report: make deps-paper paper
-	@$(call install,$(PACKAGES) $(PAPER_PACKAGES))
+	@.ci/install $(PACKAGES) $(PAPER_PACKAGES)
+
+deps-bare:  ## the same for a bare system to try both commands of README.md in: make deps-bare bare
+	@.ci/install $(BARE_PACKAGES)
 
 # What comes first in a recipe that works in $(BUILD): one at a time in this folder, also where a killed one's
 # children still work. The lock goes with the last process that inherits descriptor 9. Where it is held, no make
@@ -86,8 +67,22 @@ endef
 $(BUILD)/build.ninja:
 	@$(alone) [ -f $@ ] || cmake --preset release
 
-build: $(BUILD)/build.ninja  ## compile the program and its tests
-	@$(alone) cmake --build $(BUILD)
+# Turns on BUILD_TESTING or BENCH in $(BUILD), for good: nothing that is there is compiled again, and `make figures`
+# has nothing to do afterwards. Where it cannot be, because packages are missing, it does not stay on: `make figures`
+# does without.
+define with
+{ [ -f $(BUILD)/build.ninja ] && grep -qx "$(1):BOOL=ON" $(BUILD)/CMakeCache.txt; } || \
+cmake --preset release -D$(1)=ON || { \
+  echo "make $@: cannot be set up; make $(2) installs what it needs" >&2; \
+  cmake --preset release -D$(1)=OFF >/dev/null; \
+  exit 1; \
+};
+endef
+with_tests = $(call with,BUILD_TESTING,deps-check)
+with_bench = $(call with,BENCH,deps-bench)
+
+build: $(BUILD)/build.ninja  ## compile the program
+	@$(alone) cmake --build $(BUILD) --target impact-damper
 
 figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE=exact|restitution|cem)
 	@$(alone) \
@@ -112,28 +107,31 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
-test: build  ## run every test
-	@$(alone) ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+test:  ## run every test
+	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bare:  ## run both commands of README.md on a bare Debian 12 (as root, half an hour); before every release
+	@$(alone) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
 
-bench: $(BUILD)/build.ninja  ## measure run time beside error (five to ten minutes), print and draw it
-	@$(alone) cmake --build $(BUILD) --target bench
+bench:  ## measure run time beside error (five to ten minutes), print and draw it
+	@$(alone) $(with_bench) cmake --build $(BUILD) --target bench
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
 	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
-stress: $(BUILD)/build.ninja  ## what the engines must stand: a million random scenes, aimed ones (minutes)
-	@$(alone) cmake --build $(BUILD) --target stress
+stress:  ## what the engines must stand: a million random scenes, aimed ones (minutes)
+	@$(alone) $(with_tests) cmake --build $(BUILD) --target stress
 
-stress-results: $(BUILD)/build.ninja  ## the same, and keep page and figures in tests/stress/
-	@$(alone) cmake --build $(BUILD) --target stress-results
+stress-results:  ## the same, and keep page and figures in tests/stress/
+	@$(alone) $(with_tests) cmake --build $(BUILD) --target stress-results
 
-kills: $(BUILD)/build.ninja  ## kill run, series, drawing, verify and make figures 110 times (minutes)
-	@$(alone) cmake --build $(BUILD) --target kills
+kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
+	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills
 
-check: build test  ## build, run every test, regenerate everything with all engines and verify it
+check: test  ## build, run every test, regenerate everything with all engines and verify it
 	@for engine in exact restitution cem; do \
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
@@ -151,8 +149,8 @@ coverage: sanitize  ## the same; then which lines of the library they ran: at le
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
-same-bits: $(BUILD)/build.ninja  ## the same bytes from eight more builds, in strange surroundings (minutes)
-	@$(alone) cmake --build $(BUILD) --target same-bits
+same-bits:  ## the same bytes from eight more builds, in strange surroundings (minutes)
+	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)
@@ -163,4 +161,4 @@ archive:  ## write what is deposited: sources, reference data, figures and repor
 	@$(alone) paper/archive $(BUILD)
 
 clean:  ## remove all that was built
-	@$(alone) rm -rf $(BUILD)
+	@$(alone) rm -rf --one-file-system $(BUILD)

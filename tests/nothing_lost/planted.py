@@ -99,7 +99,7 @@ MAKEFILE_FAULTS = {
     "lets two work at once": (
         r"if command -v flock .*?\nfi;", "", [([*MAKE_INTERRUPTED, "makes"], "0 waited and said so")]),
     "has a target that does not wait": (
-        r"@\$\(alone\) (?=cmake --build \$\(BUILD\) --target same-bits)", "@",
+        r"@\$\(alone\) (?=\$\(with_tests\) cmake --build \$\(BUILD\) --target same-bits)", "@",
         [([*MAKE_INTERRUPTED, "makes"], "make same-bits: says")]),
     "does not say what is left": (
         r"echo \"make \$@: interrupted[^\n]*", r":; \\", [([*MAKE_INTERRUPTED, "make"], "make figures: says")]),
@@ -127,9 +127,13 @@ def main():
     options = parser.parse_args()
     folder = scratch.make_folder(options.folder)
     check = scratch.Check()
+    may_mount, skipped = scratch.may_mount(), []
 
     def find(name, program, tests_folder, tests):
         for (script, *more), expected in tests:
+            if script == "unwritable.py" and not may_mount:  # finds these on the disks that it mounts
+                skipped.append(f"{script} on what {name}: no mount namespace is permitted here")
+                continue
             hold = ["--hold", options.hold] if script == "killed.py" else []
             command = [sys.executable, "-B", str(tests_folder / script), "--program", str(program),
                        "--folder", str(folder / "work"), *hold, *more]
@@ -150,7 +154,7 @@ def main():
     for name, (pattern, replacement, tests) in MAKEFILE_FAULTS.items():
         if options.only in name:
             find(name, options.program.resolve(), planted_tree(folder / "planted", pattern, replacement), tests)
-    check.end(f"planted faults, {check.count} tests")
+    check.end(f"planted faults, {check.count} tests", skipped)
 
 
 if __name__ == "__main__":
