@@ -147,7 +147,8 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
       if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1) {
         const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
         const bool nothing_between = root <= proven + proven / 1024;
-        if (nothing_between && jet.third * root * root * root < -jet.g1 * least)
+        const Real rounding = 2 * std::numeric_limits<Real>::epsilon() * (time + root);
+        if (nothing_between && jet.third * root * root * root < -jet.g1 * rounding)
           near = Root<Real>{time + root, i};
       }
     }
