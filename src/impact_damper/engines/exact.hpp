@@ -51,8 +51,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
     if (!in_contact) {
       const Flight<Real, Force> flight(system, timeline.now(), state);
       const bool released = rests_on_wall();
-      const auto met =
-          timeline.search([&] { return flight.next_wall(timeline.remaining(), timeline.span(), released); });
+      const auto met = flight.next_wall(timeline.remaining(), timeline.span(), released);
       if (met) state = copied(met->state);
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
@@ -61,8 +60,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
       in_contact = by_impact = true;
     } else {
       const auto pass = [&](const auto& contact) {
-        const auto left =
-            timeline.search([&] { return contact.leave(timeline.remaining(), timeline.span()); });
+        const auto left = contact.leave(timeline.remaining(), timeline.span());
         const Real begin = timeline.now();
         if (left) state = copied(left->state);
         const Works<Real> works =

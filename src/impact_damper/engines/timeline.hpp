@@ -52,24 +52,13 @@ class Timeline {
     if (observer_.wants_energy()) observer_.ledger().initial = energy_of(system_, start, depth);
   }
 
-  // What a search for the end of a motion finds. Where it takes more steps than the scene may, the scene ends
-  // where the motion begins.
-  template <class Search>
-  auto search(Search&& search) -> decltype(search()) {
-    try {
-      return search();
-    } catch (const OutOfEffort&) {
-      stopped_ = StopReason::step_budget;
-      return {};
-    }
-  }
-
   // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
   // Returns the works in it.
   template <class Motion>
   [[gnu::flatten]] Works<Real> pass(const Motion& motion, Real duration, State<Real>& end,
                                     const Real& wall_damping) {
-    if (stopped_) {
+    if (out_of_effort()) {  // the end of the motion may not have been found
+      stopped_ = StopReason::step_budget;
       duration = 0;
       end = motion.at(duration);
     } else if (!(duration < remaining())) {
@@ -133,14 +122,8 @@ class Timeline {
   template <class Motion>
   Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
     Real from{0};
-    try {
-      if (side_ == 0 && !find_side(motion, duration, from)) return duration;
-      return follow_rows(motion, duration, end, from);
-    } catch (const OutOfEffort&) {
-      stopped_ = StopReason::step_budget;
-      timed_out_ = false;
-      return from;
-    }
+    if (side_ == 0 && !find_side(motion, duration, from)) return duration;
+    return follow_rows(motion, duration, end, from);
   }
   // Which way x goes that has not moved until now: its first derivative that is not zero tells. False: none.
   template <class Motion>
@@ -157,9 +140,9 @@ class Timeline {
     }
     return true;
   }
-  // `from`: where the row under way has been followed to; the last zero crossing, when this ends.
+  // From a time on, up to which the row under way has been followed.
   template <class Motion>
-  Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end, Real& from) {
+  Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end, Real from) {
     notice_peak(side_ * motion.at(from).x, from);
     const Real v = side_ * motion.at(from).v;
     bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
@@ -176,6 +159,11 @@ class Timeline {
       if (may_cross) crossing = motion.falls(0, side_, from, last, span_);
       const Real until = crossing ? *crossing : duration;
       if (may_turn && no_turn_before <= until) find_peaks(motion, from, until, rising, no_turn_before);
+      if (out_of_effort()) {
+        stopped_ = StopReason::step_budget;
+        timed_out_ = false;
+        return from;
+      }
       if (!crossing) return duration;
       from = *crossing;
       const Real zero = clock_.after(from);

@@ -21,8 +21,8 @@ class Contact {
 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
-    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-    return {slow.x + fast.x, slow.v + fast.v, wall_ + (slow.q + fast.q), slow.w + fast.w};
+    const ContactState<Real> s = sum_at(t);
+    return {s.x, s.v, wall_ + s.q, s.w};
   }
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
@@ -52,8 +52,21 @@ class Contact {
     return end;
   }
   // |q|, with the digits that y - 1 does not have at the right wall.
-  Real overlap(const Real& t) const {
-    return absolute(t == 0 ? Real(start_.y - wall_) : Real(slow_at(t).q + fast_at(t).q));
+  Real overlap(const Real& t) const { return absolute(sum_at(t).q); }
+  // x, x', q and q'. For a short time as what they change by: the parts of a small q may be large, and
+  // cancel.
+  ContactState<Real> sum_at(const Real& t) const {
+    const Real q0 = start_.y - wall_;
+    if (t == 0) return {start_.x, start_.v, q0, start_.w};
+    const ContactSystem<Real, Force>& c = system_;
+    if (!(t * c.fast.rate() < Real(0.5) && t * c.slow.rate() < Real(0.5))) {
+      const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
+      return {slow.x + fast.x, slow.v + fast.v, slow.q + fast.q, slow.w + fast.w};
+    }
+    const ContactState<Real> by_slow = change(c.slow, parts().slow, c.drive_slow, t),
+                             by_fast = change(c.fast, parts().fast, c.drive_fast, t);
+    return {start_.x + (start_.v * t + (by_slow.x + by_fast.x)), start_.v + (by_slow.v + by_fast.v),
+            q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
   }
   // The two parts of x, x', q and q'.
   ContactState<Real> slow_at(const Real& t) const {
@@ -66,8 +79,13 @@ class Contact {
 
   // Towards zero: how deep the secondary mass is in the wall.
   Outlook<Real> depth(const Real& t, const Real& span) const {
-    return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-                instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
+    Outlook<Real> ahead =
+        look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+             instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
+    const ContactState<Real> s = sum_at(t);
+    ahead.whole.g = inward_ * s.q;
+    ahead.whole.g1 = inward_ * s.w;
+    return ahead;
   }
   // Whether x is proved to keep its sign in [0, t], or never to exceed `best` or the ends, by its ends.
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
@@ -304,15 +322,33 @@ class Contact {
                           p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) {
       const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
-      const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
-      const Real on_displacement = driven.d1 + 2 * oscillator.a() * driven.d;  // response to C instead of S
-      const Real on_velocity = f - oscillator.b() * driven.d;                  // its derivative
-      to.x += drive.v * driven.d + drive.x * on_displacement;
-      to.v += drive.v * driven.d1 + drive.x * on_velocity;
-      to.q += drive.w * driven.d + drive.q * on_displacement;
-      to.w += drive.w * driven.d1 + drive.q * on_velocity;
+      add_driven(to, oscillator, drive, driven, t);
     }
     return to;
+  }
+
+  // What a part departs by from a straight line, and what its velocities change by.
+  ContactState<Real> change(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
+                            const ContactState<Real>& drive, const Real& t) const {
+    const Propagator<Real> p = oscillator.propagate(t);
+    const Real s1 = -oscillator.b() * p.s, v1 = p.c1 - 2 * oscillator.a() * p.s;
+    ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
+                          p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
+    if (system_.forcing) {
+      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
+      add_driven(by, oscillator, drive, driven, t);
+    }
+    return by;
+  }
+  void add_driven(ContactState<Real>& to, const Oscillator<Real>& oscillator, const ContactState<Real>& drive,
+                  const DrivenResponse<Real>& driven, const Real& t) const {
+    const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
+    const Real on_displacement = driven.d1 + 2 * oscillator.a() * driven.d;  // response to C instead of S
+    const Real on_velocity = f - oscillator.b() * driven.d;                  // its derivative
+    to.x += drive.v * driven.d + drive.x * on_displacement;
+    to.v += drive.v * driven.d1 + drive.x * on_velocity;
+    to.q += drive.w * driven.d + drive.q * on_displacement;
+    to.w += drive.w * driven.d1 + drive.q * on_velocity;
   }
 
   // Taken apart when first asked for: a brisk rebound never asks.

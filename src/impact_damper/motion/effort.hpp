@@ -23,10 +23,9 @@ class Effort {
   std::int64_t before_;
 };
 
-// Thrown by a search when none is left: the run then ends by StopReason::step_budget (timeline.hpp).
-struct OutOfEffort {};
-inline void spend_effort() {
-  if (effort_left-- <= 0) throw OutOfEffort{};
-}
+// Takes one. False: none is left, and the search finds nothing; the run then ends where it has come to, by
+// StopReason::step_budget (timeline.hpp).
+inline bool spend_effort() { return effort_left-- > 0; }
+inline bool out_of_effort() { return effort_left < 0; }
 
 }  // namespace impact_damper

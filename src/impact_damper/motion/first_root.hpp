@@ -116,7 +116,7 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
   const Real later_than_any_run = 1e13, most = span < later_than_any_run ? span : later_than_any_run;
   Real time = from, wait{0};
   while (time < horizon) {
-    spend_effort();
+    if (!spend_effort()) return std::nullopt;
     const auto functions = outlook(time);
     const Real rest_of_horizon = horizon - time;
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
