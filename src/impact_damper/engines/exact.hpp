@@ -28,6 +28,14 @@ template <class Real, class Force, class Observer>
 Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
                   Observer& observer) {
   const ContactSystem<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
+  return walls.coupled ? run_exact<CoupledContact<Real, Force>>(walls, system, scene, options, observer)
+                       : run_exact<Contact<Real, Force>>(walls, system, scene, options, observer);
+}
+
+// The same with the motion that contacts are.
+template <class InContact, class Real, class Force, class Observer>
+Outcome run_exact(const ContactSystem<Real, Force>& walls, const System<Real, Force>& system,
+                  const Scene& scene, const Exact& options, Observer& observer) {
   Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
@@ -40,9 +48,9 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
 
   // A release at rest on a wall: in contact if pressed against it. (With a velocity towards the wall it is an
   // impact, which the flight meets at once.)
-  const auto rests_on_wall = [&] { return state.w == 0 && (state.y == 0 || state.y == 1); };
+  bool at_rest_on_wall = state.w == 0 && (state.y == 0 || state.y == 1);
   bool in_contact = state.y < 0 || state.y > 1 ||
-                    (rests_on_wall() && Flight<Real, Force>(system, timeline.now(), state).pressed());
+                    (at_rest_on_wall && Flight<Real, Force>(system, timeline.now(), state).pressed());
   bool by_impact = false;
   Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
@@ -50,8 +58,9 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
   while (!timeline.stopped()) {
     if (!in_contact) {
       const Flight<Real, Force> flight(system, timeline.now(), state);
-      const bool released = rests_on_wall();
-      const auto met = flight.next_wall(timeline.remaining(), timeline.span(), released);
+      const auto met = at_rest_on_wall ? flight.released_meets_wall(timeline.remaining(), timeline.span())
+                                       : flight.next_wall(timeline.remaining(), timeline.span());
+      at_rest_on_wall = false;
       if (met) state = copied(met->state);
       timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
       if (timeline.stopped()) break;
@@ -59,31 +68,28 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
       if (!timeline.impact(wall, state)) break;
       in_contact = by_impact = true;
     } else {
-      const auto pass = [&](const auto& contact) {
-        const auto left = contact.leave(timeline.remaining(), timeline.span());
-        const Real begin = timeline.now();
-        if (left) state = copied(left->state);
-        const Works<Real> works =
-            timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
-        if (observer.wants_contacts())
-          observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
-                           wall);
-        if (observer.wants_energy()) {
-          losses += works.wall;
-          if (by_impact) {
-            observer.ledger().impact_loss.push_back(double(works.wall));
-          } else {
-            observer.ledger().contact_loss += double(works.wall);
-          }
+      const InContact contact(walls, timeline.now(), state, wall);
+      const auto left = contact.leave(timeline.remaining(), timeline.span());
+      const Real begin = timeline.now();
+      if (left) state = copied(left->state);
+      const Works<Real> works =
+          timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
+      if (observer.wants_contacts())
+        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
+                         wall);
+      if (observer.wants_energy()) {
+        losses += works.wall;
+        if (by_impact) {
+          observer.ledger().impact_loss.push_back(double(works.wall));
+        } else {
+          observer.ledger().contact_loss += double(works.wall);
         }
-        if (timeline.stopped()) depth = contact.overlap(timeline.passed());
-      };
-      if (walls.coupled) {
-        pass(CoupledContact<Real, Force>(walls, timeline.now(), state, wall));
-      } else {
-        pass(Contact<Real, Force>(walls, timeline.now(), state, wall));
       }
-      in_contact = by_impact = false;
+      if (timeline.stopped()) {
+        depth = contact.overlap(timeline.passed());
+        break;
+      }
+      in_contact = by_impact = at_rest_on_wall = false;
     }
   }
   timeline.finish(state, depth, losses);

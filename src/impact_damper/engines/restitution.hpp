@@ -6,7 +6,9 @@
 // Bounce-down is an infinite sequence of impacts in finite time. Under a constant relative acceleration a
 // towards the wall and a first rebound speed w it is over after
 //     T = 2 w / (a (1 - e)),
-// and where a changes by a' T meanwhile, little beside a, after T (1 - a' T / (3 a)).
+// and where a changes meanwhile, little beside a, by a' in flight and by 2 zeta nu/(1+nu) (1+e) w at an
+// impact that is left with e w, after
+//     T (1 - T (a' / (3 a) + zeta e nu/(1+nu))).
 // The impacts are stepped through one by one until a changes by less than the fraction
 // Restitution::accumulation_tolerance within T; then the engine jumps: the masses join (plastically, as far
 // as momentum goes) and move on as one, stuck from T later on. With the tolerance tol and |a'| <= m, w is
@@ -37,7 +39,7 @@ template <class Real, class Force, class Observer>
 Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
                         Observer& observer) {
   Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
-  const Real nu = system.nu, e = system.e, tolerance = options.accumulation_tolerance;
+  const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
   timeline.begin(state, Real(0));
@@ -59,11 +61,14 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const Real change_of_push = -away * lead[3];
-    const auto steady_for = [&](const Real& rate) { return rate * accumulation <= tolerance * push; };
+    // In flight, and by the impacts.
+    const auto steady_for = [&](const Real& rate) {
+      return (rate + 2 * zeta * push) * accumulation <= tolerance * push;
+    };
     if (!(steady_for(absolute(lead[3])) && accumulation < timeline.span() &&
           steady_for(absolute(lead[3]) + flight.fourth_of_y(timeline.span()) * accumulation)))
       return false;
-    accumulation -= accumulation * accumulation * change_of_push / (3 * push);
+    accumulation -= accumulation * accumulation * (change_of_push / (3 * push) + zeta * e * nu / (1 + nu));
     return true;
   };
 
@@ -91,7 +96,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
 
     const Flight<Real, Force> flight(system, timeline.now(), state);
     const bool released = on_wall && state.w == 0;
-    const auto met = flight.next_wall(timeline.remaining(), timeline.span(), released);
+    const auto met = released ? flight.released_meets_wall(timeline.remaining(), timeline.span())
+                              : flight.next_wall(timeline.remaining(), timeline.span());
     if (met) state = copied(met->state);
     timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
     if (timeline.stopped()) break;
