@@ -104,9 +104,7 @@ class Examination {
         if (run_.half_cycles) ends_at(last_crossing(), "last zero crossing");
         break;
       case StopReason::impact_budget:
-        break;
       case StopReason::step_budget:
-        require(cem_ != nullptr, "/stop_reason", "must be another one but with cem, got \"step_budget\"");
         break;
     }
     if (run_.impacts) {
