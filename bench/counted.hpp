@@ -114,7 +114,7 @@ std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Re
 }
 
 template <std::same_as<Counted> Real>
-Real certified_step(const Jet<Real>& jet, const Real& most) {
+Real certified_step(const Jet<Real>& jet, Real most) {
   ++counts.steps;
   return impact_damper::certified_step<Real>(jet, most);
 }

@@ -264,6 +264,14 @@ TEST_CASE("a run that ends by an amplitude or a budget agrees with itself") {
   scene.until_amplitude = 5.8;
   Record record;
   record.impacts = record.contacts = record.energy = true;
+  for (Engine engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{})}) {
+    std::visit([](auto& options) { options.max_steps = 100; }, engine);
+    Scene forced = scene;
+    forced.force_amplitude = 0.05;
+    const Run run = simulate(forced, engine, record);
+    CHECK(run.stop_reason == StopReason::step_budget);
+    CHECK(fields_of(inconsistencies_of(run)) == "");
+  }
   for (const Budget& budget :
        {Budget{}, Budget{.max_impacts = 7}, Budget{.max_half_cycles = 3}, Budget{.max_time = 9}}) {
     for (Engine engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{})}) {

@@ -130,7 +130,7 @@ TEST_CASE("scenes are run in their order, and the first that is not admitted is 
   scenes[1].mass_ratio = -1;
   scenes[3].restitution = 2;
   CHECK_THROWS_WITH_AS(simulate_scenes(scenes, Exact{}, Record{}, 3),
-                       "mass_ratio: must be > 0 and <= 1e+06, got -1", std::invalid_argument);
+                       "mass_ratio: must be >= 1e-09 and <= 1e+06, got -1", std::invalid_argument);
 }
 
 TEST_CASE("an unchaotic decay does not spread, a chaotic one does") {

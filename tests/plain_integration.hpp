@@ -147,6 +147,7 @@ class PlainIntegration {
       run_.impacts->time.push_back(time_);
       run_.impacts->wall.push_back(wall_);
       run_.impacts->relative_velocity.push_back(now_[3]);
+      run_.impacts->displacement.push_back(now_[0]);
       if (rigid_) {
         const double nu = scene_.mass_ratio, before = energy().kinetic;
         now_[1] += nu * (1 + scene_.restitution) * now_[3] / (1 + nu);

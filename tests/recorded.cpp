@@ -77,6 +77,7 @@ void same(const Run& run, const Run& expected, double allowed) {
   same("relative_velocity", run.impacts->relative_velocity, expected.impacts->relative_velocity, allowed);
   same("phase_deg", run.impacts->phase_deg, expected.impacts->phase_deg, 180 * allowed);
   same("impacts.amplitude", run.impacts->amplitude, expected.impacts->amplitude, allowed);
+  same("displacement", run.impacts->displacement, expected.impacts->displacement, allowed);
   same("begin", run.contacts->begin, expected.contacts->begin, allowed);
   same("end", run.contacts->end, expected.contacts->end, allowed);
   same("contacts.wall", run.contacts->wall, expected.contacts->wall, 0);
@@ -114,6 +115,7 @@ Run without_slow_impacts(Run run) {
     run.impacts->relative_velocity.push_back(all.impacts->relative_velocity[i]);
     run.impacts->phase_deg.push_back(all.impacts->phase_deg[i]);
     run.impacts->amplitude.push_back(all.impacts->amplitude[i]);
+    run.impacts->displacement.push_back(all.impacts->displacement[i]);
     run.energy->impact_loss.push_back(all.energy->impact_loss[i]);
   }
   return run;
@@ -124,7 +126,7 @@ Run without_slow_impacts(Run run) {
 // The plain integration errs by up to 1e-9, and the motion amplifies that by up to a hundred.
 TEST_CASE("all that the exact engine records is what a plain integration finds") {
   const Scene scene = eventful(false);
-  const Exact exact{Calibration::fixed_wall, budget};
+  const Exact exact{Calibration::fixed_wall, budget, 2'000'003};
   const Run run = simulate(scene, exact, everything);
   CHECK(run.engine == Engine(exact));
   same(run, reference::PlainIntegration(scene, false, samples).run(), 1e-7);
@@ -132,7 +134,7 @@ TEST_CASE("all that the exact engine records is what a plain integration finds")
 
 TEST_CASE("all that the restitution engine records is what a plain integration finds") {
   const Scene scene = eventful(true);
-  const Restitution restitution{1e-7, budget};
+  const Restitution restitution{1e-7, budget, 2'000'003};
   const Run run = simulate(scene, restitution, everything);
   CHECK(run.engine == Engine(restitution));
   same(run, reference::PlainIntegration(scene, true, samples).run(), 1e-7);

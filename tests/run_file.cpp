@@ -48,6 +48,7 @@ Engine restitution_on_a_budget() {
   Restitution engine;
   engine.accumulation_tolerance = 1e-5;
   engine.budget = {3, 4, 5.5};
+  engine.max_steps = 6;
   return engine;
 }
 
@@ -158,6 +159,16 @@ TEST_CASE("a run that is read and written again has the same bytes, whatever its
   }
 }
 
+TEST_CASE("a file of before the searches' steps were an option was made with the usual ones") {
+  for (const Engine& engine : {two_body_exact(), Engine(Restitution{.budget = {.max_time = 1e6}})}) {
+    std::string text = replaced(run_text(full_run(engine)), "\"max_steps\": 10000000, ", "");
+    text = sealed(text.substr(0, text.rfind(seal_begin)));
+    CHECK(parse_run("r.json", text).engine == engine);
+  }
+  CHECK(problems(replaced(run_text(full_run()), "\"max_steps\": 300000000, ", "")) ==
+        Lines{"r.json: /engine/max_steps: missing, a value must be given"});
+}
+
 TEST_CASE("every bit of a number survives the file") {
   std::mt19937_64 bits(7);
   Run run = full_run();
@@ -256,7 +267,7 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
   CHECK(only("run/1", "run/2") ==
         "r.json: /schema: must be one of \"impact-damper/run/1\", got the string \"impact-damper/run/2\"");
   CHECK(only("\"x0\": 6, ", "") == "r.json: /scene/x0: missing, a value must be given");
-  CHECK(only("0.1,", "-0.1,").starts_with("r.json: /scene/mass_ratio: must be > 0"));
+  CHECK(only("0.1,", "-0.1,").starts_with("r.json: /scene/mass_ratio: must be >= 1e-09"));
   CHECK(only("\"cem\"", "\"CEM\"") ==
         "r.json: /engine/name: must be one of \"exact\", \"restitution\", \"cem\", got the string \"CEM\"");
   CHECK(only("\"max_impacts\": 200000", "\"max_impacts\": -5") ==
@@ -365,7 +376,7 @@ TEST_CASE("a scene file's problems are reported together") {
         Lines{
             "s.json: /x0: must be a number, got the string \"6\"",
             "s.json: /until_time: must be null or a number, got the string \"t\"",
-            "s.json: /mass_ratio: must be > 0 and <= 1e+06, got -1",
+            "s.json: /mass_ratio: must be >= 1e-09 and <= 1e+06, got -1",
             "s.json: /restitution: must be >= 0 and <= 1, got 1.5",
             "s.json: /omega: unknown key, admitted are: damping_ratio, description, force_amplitude, "
             "force_frequency, mass_ratio, restitution, until_amplitude, until_time, v0, w0, wall_stiffness, "

@@ -17,8 +17,7 @@ std::string option_of(std::string_view field) {
 NumberRange range_of(const SceneField& field) {
   const double any = std::numeric_limits<double>::max();
   // The limits that only keep squares finite are no news to anybody until they are passed.
-  return {field.least <= -1e12 ? -any : field.least, field.most >= 1e6 ? any : field.most,
-          field.least_is_admitted};
+  return {field.least <= -1e12 ? -any : field.least, field.most >= 1e6 ? any : field.most};
 }
 
 Budget budget_of(Arguments& arguments) {
@@ -185,7 +184,9 @@ void add_engine_options(CLI::App& app) {
       "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
       "than "
       "1 divided by its\nfrequency");
-  add("--max-steps", "N", "cem: stop after so many steps; a whole number >= 1,\ndefault 300000000");
+  add("--max-steps", "N",
+      "stop after so many steps, of the searches for events or, with\n"
+      "cem, of time; a whole number >= 1, default 10000000,\nwith cem 300000000");
 }
 
 }  // namespace impact_damper::cli

@@ -6,22 +6,23 @@
 namespace impact_damper {
 namespace {
 
-constexpr double largest = 1e12;  // keeps every square and product of a scene's numbers finite
+// This, and the least mass ratio, stiffness and frequency, keep every square, product and quotient of a
+// scene's numbers finite.
+constexpr double largest = 1e12;
 
 }  // namespace
 
 const std::array<SceneField, 10> scene_fields{{
-    {"mass_ratio", &Scene::mass_ratio, 0.0, false, 1e6, "secondary to primary mass, nu"},
-    {"restitution", &Scene::restitution, 0.0, true, 1.0, "coefficient of restitution, e"},
-    {"damping_ratio", &Scene::damping_ratio, 0.0, true, 1e6,
-     "viscous damping ratio of the primary mass, zeta"},
-    {"wall_stiffness", &Scene::wall_stiffness, 0.0, false, 1e15, "wall to primary spring stiffness, k"},
-    {"x0", &Scene::x0, -largest, true, largest, "initial displacement of the primary mass"},
-    {"v0", &Scene::v0, -largest, true, largest, "initial velocity of the primary mass"},
-    {"y0", &Scene::y0, -largest, true, largest, "initial distance of the secondary mass from the left wall"},
-    {"w0", &Scene::w0, -largest, true, largest, "initial velocity of the secondary mass in the cavity"},
-    {"force_amplitude", &Scene::force_amplitude, -largest, true, largest, "forcing amplitude f0, 0 for none"},
-    {"force_frequency", &Scene::force_frequency, 0.0, false, 1e6, "forcing frequency omega_f"},
+    {"mass_ratio", &Scene::mass_ratio, 1e-9, 1e6, "secondary to primary mass, nu"},
+    {"restitution", &Scene::restitution, 0.0, 1.0, "coefficient of restitution, e"},
+    {"damping_ratio", &Scene::damping_ratio, 0.0, 1e6, "viscous damping ratio of the primary mass, zeta"},
+    {"wall_stiffness", &Scene::wall_stiffness, 1e-6, 1e15, "wall to primary spring stiffness, k"},
+    {"x0", &Scene::x0, -largest, largest, "initial displacement of the primary mass"},
+    {"v0", &Scene::v0, -largest, largest, "initial velocity of the primary mass"},
+    {"y0", &Scene::y0, -largest, largest, "initial distance of the secondary mass from the left wall"},
+    {"w0", &Scene::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
+    {"force_amplitude", &Scene::force_amplitude, -largest, largest, "forcing amplitude f0, 0 for none"},
+    {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, "forcing frequency omega_f"},
 }};
 
 std::vector<Problem> problems_of(const Scene& scene) {
@@ -31,7 +32,7 @@ std::vector<Problem> problems_of(const Scene& scene) {
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
   for (const SceneField& field : scene_fields) {
-    check(field.name, scene.*field.member, {field.least, field.most, field.least_is_admitted});
+    check(field.name, scene.*field.member, {field.least, field.most});
   }
   const NumberRange stops{0, largest, false};
   if (scene.until_time) check("until_time", *scene.until_time, stops);

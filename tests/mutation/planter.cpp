@@ -91,7 +91,6 @@ void each_option(Cem& engine, Visit visit) {
   visit("large_step", engine.large_step);
   visit("unstable", engine.unstable);
   visit("calibration", engine.calibration);
-  visit("max_steps", engine.max_steps);
 }
 
 // Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own
@@ -112,6 +111,7 @@ void each_entry(Run& run, Visit all) {
   std::visit(
       [&](auto& options) {
         each_option(options, engine);
+        engine("max_steps", options.max_steps);
         engine("max_impacts", options.budget.max_impacts);
         engine("max_half_cycles", options.budget.max_half_cycles);
         engine("max_time", options.budget.max_time);
@@ -131,6 +131,7 @@ void each_entry(Run& run, Visit all) {
     visit("relative_velocity", run.impacts->relative_velocity);
     visit("phase_deg", run.impacts->phase_deg);
     visit("amplitude", run.impacts->amplitude);
+    visit("displacement", run.impacts->displacement);
   }
   if (run.contacts) {
     const auto visit = under("contacts");

@@ -92,11 +92,14 @@ def known(b, tree):
         b.stops(BUDGETS, [*FOR_EVER, "--record", "contacts", "--engine", engine, "--x0", "0.01", "--y0", "0.5"])
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--x0", "0"])
         # Stuck for ever, and forced all the while.
-        b.run([*FOR_EVER, *EVERYTHING, "--engine", engine, "--x0", "0", "--restitution", "0",
-               "--force-amplitude", "1e-9", "--force-frequency", "1e-3"], [0, 4])
+        b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--x0", "0", "--restitution", "0",
+                          "--force-amplitude", "1e-9", "--force-frequency", "1e-3"])
         b.stops(BUDGETS, [*FOR_EVER, "--record", "energy", "--engine", engine, "--force-amplitude", "1e-9",
                           "--force-frequency", "1e6", "--x0", "0"])
-        b.run([*FOR_EVER, *EVERYTHING, "--engine", engine, "--mass-ratio", "1e-300"], [0, 4])
+        b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--mass-ratio", "1e-9"])
+        b.stops([*BUDGETS, "time"], ["run", "--until-time", "3e5", *EVERYTHING, "--engine", engine,
+                                     "--force-amplitude", "0.05"])
+        b.refuses("--mass-ratio: must be >= 1e-09", [*FOR_EVER, "--engine", engine, "--mass-ratio", "5e-324"])
         b.stops([*BUDGETS, "amplitude"], ["run", "--until-amplitude", "1e-300", *EVERYTHING, "--engine", engine])
 
     # A history of 1e12 points; and the longest that is admitted.
@@ -109,7 +112,7 @@ def known(b, tree):
     # As much as the default budgets admit of everything at once: about 100 MB.
     b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--history", "0:50000:500000", "--force-amplitude", "0.1"], read=True)
 
-    # Steps of the component element method.
+    # Steps of the component element method, whose squares may underflow.
     b.run([*FOR_EVER, *EVERYTHING, "--engine", "cem", "--time-step", "1e-300"], [0, 4])
     for step in ("1e-12", "1e-6"):
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", "cem", "--time-step", step, "--x0", "1e3"])
@@ -134,17 +137,17 @@ def drawn(choose):
     command = ["run", "--engine", engine]
     def add(option, *values):
         command.extend([option, choose.choice(values)])
-    add("--mass-ratio", "0.02", "1e-300", "1e-12", "1", "1e6", size(-8, 6))
+    add("--mass-ratio", "0.02", "1e-9", "1", "1e6", size(-8, 6))
     add("--restitution", "0", "1", "0.6", "0.999", "0.9999999", "1e-300")
     add("--damping-ratio", "0", "0", "1e-12", "0.01", "0.999", "1", "1.0001", "50", "1e6")
-    add("--wall-stiffness", "1e4", "1e-300", "1e-3", "1", "1e15", size(-6, 15))
+    add("--wall-stiffness", "1e4", "1e-6", "1e-3", "1", "1e15", size(-6, 15))
     add("--x0", "6", "0", "1", "1e-300", "1e12", "1e6", "0.1")
     add("--v0", "0", "0", "1e12", "-3", "1e-9")
     add("--y0", "0", "0", "0.5", "1", "0.999999", "1e-300", *([] if engine == "restitution" else ["-1", "1e12"]))
     add("--w0", "0", "0", "1e-9", "-1e-9", "5", "1e12", "-1e12")
     if choose.random() < 0.5:
         add("--force-amplitude", "0.1", "1", "1e12", "1e-300", "10")
-        add("--force-frequency", "1", "0.5", "1e-300", "1e-6", "1e6", "100", "1.00001")
+        add("--force-frequency", "1", "0.5", "1e-12", "1e-6", "1e6", "100", "1.00001")
     command += choose.choice([["--until-time", "1e12"], ["--until-amplitude", "1e-12"]])
     add("--record", "half_cycles", "contacts", "energy", EVERYTHING[1])
     if engine == "cem":
@@ -172,7 +175,9 @@ def main():
     bounds.tell("known to be hard")
     choose = random.Random(options.seed)
     for _ in range(options.scenes):
-        bounds.run([*drawn(choose), "-o", "out.json"], [0, 2, 4])
+        command = drawn(choose)
+        # Unstable steps of central differences overflow; closed forms do not.
+        bounds.run([*command, "-o", "out.json"], [0, 2, 4] if "cem" in command else [0, 2])
     bounds.tell(f"and {options.scenes} drawn with seed {options.seed}")
     check.end(f"bounds, {check.count} checks")
 

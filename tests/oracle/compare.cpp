@@ -54,6 +54,7 @@ Events events_of(const Run& run) {
                               run.impacts->wall[i],
                               run.impacts->relative_velocity[i],
                               run.energy->impact_loss[i],
+                              run.impacts->displacement[i],
                               {}});
   for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
     events.contacts.push_back({run.contacts->begin[i], run.contacts->end[i], run.contacts->wall[i]});
@@ -350,6 +351,7 @@ Prediction predict(Question question, const Accuracy& accuracy) {
       if (both.mismatch && p.time >= *both.mismatch) break;
       result.growth.take(time_, p.time, (p.time - q.time) * per_rounding);
       result.growth.take(w_, p.time, (p.relative_velocity - q.relative_velocity) * per_rounding);
+      result.growth.take(x_, p.time, (p.displacement - q.displacement) * per_rounding);
       result.growth.take(loss_, p.time, (p.loss - q.loss) * per_rounding);
     }
     for (std::size_t i = 0; i < std::min(a.contacts.size(), b.contacts.size()); ++i) {
@@ -492,6 +494,9 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
                  met(p.time, rounding, p.relative_velocity));
     judge.number("relative velocity" + row_index(j), run.impacts->relative_velocity[j], p.relative_velocity,
                  predicted(w_, p.time));
+    // It goes on while the time errs.
+    judge.number("displacement" + row_index(j), run.impacts->displacement[j], p.displacement,
+                 predicted(x_, p.time) + size(v_, p.time) * met(p.time, rounding, p.relative_velocity));
     if (!both.mismatch) {
       const Quad speed = magnitude(p.relative_velocity);
       const Quad relative_to_loss = speed > 0 ? p.loss / speed : Quad(0);

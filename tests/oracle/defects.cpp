@@ -119,12 +119,14 @@ TEST_CASE("a slow strong force costs no digits") {
   }
 }
 
-TEST_CASE("extreme mass ratios that are allowed give finite numbers") {
-  for (const double nu : {5e-324, 1e-300, 1e-30, 1e6}) {
+TEST_CASE("extreme mass ratios are refused, or give finite numbers") {
+  Scene least;
+  least.mass_ratio = 5e-324, least.until_time = 10;
+  CHECK(!problems_of(least).empty());
+  for (const double nu : {1e-9, 1e6}) {
     CAPTURE(nu);
     Scene scene = scene_until(10);
     scene.mass_ratio = nu;
-    if (!problems_of(scene).empty()) continue;
     Record record;
     record.impacts = record.contacts = record.energy = true;
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})

@@ -302,7 +302,7 @@ class Integrator {
       return;
     }
     if (state_.w < 0) {
-      answer_.impacts.push_back({state_.t, wall(), side() * state_.w, 0, {}});
+      answer_.impacts.push_back({state_.t, wall(), side() * state_.w, 0, side() * state_.x, {}});
       of_impact_ = true;
     }
     regime_ = Regime::contact;
@@ -323,7 +323,7 @@ class Integrator {
     if (answer_.impacts.size() > chatter_begin_ && answer_.impacts.back().wall != wall())
       chatter_begin_ = answer_.impacts.size();
     const Quad loss = p_.nu * (1 - p_.e * p_.e) * speed * speed / (2 * (1 + p_.nu));
-    answer_.impacts.push_back({state_.t, wall(), side() * state_.w, loss, {}});
+    answer_.impacts.push_back({state_.t, wall(), side() * state_.w, loss, side() * state_.x, {}});
     // Relative speed w becomes -e w, v + nu (v + w) is kept.
     state_.v += p_.nu * state_.w * (1 + p_.e) / (1 + p_.nu);
     state_.w = p_.e * speed;

@@ -36,6 +36,7 @@ struct Impact {
   impact_damper::Wall wall;
   Quad relative_velocity;  // y' just before
   Quad loss;
+  Quad displacement;                 // x
   std::optional<Quad> accumulation;  // rigid walls: when the chattering that it belongs to is complete
 };
 

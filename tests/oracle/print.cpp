@@ -20,7 +20,8 @@ std::string lines_of(const Answer& answer) {
   };
   for (const Impact& each : answer.impacts)
     lines.push_back({each.time, std::string("impact ") + name(each.wall) + " speed " +
-                                    text(each.relative_velocity) + " loss " + text(each.loss, 12)});
+                                    text(each.relative_velocity) + " at x " + text(each.displacement) +
+                                    " loss " + text(each.loss, 12)});
   for (const Contact& each : answer.contacts) {
     lines.push_back({each.begin, std::string("contact begins, ") + name(each.wall)});
     lines.push_back({each.end, std::string("contact ends, ") + name(each.wall)});

@@ -73,7 +73,6 @@ Cem read_options(ObjectReader& object, Cem engine) {
     engine.large_step = step;
   object.required("unstable", engine.unstable);
   engine.calibration = read_calibration(object);
-  object.required("max_steps", engine.max_steps, at_least(1));
   return engine;
 }
 
@@ -89,6 +88,10 @@ Engine read_engine(ObjectReader& object) {
   std::visit(
       [&](auto& options) {
         options = read_options(object, options);
+        // Files of before it was an option of all engines have none: the default was what they were made
+        // with.
+        if (object.has("max_steps") || std::holds_alternative<Cem>(engine))
+          object.required("max_steps", options.max_steps, at_least(1));
         object.required("max_impacts", options.budget.max_impacts, at_least(0));
         object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
         if (double time = 0; object.required("max_time", time, NumberRange{0, 1e12, false}))

@@ -124,7 +124,6 @@ void write_options(Writer& out, const Cem& engine) {
   if (engine.large_step) out.field("large_step", engine.large_step);
   out.field("unstable", engine.unstable);
   out.field("calibration", name_of(engine.calibration));
-  out.field("max_steps", engine.max_steps);
 }
 
 void write(Writer& out, const Engine& engine) {
@@ -133,6 +132,7 @@ void write(Writer& out, const Engine& engine) {
   std::visit(
       [&](const auto& options) {
         write_options(out, options);
+        out.field("max_steps", options.max_steps);
         out.field("max_impacts", options.budget.max_impacts);
         out.field("max_half_cycles", options.budget.max_half_cycles);
         out.field("max_time", options.budget.max_time);
