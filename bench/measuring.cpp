@@ -74,8 +74,11 @@ TEST_CASE("the reference and long double agree where double is seen to differ") 
   if (reference_scalar() != "long double") {
     CHECK(*amplitude_error(long_double_amplitudes(tiny, Exact{}), reference) <= last_bits);
   }
-  CHECK(*amplitude_error(amplitudes(tiny, Exact{}), reference) > 0);
-  CHECK(*amplitude_error(amplitudes(tiny, Exact{}), reference) < 1e-11);
+  Scene longer = tiny;  // a few impacts may leave no error at all
+  longer.until_time = 100;
+  const double error = *amplitude_error(amplitudes(longer, Exact{}), reference_amplitudes(longer, Exact{}));
+  CHECK(error > 0);
+  CHECK(error < 1e-11);
   CHECK(*amplitude_error(amplitudes(tiny, Restitution{}), reference_amplitudes(tiny, Restitution{})) < 1e-11);
 }
 

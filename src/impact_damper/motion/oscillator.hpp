@@ -284,7 +284,7 @@ class Oscillator {
   ComplexResponse response_to_rotation(const Real& frequency, const Real& t,
                                        const Propagator<Real>& p) const {
     const Real square = frequency * frequency;
-    if (!underdamped_ && 2 * omega_ > a_) return respond_by_two_decays(frequency, t);
+    if (!underdamped_ && 2 * omega_ > a_ && t * rate_ > Real(0.5)) return respond_by_two_decays(frequency, t);
     const bool near_resonance = a_ * a_ * 2 < b_ && square * 2 > b_ && square < 2 * b_;
     return near_resonance ? respond_by_difference(frequency, t) : respond_by_steady_state(frequency, t, p);
   }
