@@ -63,8 +63,13 @@ plant("contact force clipped at zero" motion/contact.hpp
       std::optional<typename Rebound<Real>::End> end;"
       "    if (false) {
       std::optional<typename Rebound<Real>::End> end;"
-      "    return look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-                instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);"
+      "    Outlook<Real> ahead =
+        look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
+             instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
+    const ContactState<Real> s = sum_at(t);
+    ahead.whole.g = inward_ * s.q;
+    ahead.whole.g1 = inward_ * s.w;
+    return ahead;"
       "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                r = instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t);
     const auto force = [&](std::size_t n) -> Real {

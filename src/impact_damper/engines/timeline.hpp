@@ -152,8 +152,9 @@ class Timeline {
     Real no_turn_before = from;
     if (!may_turn && !may_cross) return duration;
     // A zero of x at the end of a motion, to rounding, is the next motion's: an impact there may throw x
-    // back, and by then x and x' tell whether it crosses.
-    const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (1 + duration);
+    // back, and by then x and x' tell whether it crosses. (docs/mathematics.md, section 2)
+    const Real at_speed = absolute(motion.at(Real(0)).x / end.v), scale = at_speed < 1 ? at_speed : Real(1);
+    const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (duration + scale);
     for (;;) {
       std::optional<Real> crossing;
       if (may_cross) crossing = motion.falls(0, side_, from, last, span_);

@@ -23,7 +23,7 @@ inline constexpr std::string_view run_schema = "impact-damper/run/1";
 inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
 // A file ends with these, and the digest between them.
-inline constexpr std::string_view seal_begin = ", \"sha256\": \"", seal_end = "\"}\n}\n";
+inline constexpr std::string_view seal_begin = R"(, "sha256": ")", seal_end = "\"}\n}\n";
 // `text`, the beginning of a file up to the last field of "provenance" but the digest, with these.
 std::string sealed(std::string text);
 

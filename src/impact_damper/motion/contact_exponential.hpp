@@ -35,9 +35,11 @@ class ContactExponential {
     while (shortest_ * rate_ > Real(0.5)) shortest_ /= 2;
     Matrix power = short_exponential();
     // Later than any run may last.
-    for (Real step = shortest_; step < Real(1e13); step *= 2) {
+    Real step = shortest_;
+    while (step < Real(1e13)) {
       powers_.push_back(rounded(power));
       power = product(power, power);
+      step *= 2;
     }
   }
 

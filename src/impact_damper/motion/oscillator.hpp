@@ -284,7 +284,8 @@ class Oscillator {
   ComplexResponse response_to_rotation(const Real& frequency, const Real& t,
                                        const Propagator<Real>& p) const {
     const Real square = frequency * frequency;
-    if (!underdamped_ && 2 * omega_ > a_ && t * rate_ > Real(0.5)) return respond_by_two_decays(frequency, t);
+    const bool well_overdamped = !underdamped_ && a_ < 2 * omega_, fast_has_decayed = Real(0.5) < t * rate_;
+    if (well_overdamped && fast_has_decayed) return respond_by_two_decays(frequency, t);
     const bool near_resonance = a_ * a_ * 2 < b_ && square * 2 > b_ && square < 2 * b_;
     return near_resonance ? respond_by_difference(frequency, t) : respond_by_steady_state(frequency, t, p);
   }
@@ -322,7 +323,7 @@ class Oscillator {
   // Well overdamped, eigenvalues -r1 (slow) and -r2: the same with two real eigenvalues. A slow force on a
   // slow decay is far below its steady state, so E comes from its series where it is short.
   ComplexResponse respond_by_two_decays(const Real& frequency, const Real& t) const {
-    const auto [sin, cos] = sin_cos(frequency * t);
+    const SinCos<Real> force = sin_cos(frequency * t);
     const Real half = sin_cos(frequency * t / 2).sin;
     const auto e = [&](const Real& rate) {
       // E = t exp(i omega_f t) phi(-z), phi(-z) = (1 - exp(-z))/z, z = (r + i omega_f) t.
@@ -332,9 +333,9 @@ class Oscillator {
         for (int n = last_short_term; n > 0; --n) phi = Complex(Real(1) / n) - z * phi * Complex(Real(1) / n);
       } else {
         const Real decay = exponential(Real(-rate * t)), loss = -exponential_minus_1(Real(-rate * t));
-        phi = Complex(loss * cos + 2 * half * half, decay * sin) / z;
+        phi = Complex(loss * force.cos + 2 * half * half, decay * force.sin) / z;
       }
-      return Complex(t) * (Complex(cos, sin) * phi);
+      return Complex(t) * (Complex(force.cos, force.sin) * phi);
     };
     const Real fast_rate = slow_rate_ + 2 * omega_;
     const Complex slow = e(slow_rate_), fast = e(fast_rate), apart(2 * omega_);
