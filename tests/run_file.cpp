@@ -202,8 +202,9 @@ TEST_CASE("any other byte makes another digest, which is told unless something p
                                                         {",\n \"end_time\"", ", \"end_time\""},
                                                         {"\"}\n}\n", "\"}\n}\n\n"},
                                                         {"\"}\n}\n", "\"}\n}"}}) {
-    CAPTURE(old);
-    CHECK(problems(replaced(text, old, by)) == Lines{other_digest});
+    const std::string changed = replaced(text, old, by);
+    CAPTURE(changed);
+    CHECK(problems(changed) == Lines{other_digest});
   }
   const std::string digest = text.substr(text.size() - seal_end.size() - 64, 64);
   CHECK(problems(replaced(text, digest, std::string(64, '0'))) == Lines{other_digest});
@@ -456,7 +457,8 @@ TEST_CASE("a run file says which program made it") {
                                    {"build_type", made_by.build_type},
                                    {"flags", made_by.flags},
                                    {"system", made_by.system}}) {
-    CAPTURE(key);
-    CHECK(text.find('"' + std::string(key) + "\": \"" + std::string(value) + '"') != text.npos);
+    const std::string entry = '"' + std::string(key) + "\": \"" + std::string(value) + '"';
+    CAPTURE(entry);
+    CHECK(text.find(entry) != text.npos);
   }
 }

@@ -286,7 +286,7 @@ class Oscillator {
     const Real square = frequency * frequency;
     const bool well_overdamped = !underdamped_ && a_ < 2 * omega_, fast_has_decayed = Real(0.5) < t * rate_;
     if (well_overdamped && fast_has_decayed) return respond_by_two_decays(frequency, t);
-    const bool near_resonance = a_ * a_ * 2 < b_ && square * 2 > b_ && square < 2 * b_;
+    const bool near_resonance = 2 * a_ * a_ < b_ && b_ < 2 * square && square < 2 * b_;
     return near_resonance ? respond_by_difference(frequency, t) : respond_by_steady_state(frequency, t, p);
   }
 
