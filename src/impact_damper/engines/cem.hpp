@@ -73,7 +73,8 @@ struct Arc {
     if (slope > 0) return bend < 0 ? std::clamp((slope + root) / -bend, Real(0), h) : h;
     return root > slope ? std::clamp(2 * g / (root - slope), Real(0), h) : Real(0);
   }
-  // Where in [from, to] its extremum lies, or the end nearest to it; `from` where rounding has `to` before it.
+  // Where in [from, to] its extremum lies, or the end nearest to it; `from` where rounding has `to` before
+  // it.
   Real extremum(const Real& from, const Real& to) const {
     return bend == 0 || !(from < to) ? from : std::clamp(-slope / bend, from, to);
   }
