@@ -53,11 +53,12 @@ class ContactExponential {
       s = apply(powers_[j - 1], s);
       t -= step;  // without rounding: t is between one and two steps
     }
+    const auto& over = reciprocals<Real>;
     Vector term = s, sum{};
     for (int n = 1; n <= terms; ++n) {
       term = derivative<Real>(term);
       for (std::size_t i = 0; i < 6; ++i) {
-        term[i] *= t * reciprocals<Real>[n];
+        term[i] *= t * over[n];
         sum[i] += term[i];
       }
     }
