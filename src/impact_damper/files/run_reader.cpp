@@ -260,7 +260,7 @@ Run read_run(const std::filesystem::path& file) {
   std::string text = read_text(file, run_kind);
   const bool sealed = is_sealed(text);
   JsonDocument document = JsonDocument::parse(file.string(), text);
-  text = {};  // its memory is as large as that of the columns
+  std::string().swap(text);  // its memory is as large as that of the columns
   return read_whole(std::move(document), sealed);
 }
 

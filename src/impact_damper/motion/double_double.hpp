@@ -6,7 +6,8 @@ namespace impact_damper {
 
 class DoubleDouble {
  public:
-  DoubleDouble(double value = 0) : high_(value) {}
+  DoubleDouble() = default;
+  explicit DoubleDouble(double value) : high_(value) {}
   explicit operator double() const { return high_; }
 
   friend DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
@@ -42,7 +43,7 @@ class DoubleDouble {
     return {product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2};
   }
 
-  double high_, low_ = 0;
+  double high_ = 0, low_ = 0;
 };
 
 // The type in which tables for results in Real are made.

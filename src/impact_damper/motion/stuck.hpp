@@ -29,8 +29,9 @@ class Stuck {
   std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) {
     // The push with which the mass was held is that of the flight before: a rounding error may leave none. To
     // look on from `from` > 0 would find the next time that it vanishes, a period later.
-    const auto x = swing_.beginning();
-    if (push_ * x[2] <= 0 && push_ * x[3] < 0) return from < horizon ? std::optional(from) : std::nullopt;
+    const auto start = swing_.beginning();
+    const Real push = push_ * start[2], change_of_push = push_ * start[3];
+    if (push <= 0 && change_of_push < 0) return from < horizon ? std::optional(from) : std::nullopt;
     const auto released = swing_.falls(2, push_, from, horizon, span);
     if (released) turn_ = swing_.turn_before(*released);
     return released;
