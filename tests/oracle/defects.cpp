@@ -119,6 +119,24 @@ TEST_CASE("a slow strong force costs no digits") {
   }
 }
 
+TEST_CASE("a primary mass that hardly moves keeps its digits beside a fast secondary mass") {
+  Scene scene = scene_until(30);
+  scene.mass_ratio = 2.03876447225524e-06, scene.restitution = 0.08490110227207359;
+  scene.damping_ratio = 0.014532273441422536, scene.wall_stiffness = 259357231165.61456;
+  scene.x0 = 0, scene.y0 = 1.0000000991587372, scene.w0 = 0.03999293813379557;
+  agrees(scene, Exact{});
+}
+
+TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
+  Scene scene = scene_until(5);
+  scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;
+  scene.wall_stiffness = 415.90613257517964, scene.x0 = 0, scene.y0 = 1, scene.force_amplitude = -20;
+  agrees(scene, Cem{.locate = true});
+  scene.y0 = 0, scene.force_amplitude = 0.002282329681120003, scene.mass_ratio = 100;
+  scene.wall_stiffness = 24.87109110725685;
+  agrees(scene, Cem{.locate = true});
+}
+
 TEST_CASE("extreme mass ratios are refused, or give finite numbers") {
   Scene least;
   least.mass_ratio = 5e-324, least.until_time = 10;

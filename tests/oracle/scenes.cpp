@@ -58,7 +58,7 @@ Scene round_scene(std::uint64_t seed, bool rigid) {
   Random random(seed);
   Scene scene;
   const auto pick = [&](std::initializer_list<double> values) { return one_of(random, values); };
-  scene.mass_ratio = pick({1, 0.25, 4, 0.6, 0.02, 0.02, 0.1, 0.5, 2, 1e-6, 1.0 / 3});
+  scene.mass_ratio = pick({1, 0.25, 4, 0.6, 0.02, 0.02, 0.1, 0.5, 2, 2e-6, 1.0 / 3});
   const double nu = scene.mass_ratio, cos36 = std::numbers::phi / 2, cos72 = (std::numbers::phi - 1) / 2;
   scene.restitution = pick({0, 0, 1, std::exp(-std::numbers::pi * std::sqrt(nu)), 0.6, 0.5});
   scene.damping_ratio = pick({0, 0, 0, 0.5, std::sqrt(0.5), std::sqrt(0.75), cos36, cos72, 1,

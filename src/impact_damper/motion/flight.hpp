@@ -132,6 +132,12 @@ class Flight {
     const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk));
     return near < far ? near : far;
   }
+  // Whether the fourth power of a correction is nothing beside x and x', too, which may be far smaller than the
+  // secondary mass's motion.
+  static bool moves_x_by_series(const Derivatives<Real, 6>& u, const Real& shift, const Real& fourth) {
+    const Real shift_2 = shift * shift, second = absolute(u[2]), third = absolute(u[3]);
+    return fourth * (shift_2 * shift_2) <= 4 * std::numeric_limits<Real>::epsilon() * (second + third);
+  }
   // By both ends of a time h, or by those of its halves, and so on.
   template <std::size_t N>
   bool stays_between_walls(const Derivatives<Real, N>& from, const Real& begin,
@@ -178,7 +184,7 @@ class Flight {
         const auto u_there = derivatives_of_u<6>(there, begin + h);
         const bool across = there.u > Real(0.5);
         const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
-        if (close && absolute(shift) < h / 4) {
+        if (close && absolute(shift) < h / 4 && moves_x_by_series(u_there, shift, fourth)) {
           const auto [x1, v1] = moved<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
           return reached(across, h + shift, -away_ * x1, -away_ * v1,
                          moved(there.u, there.u1, u_there, shift).u1);
