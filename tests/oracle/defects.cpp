@@ -127,6 +127,14 @@ TEST_CASE("a primary mass that hardly moves keeps its digits beside a fast secon
   agrees(scene, Exact{});
 }
 
+TEST_CASE("a peak right after the begin of a contact keeps its digits") {
+  Scene scene = scene_until(1);
+  scene.mass_ratio = 1.7788661678010587, scene.restitution = 1, scene.wall_stiffness = 89.2598342685958;
+  scene.x0 = -3.687453826191783e-05, scene.y0 = 0.3651483031492725, scene.w0 = 70.34015778083854;
+  scene.force_amplitude = -0.004433160777043578, scene.force_frequency = 9.800182574312112;
+  agrees(scene, Exact{});
+}
+
 TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
   Scene scene = scene_until(5);
   scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;

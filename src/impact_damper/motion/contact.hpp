@@ -124,9 +124,13 @@ class Contact {
     return absolute(at(t).x);
   }
   Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
-    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-    return look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
-                instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t);
+    Outlook<Real> ahead = look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
+                               instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
+    // Early in a contact the parts of a small x' are large, and cancel.
+    if (order == 0) ahead.whole.g = sign * both.x;
+    if (order == 1) ahead.whole.g = sign * both.v;
+    return ahead;
   }
 
   // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
