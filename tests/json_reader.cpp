@@ -218,6 +218,26 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(nearest("x1", known) == "x0");
   CHECK(!nearest("omega", known));
   CHECK(!nearest("q", {"x"}));
+  CHECK(!nearest("q1", known));  // no letter of it is right
+}
+
+TEST_CASE("a symbol, or a part of a name, leads to the name") {
+  const std::vector<std::string_view> options{
+      "--x0", "--mass-ratio", "--force-amplitude", "--force-frequency", "--restitution", "--until-time"};
+  CHECK(nearest("--nu", options) == "--mass-ratio");
+  CHECK(nearest("-e", options) == "--restitution");
+  CHECK(nearest("--f0", options) == "--force-amplitude");
+  CHECK(nearest("--omega", options) == "--force-frequency");
+  CHECK(nearest("--until", options) == "--until-time");
+  CHECK(nearest("--fr", options) == std::nullopt);  // too short for a part
+  const std::vector<std::string_view> keys{
+      "mass", "secondary_mass", "exciting_force", "exciting_frequency", "contact_stiffness", "clearance"};
+  CHECK(nearest("force", keys) == "exciting_force");
+  CHECK(nearest("frequency", keys) == "exciting_frequency");
+  CHECK(nearest("m", keys) == "secondary_mass");
+  CHECK(nearest("M", keys) == "mass");
+  CHECK(nearest("k", keys) == "contact_stiffness");
+  CHECK(nearest("orce", keys) == std::nullopt);  // begins no part, and is near none
 }
 
 TEST_CASE("whatever stands in a file, a message is one line of UTF-8") {

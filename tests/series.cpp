@@ -386,6 +386,34 @@ TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts
                   std::domain_error);
 }
 
+TEST_CASE("a table as CSV has a row for each x of each curve, and empty cells for what there is not") {
+  const Table table{
+      .header = {"title"},
+      .blocks = {{.name = "curve-1",
+                  .columns = {{"a", "", {1, 2}}, {"b, \"c\"", "", {0.1, 0.25}}, {"d", "", {3, 1e-9}}},
+                  .gaps = {1}},
+                 {.name = "band",
+                  .columns = {{"a", "", {1}},
+                              {"least", "", {5}, Ordinate::low},
+                              {"16 releases", "", {7}, Ordinate::high}}},
+                 {.name = "spread",
+                  .columns = {{"a", "", {1}},
+                              {"least", "", {5}, Ordinate::low},
+                              {"most", "", {7}, Ordinate::high},
+                              {"middle", "", {6}}}}}};
+  CHECK(to_csv(table) ==
+        "block,curve,x,y,low,high\n"
+        "curve-1,\"b, \"\"c\"\"\",1,0.1,,\n"
+        "curve-1,\"b, \"\"c\"\"\",,,,\n"
+        "curve-1,\"b, \"\"c\"\"\",2,0.25,,\n"
+        "curve-1,d,1,3,,\n"
+        "curve-1,d,,,,\n"
+        "curve-1,d,2,1e-09,,\n"
+        "band,16 releases,1,,5,7\n"
+        "spread,middle,1,6,5,7\n");
+  CHECK_THROWS_AS(to_csv({.blocks = {{.name = "empty"}}}), std::domain_error);
+}
+
 // What follows holds every column of every table against numbers worked out on paper: mutation/outputs.py
 // sees to it that none is forgotten.
 

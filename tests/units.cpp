@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -146,4 +147,35 @@ TEST_CASE("no number in units that is admitted makes a scale of zero or infinity
       }
     }
   }
+}
+
+TEST_CASE("what one unit is in SI is worked out by hand") {
+  const SiUnits units = si_units_of(scales_of(mast()));
+  CHECK(units.length == near(0.01));
+  CHECK(units.time == near(0.05));
+  CHECK(units.velocity == near(0.2));
+  CHECK(units.mass == near(40));
+  CHECK(units.force == near(160));
+  CHECK(units.energy == near(1.6));
+}
+
+TEST_CASE("a mass outside its cavity and a heavy one are cautioned about, and nothing else is") {
+  Scene scene{.mass_ratio = 0.04, .wall_stiffness = 1e4, .x0 = 6, .y0 = 3};
+  REQUIRE(cautions_of(scene, {}).size() == 1);
+  // k q^2 / 2 = 1e4 * 2^2 / 2 in the wall, 6^2 / 2 in the spring
+  CHECK(cautions_of(scene, {})[0] ==
+        "the secondary mass begins 2 times the clearance outside its cavity, which reaches from 0 to 1 (y0 "
+        "is 3): a "
+        "compliant wall there holds an energy of 20000, beside 18 in the primary spring");
+  // The same by K epsilon^2 = 1.6 J and epsilon = 10 mm.
+  CHECK(cautions_of(scene, scales_of(mast()))[0] ==
+        "the secondary mass begins 20 mm outside its cavity, which reaches from 0 to 10 mm "
+        "(secondary_displacement is "
+        "30 mm): a compliant wall there holds an energy of 32000 J, beside 28.8 J in the primary spring");
+  scene.y0 = -0.5;
+  CHECK(cautions_of(scene, {})[0].starts_with("the secondary mass begins 0.5 times the clearance outside"));
+  scene.mass_ratio = 40;
+  REQUIRE(cautions_of(scene, {}).size() == 2);
+  CHECK(cautions_of(scene, {})[1] == "the secondary mass is 40 times as heavy as the primary mass");
+  for (const double y0 : {0.0, 0.5, 1.0}) CHECK(cautions_of({.mass_ratio = 1, .y0 = y0}, {}).empty());
 }

@@ -60,6 +60,16 @@ class Arguments {
   std::string problems_;
 };
 
+// --format: in which form a result is written.
+enum class Format { json, gnuplot, csv };
+std::string_view name_of(Format format);
+// Which of `offered` --format names, the first of them if it is not given. A name of an output that ends in
+// ".csv" or ".json" for what is another format is refused.
+Format format_of(Arguments& arguments, const std::optional<std::string>& output,
+                 std::initializer_list<Format> offered);
+// The same for a command whose output has one form: `what` it writes, "the verdicts as JSON".
+void refuse_csv_name(Arguments& arguments, const std::optional<std::string>& output, const std::string& what);
+
 // Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
 std::string swallowed_options(const CLI::App& command);
 

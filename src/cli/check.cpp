@@ -12,6 +12,7 @@
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/manifest.hpp"
 #include "impact_damper/paper/scene_runs.hpp"
+#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -26,12 +27,17 @@ void check_run(const fs::path& file, const fs::path& scenes) {
     require_scene(run, file, scene);
 }
 
+void check_scene(const std::string& file) {
+  const SceneFile scene = read_scene_file(file);
+  warn_of_cautions(file, scene.scene, scene.scales);
+}
+
 struct Reader {
   std::string_view kind;
   void (*read)(const std::string& file, const fs::path& scenes);
 };
 constexpr std::array<Reader, 5> readers{
-    {{"scene", [](const std::string& file, const fs::path&) { read_scene(file); }},
+    {{"scene", [](const std::string& file, const fs::path&) { check_scene(file); }},
      {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
      {"catalogue", [](const std::string& file, const fs::path&) { read_catalogue(file); }},
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},

@@ -80,6 +80,7 @@ std::string made_from(const Manifest& manifest, const Stamped& stamped) {
   text += labelled("stamp", {stamp_of(stamped)});
   text += labelled("picture", {shown});
   if (table) text += labelled("table", {table->content.file, "by the " + table->engine + " engine"});
+  if (figure.csv && table == figure.tables.data()) text += labelled("as CSV", {figure.csv->file});
   text += labelled("script", {figure.script.file});
   text += labelled(
       "SHA-256", {table ? table->content.sha256 + " of the table" : figure.script.sha256 + " of the script"});

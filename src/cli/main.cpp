@@ -5,16 +5,20 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/arithmetic.hpp"
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/provenance.hpp"
 #include "interruption.hpp"
 
@@ -42,14 +46,40 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
   std::string lines;
+  bool value_follows = false;
   for (const std::string& argument : program.remaining(true)) {
+    // What stands behind an unknown option is its value, if it is neither an option nor missing.
+    const bool is_option = argument.size() > 1 && argument[0] == '-' && !parse_number(argument);
+    if (std::exchange(value_follows, is_option && argument.find('=') == std::string::npos) && !is_option)
+      continue;
     const std::string name = argument.substr(0, argument.find('='));
     const bool stands_behind = std::find(known.begin(), known.end(), name) != known.end();  // a bare "--"
     const auto meant = stands_behind ? std::nullopt : nearest(name, known);
+    std::error_code unknown;
+    const bool is_scene = !meant && !is_option && std::count(known.begin(), known.end(), "--scene") > 0 &&
+                          std::filesystem::is_regular_file(argument, unknown);
     lines += (lines.empty() ? "" : "\n") + std::string("unknown argument ") + in_quotes(argument) +
-             (meant ? ", did you mean " + std::string(*meant) + "?" : "");
+             (meant      ? ", did you mean " + std::string(*meant) + "?"
+              : is_scene ? ", did you mean --scene " + cut(argument) + "?"
+                         : "");
   }
   return lines;
+}
+
+// The arguments, last first as the parser takes them; "help" and "help run" are "--help" and "run --help".
+std::vector<std::string> arguments_of(const CLI::App& program, int count, char** given) {
+  std::vector<std::string> arguments(given + std::min(count, 1), given + count);
+  if (!arguments.empty() && arguments[0] == "help") {
+    arguments.erase(arguments.begin());
+    const std::vector<const CLI::App*> commands = program.get_subcommands({});
+    const bool is_known =
+        arguments.empty() || std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
+          return command->get_name() == arguments[0];
+        });
+    if (is_known) arguments.emplace_back("--help");
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
 }
 
 }  // namespace
@@ -60,12 +90,12 @@ int main(int argc, char** argv) {
   CLI::App program{
       "The impact damped simple harmonic oscillator: simulate it, and hold the results against the paper.",
       "impact-damper"};
-  program.set_version_flag("--version", "impact-damper " + std::string(provenance().version) + " (" +
-                                            std::string(provenance().commit) + ")");
+  program.set_version_flag("-v,--version", "impact-damper " + std::string(provenance().version) + " (" +
+                                               std::string(provenance().commit) + ")");
   program.get_formatter()->column_width(36);
   program.require_subcommand(0, 1);
   program.footer(
-      "impact-damper SUBCOMMAND --help says more about each.\n\n"
+      "impact-damper SUBCOMMAND --help, or help SUBCOMMAND, says more about each.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not admitted, 3 an input file's content "
       "is\n"
       "not admitted, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
@@ -87,7 +117,7 @@ int main(int argc, char** argv) {
 
   try {
     try {
-      program.parse(argc, argv);
+      program.parse(arguments_of(program, argc, argv));
     } catch (const CLI::Success& asked_for_help_or_version) {
       std::ostringstream text;
       const int code = program.exit(asked_for_help_or_version, text);

@@ -49,6 +49,7 @@ int report(const CLI::App& app) {
   const auto output = arguments.file("--output"), figures = arguments.file("--figures");
   const std::string scene_name = arguments.text("--scene").value_or("");
   arguments.refuse_overwriting("--output", output, {scene_name});
+  refuse_csv_name(arguments, output, "a page of HTML; impact-damper run --format csv writes CSV");
   if (figures && !fs::is_directory(*figures))
     arguments.refuse("--figures", "must be an existing folder, got " + in_quotes(*figures));
   arguments.finish();
@@ -57,11 +58,13 @@ int report(const CLI::App& app) {
     if_interrupted_say(left_as_it_was(*output));
   }
   require_gnuplot();
+  warn_of_cautions("impact-damper report", file.scene, file.scales);
 
   const Subject subject{scene_name.empty() ? "a scene" : fs::path(scene_name).stem().string(),
                         file.description, file.scene, file.scales, engine};
   Progress progress = progress_on_stderr();
   const Findings findings = saying_options([&] { return examine(subject, ensemble, progress); });
+  warn_of_early_end("impact-damper report", findings.run, file.scales);
   const std::vector<Drawing> drawings = drawings_of(findings);
   std::map<std::string, std::string> svgs;
   {

@@ -16,6 +16,8 @@
 namespace impact_damper::cli {
 namespace {
 
+constexpr const char* program = "impact-damper run";
+
 void read_sections(Arguments& arguments, Record& record) {
   const std::optional<std::string> list = arguments.text("--record");
   if (!list) return;
@@ -44,45 +46,68 @@ void read_sections(Arguments& arguments, Record& record) {
   }
 }
 
-Record record_of(Arguments& arguments, const Scene& scene) {
+// What one unit of time and length is in the numbers of --history and --history-below: seconds and
+// millimetres beside a scene in units.
+struct Given {
+  double time = 1, length = 1;
+};
+
+Given given_in(const std::optional<Scales>& scales) {
+  return scales ? Given{scales->time(), scales->length} : Given{};
+}
+
+Record record_of(Arguments& arguments, const SceneFile& file) {
   Record record;
   read_sections(arguments, record);
   if (arguments.given("--history") && arguments.given("--history-below")) {
     arguments.refuse("--history", "either it or --history-below must be given, got both");
   }
+  const Given unit = given_in(file.scales);
+  const std::string seconds = file.scales ? " s" : "", millimetres = file.scales ? " mm" : "";
   double last = 0;
   for (const std::string& text : arguments.texts("--history")) {
     const std::optional<Triple> window = parse_triple(text);
-    if (!window || !(window->first >= last && window->second > window->first && window->second <= 1e12) ||
+    if (!window ||
+        !(window->first >= last && window->second > window->first && window->second <= 1e12 * unit.time) ||
         !(window->count >= 2 && window->count <= most_samples)) {
-      arguments.refuse("--history", "must be T0:T1:N with " + number_text(last) +
-                                        " <= T0 < T1 <= 1e12 and 2 to " + std::to_string(most_samples) +
-                                        " samples, got " + in_quotes(text));
+      arguments.refuse("--history", "must be T0:T1:N with " + number_text(last) + " <= T0 < T1 <= " +
+                                        number_text(1e12 * unit.time) + seconds + " and 2 to " +
+                                        std::to_string(most_samples) + " samples, got " + in_quotes(text));
       continue;
     }
-    if (scene.until_time && !(window->first <= *scene.until_time)) {
-      arguments.refuse("--history", "must begin before the end of the run, --until-time " +
-                                        number_text(*scene.until_time) + ", got " + in_quotes(text));
+    const std::optional<double> end = file.scene.until_time;
+    if (end && !(window->first / unit.time <= *end)) {
+      arguments.refuse("--history", "must begin before the end of the run, " +
+                                        (file.scales ? "at " + rounded_text(*end * unit.time, 6) + seconds
+                                                     : "--until-time " + number_text(*end)) +
+                                        ", got " + in_quotes(text));
     }
-    record.history.push_back({window->first, window->second, window->count});
+    record.history.push_back({window->first / unit.time, window->second / unit.time, window->count});
     last = window->second;
   }
-  double above_it = 1e12;
+  double above_it = 1e12 * unit.length;
   for (const std::string& text : arguments.texts("--history-below")) {
     const std::optional<Triple> window = parse_triple(text);
     if (!window ||
-        !(window->first > 0 && window->first < above_it && window->second > 0 && window->second <= 1e12) ||
+        !(window->first > 0 && window->first < above_it && window->second > 0 &&
+          window->second <= 1e12 * unit.time) ||
         !(window->count >= 2 && window->count <= most_samples)) {
-      arguments.refuse("--history-below", "must be A:LENGTH:N with 0 < A < " + number_text(above_it) +
-                                              ", 0 < LENGTH <= 1e12 and 2 to " +
-                                              std::to_string(most_samples) + " samples, got " +
-                                              in_quotes(text));
+      arguments.refuse("--history-below",
+                       "must be A:LENGTH:N with 0 < A < " + number_text(above_it) + millimetres +
+                           ", 0 < LENGTH <= " + number_text(1e12 * unit.time) + seconds + " and 2 to " +
+                           std::to_string(most_samples) + " samples, got " + in_quotes(text));
       continue;
     }
-    record.history_below.push_back({window->first, window->second, window->count});
+    record.history_below.push_back({window->first / unit.length, window->second / unit.time, window->count});
     above_it = window->first;
   }
   return record;
+}
+
+// CSV is one table: a run that is written so records one section, and no ledger.
+bool holds_one_table(const Record& record) {
+  const bool history = !record.history.empty() || !record.history_below.empty();
+  return !record.energy && int{record.half_cycles} + record.impacts + record.contacts + history == 1;
 }
 
 // The end of a run may not be known before it: what was asked for behind it is not there.
@@ -93,26 +118,44 @@ void warn_of_missing_samples(const Run& run, const Record& record) {
   for (const AmplitudeWindow& window : record.history_below) asked += window.count;
   const auto given = static_cast<std::int64_t>(run.history->time.size());
   if (given == asked) return;
-  std::cerr << "impact-damper run: warning: the run ended at " << number_text(run.end_time) << " ("
+  std::cerr << program << ": warning: the run ended at " << number_text(run.end_time) << " ("
             << name_of(run.stop_reason) << "): history has " << given << " of the " << asked
             << " samples asked for\n";
 }
 
 int run(const CLI::App& app) {
   Arguments arguments(app);
-  const Scene scene = scene_of(arguments).scene;
+  const SceneFile scene_file = scene_of(arguments);
+  const Scene& scene = scene_file.scene;
+  const std::optional<Scales>& scales = scene_file.scales;
   const Engine engine = engine_of(arguments);
-  const Record record = record_of(arguments, scene);
+  const Record record = record_of(arguments, scene_file);
   const std::optional<std::string> file = arguments.file("--output");
   arguments.refuse_overwriting("--output", file, {arguments.text("--scene").value_or("")});
+  const Format format = format_of(arguments, file, {Format::json, Format::csv});
+  const bool in_si = arguments.flag("--si");
+  if (format == Format::csv && !holds_one_table(record)) {
+    arguments.refuse(
+        "--format",
+        "csv is one table: record one of half_cycles, impacts, contacts and history, for instance by "
+        "--record impacts");
+  }
+  if (in_si && format != Format::csv)
+    arguments.refuse("--si",
+                     "is for --format csv; a run file is dimensionless, its units say what a unit is in SI");
+  if (in_si && !scales) arguments.refuse("--si", "needs a scene in units, by --scene");
   arguments.finish();
   if (file) {
     require_writable(*file);
     if_interrupted_say(left_as_it_was(*file));
   }
+  warn_of_cautions(program, scene, scales);
   const Run result = saying_options([&] { return simulate(scene, engine, record); });
+  warn_of_early_end(program, result, scales);
   warn_of_missing_samples(result, record);
-  const std::string text = run_text(result);
+  std::optional<SiUnits> units;
+  if (in_si) units = si_units_of(*scales);
+  const std::string text = format == Format::csv ? run_csv(result, units) : run_text(result, scales);
   if (file) {
     write_file(*file, text);
   } else {
@@ -129,15 +172,21 @@ void add_output_options(CLI::App& app) {
       "what to record, with commas between: half_cycles (default),\n"
       "impacts, contacts, energy, history");
   add("--history", "T0:T1:N",
-      "record the motion at N equally spaced times from T0 to T1, both\nincluded; may be repeated, in order "
-      "of time")
+      "record the motion at N equally spaced times from T0 to T1, both\nincluded, in seconds beside a scene "
+      "in units; may be repeated, in\norder of time")
       ->expected(1)
       ->take_all();
   add("--history-below", "A:LENGTH:N",
       "the same over LENGTH, from the end of the first half cycle below\n"
-      "amplitude A on; may be repeated, with descending A")
+      "amplitude A on, in seconds and mm beside a scene in units; may be\nrepeated, with descending A")
       ->expected(1)
       ->take_all();
+  add("--format", "NAME",
+      "json (default), a run file; or csv, the one section that is\n"
+      "recorded (half_cycles, impacts, contacts or history) as a table");
+  const std::string in_si =
+      "csv of a scene in units: columns in SI, as their names say (time_s,\namplitude_m)";
+  app.add_flag("--si", in_si)->group("Output");
   add("-o,--output", "FILE", "write the run there instead of to stdout");
 }
 
@@ -156,13 +205,18 @@ Command run_command(CLI::App& program) {
       "that moves the primary spring by the free travel. A scene file may be given in units instead:\n"
       "mass and secondary_mass in kg, stiffness in N/m, clearance in mm, with initial_displacement,\n"
       "until_millimetres and others; it is made dimensionless when it is read (all keys:\n"
-      "data/schema/scene.schema.json).\n\n"
+      "data/schema/scene.schema.json). Its run file is dimensionless as well, and says in \"units\" what\n"
+      "one unit of length, time, velocity, mass, force and energy is in SI; --format csv --si writes\n"
+      "the columns in SI.\n\n"
       "Examples:\n"
       "  impact-damper run --until-amplitude 0.1 -o run.json\n"
       "  impact-damper run --scene data/scenes/my.json --engine cem --time-step 1e-4 -o cem.json\n"
-      "  impact-damper run --until-time 50 --record impacts,energy --history 0:50:2001\n\n"
-      "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there and\n"
-      "says so in its stop_reason. Exit codes: 0 done, 2 the command line is not admitted, 3 the scene\n"
+      "  impact-damper run --until-time 50 --record impacts,energy --history 0:50:2001\n"
+      "  impact-damper run --scene data/examples/mast.json --record history --history 0:2:401 \\\n"
+      "    --format csv --si -o mast.csv\n\n"
+      "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there, and\n"
+      "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not admitted, 3 "
+      "the scene\n"
       "file's content is not admitted, 4 numerical failure, 5 the scene file cannot be read or\n"
       "the run cannot be written.");
   return {app, [app] { return run(*app); }};

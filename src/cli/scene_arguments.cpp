@@ -1,8 +1,10 @@
 #include "scene_arguments.hpp"
 
 #include <algorithm>
+#include <iostream>
 #include <sstream>
 
+#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/files/number_text.hpp"
 
 namespace impact_damper::cli {
@@ -116,6 +118,41 @@ Engine engine_of(Arguments& arguments) {
   return engine;
 }
 
+void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales) {
+  for (const std::string& caution : cautions_of(scene, scales))
+    std::cerr << command + ": warning: " + caution + '\n';
+}
+
+void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales) {
+  const auto warn = [&](const std::string& budget, const std::string& option) {
+    std::cerr << command + ": warning: the run ended early, at time " + rounded_text(run.end_time, 6) +
+                     (scales ? " (" + rounded_text(run.end_time * scales->time(), 6) + " s)" : "") +
+                     ": it had used up its " + budget + "; " + option + " raises that\n";
+  };
+  const Budget& budget =
+      std::visit([](const auto& engine) -> const Budget& { return engine.budget; }, run.engine);
+  switch (run.stop_reason) {
+    case StopReason::time:
+    case StopReason::amplitude:
+      return;
+    case StopReason::impact_budget:
+      return warn("budget of " + std::to_string(budget.max_impacts) + " impacts", "--max-impacts");
+    case StopReason::half_cycle_budget:
+      return warn("budget of " + std::to_string(budget.max_half_cycles) + " half cycles",
+                  "--max-half-cycles");
+    case StopReason::time_budget:
+      return warn("budget of time, " + rounded_text(*budget.max_time, 6), "--max-time");
+    case StopReason::step_budget:
+      break;
+  }
+  const std::int64_t steps = std::visit([](const auto& engine) { return engine.max_steps; }, run.engine);
+  warn("budget of " + std::to_string(steps) +
+           (std::holds_alternative<Cem>(run.engine)
+                ? " time steps"
+                : " steps of the searches for events and of the integrals of energy"),
+       "--max-steps");
+}
+
 void refuse_as_options(const std::invalid_argument& problems) {
   std::istringstream lines(problems.what());
   std::string text;
@@ -134,7 +171,7 @@ void add_scene_options(CLI::App& app) {
   };
   add("--scene", "FILE",
       "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; options given beside it win, "
-      "and are dimensionless");
+      "and those of the scene are\ndimensionless");
   const Scene defaults;
   for (const SceneField& field : scene_fields) {
     add(option_of(field.name), "X",

@@ -7,6 +7,7 @@
 #include "arguments.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/run.hpp"
 
 namespace impact_damper::cli {
 
@@ -17,6 +18,12 @@ void add_engine_options(CLI::App& app);
 // Throws InputError and IoError about the file.
 SceneFile scene_of(Arguments& arguments);
 Engine engine_of(Arguments& arguments);
+
+// A line on stderr, "COMMAND: warning: ...", for each of cautions_of() the scene.
+void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales);
+// The same for a run that was ended by one of its budgets and not by the stops of its scene: which budget,
+// where the run got to, and the option that raises it.
+void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
 // What simulate() refuses, naming fields, as a UsageError that names the options.
 [[noreturn]] void refuse_as_options(const std::invalid_argument& problems);

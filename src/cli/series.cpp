@@ -72,6 +72,7 @@ int make_tables(Arguments arguments) {
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
   const auto output = arguments.file("--output");
+  const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
   const Threads threads = threads_of(arguments);
   const std::string catalogue_file = arguments.file("--catalogue").value_or("figures/catalogue.json");
   const Catalogue catalogue = read_catalogue(catalogue_file);
@@ -88,7 +89,8 @@ int make_tables(Arguments arguments) {
   if (output && !into_folder) require_writable(*output);
 
   const auto place_of = [&](const Figure& figure) {
-    return into_folder ? fs::path(*output) / (file_stem(figure) + ".dat") : fs::path(*output);
+    return into_folder ? fs::path(*output) / (file_stem(figure) + (format == Format::csv ? ".csv" : ".dat"))
+                       : fs::path(*output);
   };
   if (output) {
     for (const Figure* figure : figures) require_writable(place_of(*figure));
@@ -102,7 +104,8 @@ int make_tables(Arguments arguments) {
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
     load(*figure, folders, runs);
-    const std::string text = to_text(figure_table(*figure, runs, threads));
+    const Table table = figure_table(*figure, runs, threads);
+    const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     if (!output) {
       write_standard_output(text);
     } else {
@@ -124,17 +127,24 @@ Command series_command(CLI::App& program) {
       ->type_name("NUMBER")
       ->expected(1)
       ->take_all();
-  app->add_option("-o,--output", "file, or folder for figNN.dat; default standard output")
+  app->add_option("-o,--output", "file, or folder for figNN.dat or figNN.csv; default standard output")
       ->type_name("PLACE");
+  app->add_option("--format", "gnuplot (default), what the figures are drawn from, or csv")
+      ->type_name("NAME");
   add_threads_option(*app);
   app->footer(
       "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
       "numbers.\n"
+      "With --format csv the same numbers are tidy CSV (RFC 4180, lines end with LF) under\n"
+      "block,curve,x,y,low,high: a row for each x of each curve; low and high are the ends of an interval, "
+      "an\n"
+      "empty cell is no number, a row without numbers interrupts the line.\n"
       "A run that is missing, too short, altered, of another scene or of another engine than the others is\n"
       "refused with the figure's and the file's name.\n\n"
       "Examples:\n"
       "  impact-damper series --runs build/runs/exact --figure 8\n"
-      "  impact-damper series --runs build/runs/exact -o build/series/exact");
+      "  impact-damper series --runs build/runs/exact -o build/series/exact\n"
+      "  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv");
   return {app, [app] { return make_tables(Arguments(*app)); }};
 }
 

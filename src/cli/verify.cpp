@@ -185,6 +185,7 @@ int verify(Arguments arguments) {
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
+  refuse_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
   if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
     arguments.refuse("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));

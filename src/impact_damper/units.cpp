@@ -63,6 +63,11 @@ double Scales::force() const { return stiffness * (length * metres); }
 double Scales::energy() const { return force() * (length * metres); }
 double Scales::damping() const { return 2 * std::sqrt(stiffness * mass); }
 
+SiUnits si_units_of(const Scales& scales) {
+  const double length = scales.length * metres;
+  return {length, scales.time(), length / scales.time(), scales.mass, scales.force(), scales.energy()};
+}
+
 std::vector<Problem> problems_of(const SceneInUnits& scene) {
   std::vector<Problem> problems;
   for (const auto* needed : {"mass", "stiffness", "secondary_mass", "clearance"}) {

@@ -31,6 +31,29 @@ struct Scales {
   bool operator==(const Scales&) const = default;
 };
 
+// The same in SI: what a run of a scene in units says of its columns.
+struct SiUnits {
+  double length;    // epsilon, m
+  double time;      // 1/Omega_n, s
+  double velocity;  // epsilon Omega_n, m/s
+  double mass;      // M, kg
+  double force;     // K epsilon, N
+  double energy;    // K epsilon^2, J
+};
+SiUnits si_units_of(const Scales& scales);
+
+// Each of them under its key in a run file.
+struct SiUnit {
+  std::string_view name;
+  double SiUnits::*member;
+};
+inline constexpr std::array<SiUnit, 6> si_units{{{"length_m", &SiUnits::length},
+                                                 {"time_s", &SiUnits::time},
+                                                 {"velocity_m_per_s", &SiUnits::velocity},
+                                                 {"mass_kg", &SiUnits::mass},
+                                                 {"force_N", &SiUnits::force},
+                                                 {"energy_J", &SiUnits::energy}}};
+
 // Every number that may be given; absent ones have the default that its comment names.
 struct SceneInUnits {
   std::optional<double> mass, stiffness, secondary_mass, clearance;  // kg, N/m, kg, mm: all needed

@@ -65,7 +65,8 @@ def listed_problems(folder: Path) -> list:
     manifest = json.loads((folder / "data/reference/manifest.json").read_text())
     found, count = [], 0
     for figure in manifest["figures"]:
-        for each in [*figure["scenes"], *figure["tables"], figure["script"], figure["picture"]]:
+        for each in [*figure["scenes"], *figure["tables"], *filter(None, [figure.get("csv")]), figure["script"],
+                     figure["picture"]]:
             if each["file"].startswith("build/"):
                 continue  # to be made: make figures ENGINE=...
             count += 1

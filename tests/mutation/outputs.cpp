@@ -44,12 +44,14 @@ Run full_run(const Engine& engine) {
 
 // Has the file's text no member of Run behind it, or one that everything else follows from?
 bool in_file_only(const std::string& key) {
-  return key == "schema" || key == "engine.name" || key.starts_with("provenance.") || key.ends_with("total");
+  return key == "schema" || key == "engine.name" || key.starts_with("provenance.") ||
+         key.starts_with("units.") || key.ends_with("total");
 }
 
 bool list_run(const Run& run) {
   bool all_known = true;
-  const std::string text = run_text(run);
+  constexpr Scales scales{.mass = 40, .stiffness = 16000, .length = 10};
+  const std::string text = run_text(run, scales);
   const std::string engine(name_of(run.engine));
   const auto visit = [&](auto& self, const nlohmann::json& value, const std::string& key) -> void {
     if (value.is_object()) {
@@ -66,7 +68,7 @@ bool list_run(const Run& run) {
         all_known = false;
         return;
       }
-      if (in_run && run_text(altered) != text) {
+      if (in_run && run_text(altered, scales) != text) {
         outputs[engine + '/' + key].insert(kind);
         outputs["read/" + key].insert(kind);
       }

@@ -266,7 +266,9 @@ Result with_fault(std::string_view where, Result result, const std::string& abov
 WRAPPED(Run, simulate, SIMULATE, const Scene& scene, const Engine& engine, const Record& record) {
   return with_fault(name_of(engine), real_simulate(scene, engine, record));
 }
-WRAPPED(std::string, run_text, RUN_TEXT, const Run& run) { return with_fault("file", real_run_text(run)); }
+WRAPPED(std::string, run_text, RUN_TEXT, const Run& run, const std::optional<Scales>& scales) {
+  return with_fault("file", real_run_text(run, scales));
+}
 WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file) {
   return with_fault("read", real_read_run(file));
 }

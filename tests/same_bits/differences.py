@@ -3,7 +3,7 @@
 
     differences.py ONE OTHER        two files, or two folders of them; exit code 1 if any two differ
 
-Results are run files (*.json, all but their provenance), tables (*.dat) and pictures (*.svg). Bytes are compared
+Results are run files (*.json, all but their provenance), tables (*.dat, *.csv) and pictures (*.svg). Bytes are compared
 first. Where they differ, three things are told: what the first differing byte belongs to, how many numbers differ,
 and the worst of them with the digits that the two values have in common. Digits count from the largest magnitude
 in the column: where a motion passes through zero, the last bits of its amplitude are no loss of digits.
@@ -155,7 +155,7 @@ def names_in(*folders: str) -> list:
     for folder in folders:
         for place, _, files in os.walk(folder):
             found |= {os.path.relpath(os.path.join(place, file), folder)
-                      for file in files if file.endswith((".json", ".dat", ".svg"))}
+                      for file in files if file.endswith((".json", ".dat", ".csv", ".svg"))}
     return sorted(found)
 
 

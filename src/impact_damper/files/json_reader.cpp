@@ -328,7 +328,12 @@ std::optional<std::size_t> ObjectReader::word(std::string_view key,
     if (value->is_string() && value->get_ref<const std::string&>() == words[i]) return i;
     list += (i == 0 ? "" : ", ") + in_quotes(words[i]);
   }
-  refuse(key, "must be one of " + list + ", got " + described(*value));
+  constexpr std::size_t at_a_glance = 10;
+  const auto meant = value->is_string() && words.size() > at_a_glance
+                         ? nearest(value->get_ref<const std::string&>(), words)
+                         : std::nullopt;
+  refuse(key, meant ? "unknown, did you mean " + in_quotes(*meant) + "? Got " + described(*value)
+                    : "must be one of " + list + ", got " + described(*value));
   return std::nullopt;
 }
 

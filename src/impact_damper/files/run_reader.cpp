@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "impact_damper/engines/cem.hpp"
@@ -185,6 +186,25 @@ History read_history(ObjectReader object) {
   return history;
 }
 
+// Six numbers of three scales: they must go together.
+void check_units(ObjectReader object) {
+  SiUnits units{};
+  bool all_read = true;
+  for (const SiUnit& unit : si_units)
+    all_read = object.required(unit.name, units.*unit.member, above(0)) && all_read;
+  if (!all_read) return;
+  const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
+    constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
+    if (std::abs(given - wanted) <= rounding * std::abs(wanted)) return;
+    object.refuse(
+        name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
+  };
+  must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
+  must_be("energy_J", units.energy, units.mass * units.velocity * units.velocity,
+          "mass_kg times velocity_m_per_s squared");
+  must_be("force_N", units.force, units.energy / units.length, "energy_J divided by length_m");
+}
+
 // Every field of a run file's scene is there, absent stops as null.
 Scene read_full_scene(ObjectReader& object) {
   for (const SceneField& field : scene_fields) object.require(field.name);
@@ -227,6 +247,7 @@ Run read_whole(JsonDocument document, bool sealed) {
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
                    StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
   object.required("end_time", run.end_time, at_least(0));
+  if (const auto section = object.optional_object("units")) check_units(*section);
   if (const auto section = object.optional_object("half_cycles"))
     run.half_cycles = read_half_cycles(*section);
   if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section);

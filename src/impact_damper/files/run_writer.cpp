@@ -204,6 +204,12 @@ void write(Writer& out, const History& history) {
   out.close();
 }
 
+void write(Writer& out, const SiUnits& units) {
+  out.open("units", Layout::one_line);
+  for (const SiUnit& unit : si_units) out.field(unit.name, units.*unit.member);
+  out.close();
+}
+
 void write(Writer& out, const Provenance& made_by) {
   out.open("provenance", Layout::one_line);
   out.field("version", made_by.version);
@@ -221,7 +227,7 @@ std::string sealed(std::string text) {
   return std::move(text) + std::string(seal_begin) + digest + std::string(seal_end);
 }
 
-std::string run_text(const Run& run) {
+std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   Writer out;
   out.open(Layout::lines);
   out.field("schema", run_schema);
@@ -229,6 +235,7 @@ std::string run_text(const Run& run) {
   write(out, run.engine);
   out.field("stop_reason", name_of(run.stop_reason));
   out.field("end_time", run.end_time);
+  if (scales) write(out, si_units_of(*scales));
   if (run.half_cycles) write(out, *run.half_cycles);
   if (run.impacts) write(out, *run.impacts);
   if (run.contacts) write(out, *run.contacts);

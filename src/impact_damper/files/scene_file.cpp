@@ -1,9 +1,11 @@
 #include "impact_damper/files/scene_file.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "impact_damper/files/number_text.hpp"
+#include "impact_damper/files/run_file.hpp"
 
 namespace impact_damper {
 namespace {
@@ -69,6 +71,18 @@ SceneFile read_whole(JsonDocument document) {
   return file;
 }
 
+// A run given for a scene would be a list of problems, or too long.
+void refuse_run(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return;  // a pipe is read once
+  constexpr std::size_t enough = 100;                            // the schema is the first key of a run
+  std::string head(enough, ' ');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(enough));
+  if (head.find('"' + std::string(run_schema) + '"') == std::string::npos) return;
+  throw InputError(
+      {file.string() + ": this is a run, must be a scene; the scene of a run is the object \"scene\" in it"});
+}
+
 }  // namespace
 
 Scene read_scene_fields(ObjectReader& object) {
@@ -85,6 +99,7 @@ Scene read_scene_fields(ObjectReader& object) {
 }
 
 SceneFile read_scene_file(const std::filesystem::path& file) {
+  refuse_run(file);
   return read_whole(JsonDocument::read(file, scene_kind));
 }
 

@@ -1,6 +1,7 @@
 #include "impact_damper/files/wording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,48 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+// An option or a key without what tells the two apart: "--mass-ratio" and "mass_ratio" are "mass_ratio".
+std::string bare(std::string_view word) {
+  word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
+  std::string name(word);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+// The symbols of docs/mathematics.md, and what they are called at the interface: dimensionless first, then in
+// units.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
+    {{"nu", "mass_ratio"},
+     {"e", "restitution"},
+     {"zeta", "damping_ratio"},
+     {"k", "wall_stiffness"},
+     {"k", "contact_stiffness"},
+     {"x", "x0"},
+     {"v", "v0"},
+     {"y", "y0"},
+     {"w", "w0"},
+     {"f0", "force_amplitude"},
+     {"f0", "exciting_force"},
+     {"F0", "exciting_force"},
+     {"omega_f", "force_frequency"},
+     {"omega_f", "exciting_frequency"},
+     {"omega", "force_frequency"},
+     {"omega", "exciting_frequency"},
+     {"M", "mass"},
+     {"m", "secondary_mass"},
+     {"K", "stiffness"},
+     {"C", "damping"},
+     {"epsilon", "clearance"},
+     {"gap", "clearance"},
+     {"h", "time_step"}}};
+
+// Whether `word` begins one of the parts of `name` that underscores divide: "force" in "exciting_force".
+bool begins_a_part(std::string_view word, std::string_view name) {
+  for (std::size_t at = name.find(word); at != std::string_view::npos; at = name.find(word, at + 1))
+    if (at == 0 || name[at - 1] == '_') return true;
+  return false;
 }
 
 // How many bytes the UTF-8 character at the front of `text` has; 0 if none stands there. Overlong forms and
@@ -72,16 +115,28 @@ std::string in_quotes(std::string_view text) { return '"' + cut(text) + '"'; }
 
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
   if (word.size() > 100) return std::nullopt;
+  const std::string asked = bare(word);
+  if (asked.empty()) return std::nullopt;
+  for (const auto& [symbol, name] : symbols) {
+    if (asked != symbol) continue;
+    for (const std::string_view candidate : known)
+      if (bare(candidate) == name) return candidate;
+  }
   std::optional<std::string_view> found;
-  // Two slips, or one in every three letters of a long word; farther words are not what was meant.
-  std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
+  // Two slips, or one in every three letters of a long word, but no more than half of a short one; farther
+  // words are not what was meant.
+  std::size_t best = std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1;
   for (const std::string_view candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance >= best || distance >= candidate.size()) continue;
+    const std::string name = bare(candidate);
+    const std::size_t distance = edit_distance(asked, name);
+    if (distance >= best || distance >= name.size()) continue;
     best = distance;
     found = candidate;
   }
-  return found;
+  if (found || asked.size() < 3) return found;
+  for (const std::string_view candidate : known)
+    if (begins_a_part(asked, bare(candidate))) return candidate;
+  return std::nullopt;
 }
 
 }  // namespace impact_damper

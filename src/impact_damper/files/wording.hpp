@@ -27,7 +27,9 @@ inline NumberRange above(double least) { return {least, std::numeric_limits<doub
 std::string cut(std::string_view text, std::size_t most = 60);
 std::string in_quotes(std::string_view text);  // cut, between double quotes
 
-// The word of `known` nearest to `word`, if it is near enough to be what was meant.
+// The word of `known` that was meant by `word`: what the symbol `word` stands for (nu: mass_ratio), else the
+// nearest if it is near enough, else the first of which `word` begins a part (force: exciting_force). Options
+// and keys count as the same, "--mass-ratio" as "mass_ratio". Absent if there is none.
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace impact_damper

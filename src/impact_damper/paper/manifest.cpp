@@ -55,6 +55,7 @@ void read_cited_figure(ObjectReader& item, CitedFigure& figure, const std::strin
     const bool in_order = table.require("engine") && table.word("engine", {engine});
     sums_are_read = read_cited_file(table, read.content) && in_order && sums_are_read;
   }
+  if (const auto csv = item.optional_object("csv")) read_cited_file(*csv, figure.csv.emplace());
   sums_are_read = read_cited_file(item.required_object("script"), figure.script) && sums_are_read;
   read_cited_file(item.required_object("picture"), figure.picture);
   item.required("claims", figure.claims, a_name, std::size_t{100});

@@ -9,6 +9,7 @@
 //                 "tables": [{"engine": "exact", "file": "data/reference/series/fig08.dat", "sha256":
 //                 "1a2b3c4d..."},
 //                            {"engine": "restitution", ...}, {"engine": "cem", ...}],
+//                 "csv": {"file": "data/reference/series/fig08.csv", "sha256": "..."},
 //                 "script": {"file": "figures/fig08.gp", "sha256": "..."},
 //                 "picture": {"file": "data/reference/figures/fig08.svg", "sha256": "..."},
 //                 "claims": ["..."]}]}
@@ -43,6 +44,7 @@ struct CitedFigure {
   std::vector<CitedFile> scenes;
   std::vector<CitedTable>
       tables;  // none for a drawing; else the exact engine's, which the picture shows, first
+  std::optional<CitedFile> csv;  // that table once more, as CSV; none in a manifest of before there was one
   CitedFile script, picture;
   std::vector<std::string> claims;
 };

@@ -130,8 +130,8 @@ void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& r
       .notes = {count + " releases of scene " + curve.scene + ", x0 shifted by up to " +
                 std::to_string(options.most_steps) + " times " + number_text(options.step) + " of it"},
       .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
-                  {"least", "ordinate of the ensemble", {}},
-                  {count + " releases", "greatest ordinate", {}}}};
+                  {"least", "ordinate of the ensemble", {}, Ordinate::low},
+                  {count + " releases", "greatest ordinate", {}, Ordinate::high}}};
   const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
   const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
   // From the largest amplitude down: each member is then walked through once, its row being the first that
@@ -216,8 +216,8 @@ void add_spread_block(const Figure& figure, Table& table) {
       {.name = "spread",
        .notes = {"middle, least and greatest ordinate of all curves over the amplitudes of its two rows"},
        .columns = {{"amplitude", "by epsilon", figure.range},
-                   {"least", "of all curves", {least, least}},
-                   {"most", "of all curves", {most, most}},
+                   {"least", "of all curves", {least, least}, Ordinate::low},
+                   {"most", "of all curves", {most, most}, Ordinate::high},
                    {legend, "half way between least and most", {middle, middle}}}});
 }
 

@@ -33,8 +33,8 @@ TableBlock stuck_block(const HalfCycles& rows, const StuckPhases& stuck) {
   TableBlock block{.name = "stuck",
                    .notes = {"an interval that runs on past the zero crossing is listed where it begins"},
                    .columns = {amplitude_column(),
-                               {"begin", "phase in degrees at which the mass sticks", {}},
-                               {"stuck", "phase at which it is released, 180 at most", {}}}};
+                               {"begin", "phase in degrees at which the mass sticks", {}, Ordinate::low},
+                               {"stuck", "phase at which it is released, 180 at most", {}, Ordinate::high}}};
   std::optional<std::size_t> last_row;
   std::size_t row = 0;
   for (std::size_t i = 0; i < stuck.amplitude.size(); ++i) {

@@ -47,6 +47,35 @@ void append(std::string& text, const TableBlock& block) {
   }
 }
 
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+const TableColumn* column_of(const TableBlock& block, Ordinate ordinate) {
+  const auto found = std::find_if(block.columns.begin() + 1, block.columns.end(),
+                                  [&](const TableColumn& column) { return column.is == ordinate; });
+  return found == block.columns.end() ? nullptr : &*found;
+}
+
+// The rows of one curve; each of the columns may be absent.
+void append_curve(std::string& text, const TableBlock& block, const std::string& curve, const TableColumn* y,
+                  const TableColumn* low, const TableColumn* high) {
+  const std::string names = csv_cell(block.name) + ',' + csv_cell(curve);
+  const TableColumn& x = block.columns[0];
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    if (std::ranges::binary_search(block.gaps, row)) text += names + ",,,,\n";
+    text += names;
+    for (const TableColumn* column : {&x, y, low, high}) {
+      text += ',';
+      if (column) append_number(text, column->values[row]);
+    }
+    text += '\n';
+  }
+}
+
 }  // namespace
 
 void check(const Table& table) {
@@ -58,6 +87,26 @@ std::string to_text(const Table& table) {
   std::string text;
   for (const std::string& line : table.header) text += "# " + line + "\n";
   for (const TableBlock& block : table.blocks) append(text, block);
+  return text;
+}
+
+std::string to_csv(const Table& table) {
+  check(table);
+  std::string text = "block,curve,x,y,low,high\n";
+  for (const TableBlock& block : table.blocks) {
+    const TableColumn *const low = column_of(block, Ordinate::low), *const high =
+                                                                        column_of(block, Ordinate::high);
+    const TableColumn* last = nullptr;
+    for (std::size_t c = 1; c < block.columns.size(); ++c)
+      if (block.columns[c].is == Ordinate::y) last = &block.columns[c];
+    for (std::size_t c = 1; c < block.columns.size(); ++c) {
+      const TableColumn& y = block.columns[c];
+      if (y.is != Ordinate::y) continue;
+      const bool bounded = &y == last;
+      append_curve(text, block, y.heading, &y, bounded ? low : nullptr, bounded ? high : nullptr);
+    }
+    if (!last && high) append_curve(text, block, high->heading, nullptr, low, high);
+  }
   return text;
 }
 

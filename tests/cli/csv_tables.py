@@ -1,0 +1,89 @@
+"""Each figure's table as CSV, read by Python's csv module, holds the numbers of the table that gnuplot reads.
+
+    csv_tables.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for runs and tables
+
+Both are read by their own rules: of the one the header, block names, quoted headings and blank lines, of the other
+rows of six cells. Numbers are compared as texts: both have every digit.
+"""
+import csv
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+# Columns that are ends of an interval at x, by block and number; all others are curves.
+ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
+ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
+GAP = ("", "", "", "")
+faults = []
+
+
+def run(*words):
+    subprocess.run([str(program), *map(str, words)], check=True, cwd=folder)
+
+
+def gnuplot_blocks(text):
+    """Name, headings and rows of each block; None where a blank line interrupts the rows."""
+    for part in text.split("\n\n\n")[1:]:
+        lines = part.rstrip("\n").split("\n")
+        body = [line for line in lines if not line.startswith("#")]
+        yield lines[0][2:], re.findall(r'"([^"]*)"', body[0]), [line.split(" ") if line else None for line in body[1:]]
+
+
+def wanted_rows(kind, name, headings, rows):
+    """(block, curve, x, y, low, high) of each row, in the order of the file."""
+    ends = {**ENDS, **(ENDS_OF_PHASES if kind == "phase" else {})}
+    family = re.sub(r"-\d+$", "", name)
+    role = {column: ends.get((family, column), "y") for column in range(2, len(headings) + 1)}
+    low, high = ([c for c in role if role[c] == end] for end in ("low", "high"))
+    curves = [c for c in role if role[c] == "y"]
+    for column in curves or high:
+        for row in rows:
+            if row is None:
+                yield (name, headings[column - 1], *GAP)
+                continue
+            beside = column == (curves or high)[-1]
+            yield (name, headings[column - 1], row[0], row[column - 1] if curves else "",
+                   row[low[0] - 1] if low and beside else "", row[high[0] - 1] if high and beside else "")
+
+
+shutil.rmtree(folder, ignore_errors=True)
+for name in ("runs", "tables"):
+    (folder / name).mkdir(parents=True)
+catalogue = json.loads((source / "figures/catalogue.json").read_text(encoding="utf-8"))
+for scene in catalogue["scenes"]:
+    windows = [f"--history-below={w['amplitude']}:{w['length']}:{w['count']}" for w in scene.get("history_below", [])]
+    run("run", "--scene", source / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]), *windows,
+        "-o", f"runs/{scene['scene']}.json")
+series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", "runs",
+          "-o", "tables"]
+run(*series)
+run(*series, "--format", "csv")
+
+seen = set()
+for figure in catalogue["figures"]:
+    if figure["table"] == "drawing":
+        continue
+    stem = "fig" + figure["figure"].zfill(2)
+    text = (folder / f"tables/{stem}.dat").read_text(encoding="utf-8")
+    wanted = [row for block in gnuplot_blocks(text) for row in wanted_rows(figure["table"], *block)]
+    with open(folder / f"tables/{stem}.csv", newline="", encoding="utf-8") as file:
+        header, *given = map(tuple, csv.reader(file))
+    if header != ("block", "curve", "x", "y", "low", "high"):
+        faults.append(f"{stem}.csv: its header is {header}")
+    if given != wanted:
+        at = next((i for i, pair in enumerate(zip(given, wanted)) if pair[0] != pair[1]), min(len(given), len(wanted)))
+        faults.append(f"{stem}.csv: {len(given)} rows, {len(wanted)} in {stem}.dat; the first that differs is number {at + 1}: "
+                      f"{given[at:at + 1]} and {wanted[at:at + 1]}")
+    for cells in given:
+        seen.add("".join("-" if cell == "" else "n" for cell in cells[2:]))
+        list(map(float, filter(None, cells[2:])))
+# Values, bands, a value with its band, gaps: each kind is there.
+if seen != {"nn--", "n-nn", "nnnn", "----"}:
+    faults.append(f"kinds of rows: {sorted(seen)}")
+for fault in faults:
+    print(fault[:600], file=sys.stderr)
+sys.exit(bool(faults))
