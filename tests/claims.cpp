@@ -68,7 +68,8 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") !=
         std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]")
-            .find("/claims/0/value: one of it, \"range\" and \"kind\" must be given, got both") != std::string::npos);
+            .find("/claims/0/value: one of it, \"range\" and \"kind\" must be given, got both") !=
+        std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [2, 1]").find("least <= most") != std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [null, null]").find("/claims/0/range") != std::string::npos);
   CHECK(complaint("0.01", "-0.01").find("/claims/0/tolerance") != std::string::npos);
@@ -202,32 +203,39 @@ TEST_CASE("a kind takes the place of value, tolerance and reason in a claim") {
   CHECK(claims[0].admitted.above == doctest::Approx(0.01));
   CHECK(complaint(stated, R"("kind": "approximate", "digits": ["0.15", "2"],)")
             .find("/claims/0/digits: must be 1 numbers as printed, got 2") != std::string::npos);
-  CHECK(complaint(stated, R"("kind": "number", "digits": ["2 pi"],)").find("/claims/0/digits: must be a number") !=
-        std::string::npos);
-  CHECK(complaint(stated, R"("kind": "aproximate", "digits": ["1"],)").find("/claims/0/kind: must be one of") !=
-        std::string::npos);
+  CHECK(complaint(stated, R"("kind": "number", "digits": ["2 pi"],)")
+            .find("/claims/0/digits: must be a number") != std::string::npos);
+  CHECK(
+      complaint(stated, R"("kind": "aproximate", "digits": ["1"],)").find("/claims/0/kind: must be one of") !=
+      std::string::npos);
   CHECK(complaint(stated, R"("kind": "number", "digits": ["1"], "tolerance": 1,)")
             .find("/claims/0/tolerance: unknown key") != std::string::npos);
 }
 
 TEST_CASE("our result is written in the words of the statement") {
-  const NamedSpreads spreads{{"", {0.5, 0.25, 1}}, {"upper", {4.64123, 4.64121, 4.64124}}, {"none", {0, 0, 0}}};
+  const NamedSpreads spreads{
+      {"", {0.5, 0.25, 1}}, {"upper", {4.64123, 4.64121, 4.64124}}, {"none", {0, 0, 0}}};
   CHECK(in_words("{}", spreads) == "0.5 (0.25 to 1)");
   CHECK(in_words("in {|%} of them", spreads) == "in 50 % (25 to 100 %) of them");
   CHECK(in_words("three in {|of 6}", spreads) == "three in 3 of 6 (2 of 6 to all 6)");
   CHECK(in_words("from {upper} down", spreads) == "from 4.641 down");
   CHECK(in_words("{none|count} contacts, {upper|count} rows", spreads) == "no contacts, 5 rows");
   CHECK(in_words("{}", {{"", {std::nan(""), std::nan(""), std::nan("")}}}) == "none");
+  CHECK(in_words("{}", {{"", {4.2, 4.1, INFINITY}}}) == "4.2 (4.1 to none)");
+  CHECK(in_words("{|%}", {{"", {-0.0, -0.0, 0.0}}}) == "0 %");
   CHECK_THROWS_AS(in_words("{lower}", spreads), std::invalid_argument);
   const std::string verdict = "\"verdict\": \"corrected\"";
-  const auto with = [&](const std::string& words) { return complaint(verdict, verdict + ", \"words\": " + words); };
+  const auto with = [&](const std::string& words) {
+    return complaint(verdict, verdict + ", \"words\": " + words);
+  };
   CHECK(with("\"{}\"").empty());
   CHECK(with("\"three\"").find("/claims/0/words: must show what is measured") != std::string::npos);
   CHECK(with("\"{\"").find("/claims/0/words: has a {") != std::string::npos);
   CHECK(with("\"{a}\"").find("/claims/0/words: must name a measure of \"also\"") != std::string::npos);
   CHECK(with("\"{|of 0}\"").find("behind the bar, got \"of 0\"") != std::string::npos);
   CHECK(with("\"{a}\", \"also\": {\"a\": {\"name\": \"step_limit\"}}").empty());
-  CHECK(with("\"{a}\", \"also\": {\"a\": {\"name\": \"step\"}}").find("/claims/0/also/a/name") != std::string::npos);
+  CHECK(with("\"{a}\", \"also\": {\"a\": {\"name\": \"step\"}}").find("/claims/0/also/a/name") !=
+        std::string::npos);
   CHECK(complaint(verdict, verdict + ", \"source\": \"theirs\"").find("/claims/0/source: must be one of") !=
         std::string::npos);
 }

@@ -136,8 +136,9 @@ TEST_CASE("the limits and the slips are what theory says they are") {
 }
 
 TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
-  // Stuck, nu x'' is the wall's force k q, and x'' = (f - x)/(1 + nu): the way of q during each lasting contact beside
-  // that of a free mass, x - x(0) - v(0) t. The wall's damper adds 2/omega_m, omega_m = 2000, in proportion.
+  // Stuck, nu x'' is the wall's force k q, and x'' = (f - x)/(1 + nu): the way of q during each lasting
+  // contact beside that of a free mass, x - x(0) - v(0) t. The wall's damper adds 2/omega_m, omega_m = 2000,
+  // in proportion.
   Scene scene;
   scene.mass_ratio = 0.25;
   scene.restitution = 0;
@@ -165,7 +166,8 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
     }
   }
   REQUIRE(flies > 1);
-  CHECK(value("stuck_drift", {{"mass_ratio", 0.25}}) == doctest::Approx(gives / flies).epsilon(3e-3).scale(0));
+  CHECK(value("stuck_drift", {{"mass_ratio", 0.25}}) ==
+        doctest::Approx(gives / flies).epsilon(3e-3).scale(0));
 }
 
 TEST_CASE("an ensemble is the run file and the same scene released otherwise") {

@@ -449,9 +449,12 @@ double ordinate_of(LossOrdinate which, const Scene& scene, double amplitude, dou
   return 0;
 }
 
-constexpr LossOrdinate ordinates[] = {LossOrdinate::eta, LossOrdinate::specific,
-                                      LossOrdinate::specific_secondary, LossOrdinate::amplitude_times,
-                                      LossOrdinate::by_restitution, LossOrdinate::carried};
+constexpr LossOrdinate ordinates[] = {LossOrdinate::eta,
+                                      LossOrdinate::specific,
+                                      LossOrdinate::specific_secondary,
+                                      LossOrdinate::amplitude_times,
+                                      LossOrdinate::by_restitution,
+                                      LossOrdinate::carried};
 
 const std::vector<double>& column(const TableBlock& block, std::size_t number) {
   REQUIRE(number <= block.columns.size());

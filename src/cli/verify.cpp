@@ -40,8 +40,7 @@ std::string brief(double value) { return rounded_text(value, 4); }
 std::string admitted_text(const Claim& claim) {
   const auto& [printed, below, above, reason] = claim.admitted;
   const auto& [least, most] = printed;
-  if (least && most && *least == *most)
-    return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
+  if (least && most && *least == *most) return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
   if (least && most) return brief(*least - below) + " to " + brief(*most + above);
   return least ? ">= " + brief(*least - below) : "<= " + brief(*most + above);
 }
@@ -53,7 +52,8 @@ std::size_t width(const std::string& text) {
 }
 
 std::string table_text(const std::vector<Verified>& all) {
-  std::vector<std::vector<std::string>> rows{{"claim", "paper", "admitted", "ours (median, extremes of the ensemble)", "verdict"}};
+  std::vector<std::vector<std::string>> rows{
+      {"claim", "paper", "admitted", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
     rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
@@ -93,7 +93,8 @@ std::string cell(std::string text) {  // of a Markdown table
 
 std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
   std::string text =
-      "| id | section | claim | paper | ours | admitted | because | verdict |\n|---|---|---|---|---|---|---|---|\n";
+      "| id | section | claim | paper | ours | admitted | because | verdict "
+      "|\n|---|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
@@ -133,7 +134,8 @@ std::string verdicts_text(const std::vector<Verified>& all) {
     text += separator;
     text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
             ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
-            ", \"words\": " + quoted(each.words) + ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
+            ", \"words\": " + quoted(each.words) +
+            ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
             ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
@@ -252,8 +254,10 @@ Command verify_command(CLI::App& program) {
   app->footer(
       "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
       "and extremes over an ensemble of minutely different releases), and the verdict on the median:\n"
-      "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if a verdict differs from the recorded one, either way. A run\n"
-      "that was altered, contradicts itself or is of another scene or engine than the others is refused.\n\n"
+      "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
+      "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
+      "is\n"
+      "of another scene or engine than the others is refused.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");

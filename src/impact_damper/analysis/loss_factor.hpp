@@ -45,8 +45,8 @@ inline double specific_secondary_loss(double eta, double damping_ratio, double m
   return (eta - 2 * damping_ratio) / mass_ratio;
 }
 
-// (eta - 2 zeta / (1 + nu)) / nu: the same where the primary mass carries the secondary along (docs/mathematics.md,
-// section 6).
+// (eta - 2 zeta / (1 + nu)) / nu: the same where the primary mass carries the secondary along
+// (docs/mathematics.md, section 6).
 inline double specific_carried_loss(double eta, double damping_ratio, double mass_ratio) {
   return (eta - 2 * damping_ratio / (1 + mass_ratio)) / mass_ratio;
 }

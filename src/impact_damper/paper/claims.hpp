@@ -18,8 +18,9 @@
 // that finds contact at whole steps, with its default step; locating touch and release it has no exceptions.
 //
 // A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
-// one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as "derived"
-// has an "explanation": no engine enters its number, which confirms a derivation and measures nothing.
+// one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as
+// "derived" has an "explanation": no engine enters its number, which confirms a derivation and measures
+// nothing.
 #pragma once
 
 #include <filesystem>
@@ -73,9 +74,9 @@ inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 
-// The verdict that `ours`, the median of an ensemble, gives: if it lies in the admitted interval widened by the
-// tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but lies in
-// the corrected interval; else not reproduced. NaN never agrees.
+// The verdict that `ours`, the median of an ensemble, gives: if it lies in the admitted interval widened by
+// the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
+// lies in the corrected interval; else not reproduced. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
 
 }  // namespace impact_damper

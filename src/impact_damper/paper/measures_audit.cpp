@@ -72,8 +72,8 @@ Spread impact_energy(const MeasureCall& call, bool with_wall) {
 Spread impact_energy_without_wall(Runs&, const MeasureCall& call) { return impact_energy(call, false); }
 Spread impact_energy_with_wall(Runs&, const MeasureCall& call) { return impact_energy(call, true); }
 
-// A forced plastic scene of heavy secondary mass between compliant walls, finely sampled. The engine knows no stuck
-// motion: a mass that sticks is a contact that lasts, and obeys the equations of contact.
+// A forced plastic scene of heavy secondary mass between compliant walls, finely sampled. The engine knows no
+// stuck motion: a mass that sticks is a contact that lasts, and obeys the equations of contact.
 Run stuck_run(const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");

@@ -365,7 +365,8 @@ std::vector<Measure> loss_measures() {
        1,
        {},
        smoothing_width_ratio,
-       "width of the peak of eta in ln A, at half its height, averaged over 18 half cycles, divided by that over "
+       "width of the peak of eta in ln A, at half its height, averaged over 18 half cycles, divided by that "
+       "over "
        "10"},
       {"single_impact_advantage",
        1,

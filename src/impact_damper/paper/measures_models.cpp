@@ -161,7 +161,8 @@ Spread contact_frequency(Runs&, const MeasureCall& call) {
   return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
 }
 
-// Run once more by its own engine, the wall sampled finely through the contact that its fastest impact begins.
+// Run once more by its own engine, the wall sampled finely through the contact that its fastest impact
+// begins.
 Spread wall_overlap(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [](const Run& run) {
     if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
@@ -182,8 +183,8 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary mass
-// that swings by a hundredth of the travel, its secondary mass out of reach.
+// Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary
+// mass that swings by a hundredth of the travel, its secondary mass out of reach.
 bool is_stable(double h) {
   Scene scene;
   scene.x0 = 0.01;
@@ -246,7 +247,8 @@ std::vector<Measure> model_measures() {
        1,
        {"from", "to"},
        mixed_share_ratio,
-       "share of the half cycles that belong to no regular window, divided by that of the restitution engine"},
+       "share of the half cycles that belong to no regular window, divided by that of the restitution "
+       "engine"},
       {"time_saved_percent",
        1,
        1,

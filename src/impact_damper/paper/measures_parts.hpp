@@ -18,9 +18,9 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The first
-// point is left out: row 0, which ran from the release and is less than a half cycle, is among the peaks it is
-// fitted to.
+// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The
+// first point is left out: row 0, which ran from the release and is less than a half cycle, is among the
+// peaks it is fitted to.
 Curve loss_curve(const Run& run, LossOrdinate which, double from = 0, double to = everywhere,
                  int half_cycles = 10);
 

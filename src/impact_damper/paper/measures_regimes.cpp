@@ -85,12 +85,13 @@ Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// What `find` says of the regular window of so many impacts that lies nearest to an amplitude. NaN if there is none.
+// What `find` says of the regular window of so many impacts that lies nearest to an amplitude. Infinite if
+// there is none: unlike NaN, that leaves the median over other members alone.
 template <class Find>
 Spread of_nearest_window(Runs& runs, const MeasureCall& call, Find find) {
   const double amplitude = number(call, "amplitude");
   return over_members(runs, call, [&](const Run& run) {
-    double least = infinity, found = std::nan("");
+    double least = infinity, found = infinity;
     for (const RegularWindow& window : regular_windows(run)) {
       if (static_cast<double>(window.impacts) != number(call, "impacts")) continue;
       const double distance = std::max({0.0, amplitude - window.upper, window.lower - amplitude});
@@ -296,8 +297,9 @@ std::vector<Measure> regime_measures() {
        1,
        {"impacts", "amplitude"},
        window_nearest,
-       "amplitude of a regular window of so many impacts that is nearest to the given one, which it is inside a "
-       "window"},
+       "amplitude of a regular window of so many impacts that is nearest to the given one, which it is "
+       "inside a "
+       "window; infinite if there is none"},
       {"window_upper", 1, 1, {"impacts", "amplitude"}, window_upper, "amplitude at which that window begins"},
       {"window_lower", 1, 1, {"impacts", "amplitude"}, window_lower, "amplitude at which it ends"},
       {"windows_in_order",

@@ -14,8 +14,8 @@ constexpr std::optional<double> none = std::nullopt;
 double value_of(const std::string& digits) {
   const auto value = parse_number(digits);
   if (!value || !last_digit(digits))
-    throw std::invalid_argument("must be a number as printed, digits with at most one point, got \"" + digits +
-                                "\"");
+    throw std::invalid_argument("must be a number as printed, digits with at most one point, got \"" +
+                                digits + "\"");
   return *value;
 }
 
@@ -35,13 +35,16 @@ const std::vector<PrintedKind>& printed_kinds() {
       {"all", 0, {1, 1}, "Every one, so a share of 1."},
       {"mostly", 0, {0.5, 1}, "More often than not, so a share of a half at least."},
       {"some", 0, {0.05, 0.95}, "Some but not all: a share of 5 to 95 percent."},
-      {"more", 0, {1, none}, "More than the other: a ratio above 1."},
-      {"less", 0, {none, 1}, "Less than the other: a ratio below 1."},
+      {"more", 0, {1.01, none}, "More than the other: a ratio above 1, by a percent at least."},
+      {"less", 0, {none, 0.99}, "Less than the other: a ratio below 1, by a percent at least."},
       {"rises", 0, {0, none}, "It rises: a slope above 0."},
       {"falls", 0, {none, 0}, "It falls: a slope below 0."},
       {"proportional", 0, {0.9, 1.1}, "Proportional: an exponent of 1, a tenth to either side."},
       {"nearly_one_curve", 0, {0, 10}, "Nearly one curve: a mean spread of a tenth."},
-      {"same_curve", 0, {0, 3}, "The same but for chaos, which moves curves by up to 1 percent: three times that."},
+      {"same_curve",
+       0,
+       {0, 3},
+       "The same but for chaos, which moves curves by up to 1 percent: three times that."},
       {"small", 0, {-0.1, 0.1}, "Small or close beside another: at most a tenth of it."},
       {"large_number", 0, {10, none}, "A large number: ten at least."},
       {"wide", 0, {3, none}, "A wide range: a factor of three at least, half a decade."},
@@ -56,8 +59,8 @@ std::optional<double> last_digit(std::string_view digits) {
   const std::size_t last =
       point == std::string_view::npos ? digits.find_last_not_of('0') : digits.find_last_not_of('.');
   if (digits.empty() || digits.find_first_not_of("0123456789.") != std::string_view::npos ||
-      digits.find_first_of("123456789") == std::string_view::npos || digits.find('.', point + 1) < digits.size() ||
-      !parse_number(digits))
+      digits.find_first_of("123456789") == std::string_view::npos ||
+      digits.find('.', point + 1) < digits.size() || !parse_number(digits))
     return std::nullopt;
   std::string unit(digits);
   for (std::size_t i = 0; i < unit.size(); ++i)

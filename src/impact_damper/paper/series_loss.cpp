@@ -223,14 +223,14 @@ void add_spread_block(const Figure& figure, Table& table) {
   const double percent = 100 * (most - middle) / middle;
   const std::string legend =
       number_text(std::round(middle * 1e3) / 1e3) + " ± " + number_text(std::round(percent)) + " %";
-  table.blocks.push_back(
-      {.name = "spread",
-       .notes = {"middle, least and greatest ordinate of all curves over the amplitudes of its two rows, but for each "
-                 "curve's first point, which the release enters"},
-       .columns = {{"amplitude", "by epsilon", figure.range},
-                   {"least", "of all curves", {least, least}},
-                   {"most", "of all curves", {most, most}},
-                   {legend, "half way between least and most", {middle, middle}}}});
+  table.blocks.push_back({.name = "spread",
+                          .notes = {"middle, least and greatest ordinate of all curves over the amplitudes "
+                                    "of its two rows, but for each "
+                                    "curve's first point, which the release enters"},
+                          .columns = {{"amplitude", "by epsilon", figure.range},
+                                      {"least", "of all curves", {least, least}},
+                                      {"most", "of all curves", {most, most}},
+                                      {legend, "half way between least and most", {middle, middle}}}});
 }
 
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,

@@ -38,14 +38,16 @@ std::string bracketed(const std::string& median, const std::string& low, const s
 }
 
 std::string with_digits(const Spread& spread, double factor, int digits, const std::string& unit) {
-  if (std::isnan(spread.median)) return "none";
-  const auto text = [&](double value) { return rounded_text(factor * value + 0.0, digits); };  // no -0
+  if (!std::isfinite(spread.median)) return "none";
+  const auto text = [&](double value) {
+    return std::isfinite(value) ? rounded_text(factor * value + 0.0, digits) : std::string("none");  // no -0
+  };
   return bracketed(text(spread.median), text(spread.low), text(spread.high), unit);
 }
 
 // A whole number: each of the three rounded to it.
 std::string counted(const Spread& spread, std::optional<std::int64_t> of) {
-  if (std::isnan(spread.median)) return "none";
+  if (!std::isfinite(spread.median)) return "none";
   const auto text = [&](double value) {
     const auto whole = static_cast<std::int64_t>(std::llround(of ? value * static_cast<double>(*of) : value));
     if (!of) return whole == 0 ? std::string("no") : std::to_string(whole);
