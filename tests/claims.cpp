@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "impact_damper/files/errors.hpp"
 #include "impact_damper/paper/measure_numbers.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/printed.hpp"
+#include "impact_damper/paper/words.hpp"
 
 using namespace impact_damper;
 
@@ -35,8 +38,7 @@ std::string complaint(const std::string& from, const std::string& to) {
 
 Claim claim_of(Interval admitted, double tolerance, std::optional<Interval> corrected = std::nullopt) {
   Claim claim;
-  claim.admitted = admitted;
-  claim.tolerance = tolerance;
+  claim.admitted = {.printed = admitted, .below = tolerance, .above = tolerance, .reason = "r"};
   claim.corrected = corrected;
   return claim;
 }
@@ -47,8 +49,8 @@ TEST_CASE("a claim is read as it is written") {
   const std::vector<Claim> claims = parse_claims("f", claims_text());
   REQUIRE(claims.size() == 1);
   CHECK(claims[0].id == "a");
-  CHECK(claims[0].admitted.least == 6.28);
-  CHECK(claims[0].admitted.most == 6.28);
+  CHECK(claims[0].admitted.printed.least == 6.28);
+  CHECK(claims[0].admitted.printed.most == 6.28);
   CHECK(claims[0].measure.name == "step_limit");
   CHECK(claims[0].corrected->most == 2.1);
   CHECK(claims[0].recorded == Verdict::corrected);
@@ -66,7 +68,8 @@ TEST_CASE("what is not admitted in a claim is named with its place") {
   CHECK(complaint("\"step_limit\"", "\"largest_loss\"").find("/claims/0/measure/scenes") !=
         std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"value\": 6.28, \"range\": [1, 2]")
-            .find("/claims/0/value: either it or \"range\" must be given, got both") != std::string::npos);
+            .find("/claims/0/value: one of it, \"range\" and \"kind\" must be given, got both") !=
+        std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [2, 1]").find("least <= most") != std::string::npos);
   CHECK(complaint("\"value\": 6.28", "\"range\": [null, null]").find("/claims/0/range") != std::string::npos);
   CHECK(complaint("0.01", "-0.01").find("/claims/0/tolerance") != std::string::npos);
@@ -129,6 +132,112 @@ TEST_CASE("the verdict follows from the value alone") {
   CHECK(judge(slip, 5.5) == Verdict::corrected);
   CHECK(judge(slip, 6.05) == Verdict::not_reproduced);
   CHECK(judge(slip, std::nan("")) == Verdict::not_reproduced);
+}
+
+TEST_CASE("a derivation that agrees is derived, not reproduced") {
+  Claim claim = claim_of({2, 2}, 0);
+  claim.recorded = Verdict::derived;
+  CHECK(judge(claim, 2) == Verdict::derived);
+  CHECK(judge(claim, 3) == Verdict::not_reproduced);
+  CHECK(name_of(Verdict::derived) == "derived");
+}
+
+TEST_CASE("the unit of a printed number's last digit is that of the last that counts") {
+  const std::pair<const char*, double> units[] = {{"0.339", 0.001}, {"5.0", 0.1}, {"31", 1}, {"10", 10},
+                                                  {"0.01", 0.01},   {"120", 10},  {"4.", 1}, {"0.10", 0.01},
+                                                  {".5", 0.1},      {"105", 1}};
+  for (const auto& [digits, unit] : units) {
+    CAPTURE(digits);
+    CHECK(last_digit(digits).value_or(-1) == unit);
+  }
+  for (const char* digits : {"", "-1", "1e-8", "0", "0.00", ".", "1.2.3", " 1", "2 pi"}) {
+    CAPTURE(digits);
+    CHECK_FALSE(last_digit(digits));
+  }
+}
+
+namespace {
+
+Admitted admitted(const std::string& name, const std::vector<std::string>& digits = {}) {
+  for (const PrintedKind& kind : printed_kinds())
+    if (kind.name == name) return admitted_by(kind, digits);
+  throw std::logic_error("no such kind");
+}
+
+}  // namespace
+
+TEST_CASE("what is printed decides the tolerance, by one rule") {
+  const auto least = [](const Admitted& a) { return *a.printed.least - a.below; };
+  const auto most = [](const Admitted& a) { return *a.printed.most + a.above; };
+  CHECK(least(admitted("number", {"0.339"})) == doctest::Approx(0.3385));
+  CHECK(most(admitted("number", {"0.339"})) == doctest::Approx(0.3395));
+  CHECK(most(admitted("number", {"31"})) == doctest::Approx(31.5));
+  CHECK(least(admitted("approximate", {"0.15"})) == doctest::Approx(0.14));
+  CHECK(most(admitted("approximate", {"5.0"})) == doctest::Approx(5.1));
+  CHECK(least(admitted("approximate", {"0.1"})) == doctest::Approx(0.05));  // not 0
+  CHECK(most(admitted("approximate", {"0.1"})) == doctest::Approx(0.15));
+  CHECK(least(admitted("range", {"0.05", "0.1"})) == doctest::Approx(0.04));
+  CHECK(most(admitted("range", {"0.05", "0.1"})) == doctest::Approx(0.15));
+  CHECK(least(admitted("at_least", {"6.0"})) == doctest::Approx(5.95));
+  CHECK_FALSE(admitted("at_least", {"6.0"}).printed.most);
+  CHECK(most(admitted("at_most", {"6.0"})) == doctest::Approx(6.05));
+  CHECK_FALSE(admitted("at_most", {"6.0"}).printed.least);
+  CHECK(least(admitted("count", {"6"})) == 6);
+  CHECK(most(admitted("count", {"6"})) == 6);
+  for (const PrintedKind& kind : printed_kinds()) {
+    CAPTURE(kind.name);
+    CHECK(!kind.reason.empty());
+    if (kind.digits == 0) CHECK((kind.interval.least || kind.interval.most));
+    CHECK_THROWS_AS(admitted_by(kind, {"1", "2", "3"}), std::invalid_argument);
+  }
+  CHECK_THROWS_AS(admitted("range", {"2", "1"}), std::invalid_argument);
+  CHECK_THROWS_AS(admitted("number", {"2 pi"}), std::invalid_argument);
+}
+
+TEST_CASE("a kind takes the place of value, tolerance and reason in a claim") {
+  const std::string stated = R"("value": 6.28, "tolerance": 0.01,
+     "reason": "r",)";
+  const std::vector<Claim> claims =
+      parse_claims("f", claims_text(stated, R"("kind": "approximate", "digits": ["0.15"],)"));
+  CHECK(claims[0].admitted.printed.least == 0.15);
+  CHECK(claims[0].admitted.above == doctest::Approx(0.01));
+  CHECK(complaint(stated, R"("kind": "approximate", "digits": ["0.15", "2"],)")
+            .find("/claims/0/digits: must be 1 numbers as printed, got 2") != std::string::npos);
+  CHECK(complaint(stated, R"("kind": "number", "digits": ["2 pi"],)")
+            .find("/claims/0/digits: must be a number") != std::string::npos);
+  CHECK(
+      complaint(stated, R"("kind": "aproximate", "digits": ["1"],)").find("/claims/0/kind: must be one of") !=
+      std::string::npos);
+  CHECK(complaint(stated, R"("kind": "number", "digits": ["1"], "tolerance": 1,)")
+            .find("/claims/0/tolerance: unknown key") != std::string::npos);
+}
+
+TEST_CASE("our result is written in the words of the statement") {
+  const NamedSpreads spreads{
+      {"", {0.5, 0.25, 1}}, {"upper", {4.64123, 4.64121, 4.64124}}, {"none", {0, 0, 0}}};
+  CHECK(in_words("{}", spreads) == "0.5 (0.25 to 1)");
+  CHECK(in_words("in {|%} of them", spreads) == "in 50 % (25 to 100 %) of them");
+  CHECK(in_words("three in {|of 6}", spreads) == "three in 3 of 6 (2 of 6 to all 6)");
+  CHECK(in_words("from {upper} down", spreads) == "from 4.641 down");
+  CHECK(in_words("{none|count} contacts, {upper|count} rows", spreads) == "no contacts, 5 rows");
+  CHECK(in_words("{}", {{"", {std::nan(""), std::nan(""), std::nan("")}}}) == "none");
+  CHECK(in_words("{}", {{"", {4.2, 4.1, INFINITY}}}) == "4.2 (4.1 to none)");
+  CHECK(in_words("{|%}", {{"", {-0.0, -0.0, 0.0}}}) == "0 %");
+  CHECK_THROWS_AS(in_words("{lower}", spreads), std::invalid_argument);
+  const std::string verdict = "\"verdict\": \"corrected\"";
+  const auto with = [&](const std::string& words) {
+    return complaint(verdict, verdict + ", \"words\": " + words);
+  };
+  CHECK(with("\"{}\"").empty());
+  CHECK(with("\"three\"").find("/claims/0/words: must show what is measured") != std::string::npos);
+  CHECK(with("\"{\"").find("/claims/0/words: has a {") != std::string::npos);
+  CHECK(with("\"{a}\"").find("/claims/0/words: must name a measure of \"also\"") != std::string::npos);
+  CHECK(with("\"{|of 0}\"").find("behind the bar, got \"of 0\"") != std::string::npos);
+  CHECK(with("\"{a}\", \"also\": {\"a\": {\"name\": \"step_limit\"}}").empty());
+  CHECK(with("\"{a}\", \"also\": {\"a\": {\"name\": \"step\"}}").find("/claims/0/also/a/name") !=
+        std::string::npos);
+  CHECK(complaint(verdict, verdict + ", \"source\": \"theirs\"").find("/claims/0/source: must be one of") !=
+        std::string::npos);
 }
 
 TEST_CASE("the project's own claims are admitted, and there are at least forty") {

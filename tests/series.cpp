@@ -215,6 +215,37 @@ TEST_CASE("the spread is half way between the least and the greatest ordinate of
   CHECK(spread.columns[3].heading == "0.3 ± 33 %");
 }
 
+TEST_CASE("the spread leaves out each curve's first point, which the release enters") {
+  // A A' is constant but for a release that stands out: with it the greatest ordinate would be larger.
+  Run run = exponential_decay(1e-3, 400);
+  run.scene.damping_ratio = 0;
+  for (std::size_t i = 0; i < 400; ++i) run.half_cycles->amplitude[i] = 6 - 0.01 * double(i);
+  run.half_cycles->amplitude[0] = 6.2;
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  figure.range = {2.5, 7};
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const TableBlock& spread = block(table, "spread");
+  CHECK(spread.columns[1].values[0] == doctest::Approx(2 * 0.01 / pi / 0.02));
+  CHECK(spread.columns[2].values[0] == doctest::Approx(2 * 0.01 / pi / 0.02));
+  CHECK(block(table, "curve-1").columns[1].values[0] > 1.1 * spread.columns[2].values[0]);
+}
+
+TEST_CASE("a second panel holds the same amplitudes with its own ordinate") {
+  Run run = exponential_decay(4e-3, 60);
+  run.scene.mass_ratio = 0.25;
+  Figure figure = loss_figure(LossOrdinate::amplitude_times);
+  CHECK_FALSE(has_block(figure_table(figure, {{"decay", {"decay.json", run}}}), "second-1"));
+  figure.second_ordinate = LossOrdinate::carried;
+  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const TableBlock &first = block(table, "curve-1"), &second = block(table, "second-1");
+  CHECK(second.columns[0].values == first.columns[0].values);
+  for (std::size_t i = 0; i < second.columns[0].values.size(); ++i) {
+    // 2 zeta - 2 zeta / 1.25 is left over, a fifth of 2 zeta.
+    const double a = second.columns[0].values[i];
+    CHECK(second.columns[1].values[i] - first.columns[1].values[i] == doctest::Approx(a * 0.2 * 8e-3 / 0.25));
+  }
+}
+
 TEST_CASE("points that average no peak before impact failure stand apart") {
   Run run = exponential_decay(1e-3, 60);
   run.scene.damping_ratio = 0;
@@ -440,13 +471,18 @@ double ordinate_of(LossOrdinate which, const Scene& scene, double amplitude, dou
       return amplitude * left / scene.mass_ratio;
     case LossOrdinate::by_restitution:
       return amplitude * left / scene.mass_ratio / (1 - scene.restitution);
+    case LossOrdinate::carried:
+      return amplitude * (eta - 2 * scene.damping_ratio / (1 + scene.mass_ratio)) / scene.mass_ratio;
   }
   return 0;
 }
 
-constexpr LossOrdinate ordinates[] = {LossOrdinate::eta, LossOrdinate::specific,
-                                      LossOrdinate::specific_secondary, LossOrdinate::amplitude_times,
-                                      LossOrdinate::by_restitution};
+constexpr LossOrdinate ordinates[] = {LossOrdinate::eta,
+                                      LossOrdinate::specific,
+                                      LossOrdinate::specific_secondary,
+                                      LossOrdinate::amplitude_times,
+                                      LossOrdinate::by_restitution,
+                                      LossOrdinate::carried};
 
 const std::vector<double>& column(const TableBlock& block, std::size_t number) {
   REQUIRE(number <= block.columns.size());

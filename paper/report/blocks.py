@@ -16,19 +16,10 @@ def latex(text: str) -> str:
     return "".join(LATEX.get(c, c) for c in text)
 
 
-def plain(value) -> str:
-    """A result in four digits, without markup."""
-    return "none" if value is None else f"{value:.4g}".replace("-", "−")
-
-
-def ours(told: dict) -> str:
-    spread = "" if told["low"] == told["high"] else f" ({plain(told['low'])} to {plain(told['high'])})"
-    return plain(told["ours"]) + spread
-
-
 def rows_of(values: Values, ids) -> list:
-    """Claim, statement, what the paper prints, what came out, verdict."""
-    return [(name, values.claims[name]["statement"], values.claims[name]["printed"], ours(values.verdicts[name]),
+    """Claim, statement, what the paper prints, what came out in the statement's terms, verdict."""
+    return [(name, values.claims[name]["statement"], values.claims[name]["printed"],
+             re.sub(r"(?<![\w^])-(?=\d)", "−", values.verdicts[name]["words"]),
              values.verdicts[name]["verdict"]) for name in ids]
 
 
@@ -70,7 +61,7 @@ class Html:
         values, figure = self.values, self.values.figures[number]
         svg = (values.build / f"figures/{stem_of(number)}.svg").read_text(encoding="utf-8")
         rows = "".join(
-            f"<tr><td>{escape(statement)}</td><td>{escape(paper)}</td><td>{ours}</td>"
+            f"<tr><td>{escape(statement)}</td><td>{escape(paper)}</td><td>{escape(ours)}</td>"
             f'<td class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
         return raw("html", f"""<figure class="plot" id="figure-{number}">
@@ -89,19 +80,19 @@ class Html:
 
     def claims(self) -> str:
         counts = {verdict: sum(v["verdict"] == verdict for v in self.values.verdicts.values())
-                  for verdict in ("reproduced", "not reproduced", "corrected")}
+                  for verdict in ("reproduced", "not reproduced", "corrected", "derived")}
         buttons = f'<button type="button" aria-pressed="true">all {sum(counts.values())}</button>' + "".join(
             f'<button type="button" aria-pressed="false" data-verdict="{verdict.replace(" ", "-")}">{count} {verdict}</button>'
             for verdict, count in counts.items())
         rows = "".join(
             f'<tr id="claim-{name}"><th scope="row"><code>{name}</code></th><td>{escape(self.values.claims[name]["section"])}</td>'
             f"<td>{escape(statement)}</td><td>{escape(paper)}</td>"
-            f"<td>{ours}</td>"
+            f"<td>{escape(ours)}</td>"
             f'<td class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for name, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("name", "where", "claim", "paper", "ours", "verdict"))
         return raw("html", f"""<div class="claims"><div class="switches" role="group" aria-label="Claims shown">{buttons}</div>
-<div class="wide" tabindex="0" role="region" aria-label="All claims"><table><caption>In brackets the extremes over an ensemble.</caption>
+<div class="wide" tabindex="0" role="region" aria-label="All claims"><table><caption>Ours is the median over an ensemble of minutely different releases, on which the verdict is; in brackets its extremes.</caption>
 <thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>""")
 
 
@@ -133,8 +124,8 @@ class Latex:
         return raw("latex", rf"\widepicture{{{file.stem}.pdf}}{{{latex(words)}}}")
 
     def claims(self) -> str:
-        rows = "\n".join(rf"\texttt{{{latex(name)}}} & {latex(paper)} & {latex(ours)} & {verdict} \\"
-                         for name, _, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
+        rows = "\n".join(rf"{latex(statement)} & {latex(paper)} & {latex(ours)} & {verdict} \\"
+                         for _, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
         return raw("latex", rf"\begin{{claimtable}}" + "\n" + rows + "\n" + r"\end{claimtable}")
 
 

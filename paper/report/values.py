@@ -3,7 +3,7 @@ counting, picking and comparing; all come from what the program made:
 
     CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
     CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict
-    count.claims, count.reproduced, count.not-reproduced, count.corrected
+    count.claims, count.reproduced, count.not-reproduced, count.corrected, count.derived
     scene.NAME.FIELD        a number of a scene, defaults among them; run.NAME.half_cycles, .impacts, .end_time
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
     figNN.BLOCK.N.peak      column N where column 2 is greatest
@@ -121,7 +121,7 @@ class Values:
             self.known |= {name: told["ours"], f"{name}.low": told["low"], f"{name}.high": told["high"],
                            f"{name}.paper": claim["printed"], f"{name}.verdict": told["verdict"]}
         self.known["count.claims"] = len(self.verdicts)
-        for verdict in ("reproduced", "not reproduced", "corrected"):
+        for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
             self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())
         for each in self.catalogue["scenes"]:
             run = read(build / f"runs/exact/{each['scene']}.json")

@@ -17,6 +17,7 @@
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/measures.hpp"
 #include "impact_damper/paper/scene_runs.hpp"
+#include "impact_damper/paper/words.hpp"
 #include "interruption.hpp"
 
 namespace impact_damper::cli {
@@ -27,33 +28,21 @@ namespace fs = std::filesystem;
 struct Verified {
   const Claim* claim;
   Spread ours;
+  std::string words;  // the same in the statement's terms
   Verdict verdict;
   Verdict recorded = Verdict::reproduced;
   bool as_recorded() const { return verdict == recorded; }
 };
 
 // Four significant digits, for people; the verdict file has all of them.
-std::string brief(double value) {
-  if (std::isnan(value)) return "none";
-  return rounded_text(value, 4);
-}
+std::string brief(double value) { return rounded_text(value, 4); }
 
 std::string admitted_text(const Claim& claim) {
-  const auto& [least, most] = claim.admitted;
-  std::string text;
-  if (least && most && *least == *most)
-    text = brief(*least);
-  else if (least && most)
-    text = brief(*least) + " to " + brief(*most);
-  else
-    text = least ? ">= " + brief(*least) : "<= " + brief(*most);
-  return claim.tolerance > 0 ? text + " +- " + brief(claim.tolerance) : text;
-}
-
-std::string ours_text(const Spread& ours) {
-  std::string median = brief(ours.median);
-  if (std::isnan(ours.median) || ours.low == ours.high) return median;
-  return median + " (" + brief(ours.low) + " to " + brief(ours.high) + ")";
+  const auto& [printed, below, above, reason] = claim.admitted;
+  const auto& [least, most] = printed;
+  if (least && most && *least == *most) return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
+  if (least && most) return brief(*least - below) + " to " + brief(*most + above);
+  return least ? ">= " + brief(*least - below) : "<= " + brief(*most + above);
 }
 
 // Characters, not bytes: claims are written in UTF-8.
@@ -63,9 +52,10 @@ std::size_t width(const std::string& text) {
 }
 
 std::string table_text(const std::vector<Verified>& all) {
-  std::vector<std::vector<std::string>> rows{{"claim", "paper", "admitted", "ours (ensemble)", "verdict"}};
+  std::vector<std::vector<std::string>> rows{
+      {"claim", "paper", "admitted", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
-    rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), ours_text(each.ours),
+    rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
                         (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
   std::vector<std::size_t> widths(rows.front().size());
@@ -83,13 +73,16 @@ std::string table_text(const std::vector<Verified>& all) {
 }
 
 std::string summary_text(const std::vector<Verified>& all) {
-  std::size_t count[3] = {}, changed = 0;
+  std::size_t count[4] = {}, changed = 0, our_own = 0;
   for (const Verified& each : all) {
     ++count[static_cast<std::size_t>(each.verdict)];
     changed += !each.as_recorded();
+    our_own += each.claim->source == Source::ours;
   }
   return std::to_string(all.size()) + " claims: " + std::to_string(count[0]) + " reproduced, " +
-         std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected; " +
+         std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected, " +
+         std::to_string(count[3]) + " derived; " +
+         (our_own > 0 ? std::to_string(our_own) + " of them are ours, not the paper's; " : "") +
          (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + "\n";
 }
 
@@ -100,12 +93,13 @@ std::string cell(std::string text) {  // of a Markdown table
 
 std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
   std::string text =
-      "| id | section | claim | paper | ours | admitted | verdict |\n|---|---|---|---|---|---|---|\n";
+      "| id | section | claim | paper | ours | admitted | because | verdict "
+      "|\n|---|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
-            cell(claim.printed) + " | " + ours_text(each.ours) + " | " + admitted_text(claim) + " | " +
-            std::string(name_of(each.verdict)) + " |\n";
+            cell(claim.printed) + " | " + cell(each.words) + " | " + admitted_text(claim) + " | " +
+            cell(claim.admitted.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {
@@ -115,7 +109,8 @@ std::string markdown_text(const std::vector<Verified>& all, const std::string& e
               otherwise->second.explanation + "\n";
     if (each.claim->explanation.empty()) continue;
     text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
-            each.claim->explanation + " Evidence: " + each.claim->evidence + "\n";
+            each.claim->explanation +
+            (each.claim->evidence.empty() ? "" : " Evidence: " + each.claim->evidence) + "\n";
   }
   return text;
 }
@@ -139,11 +134,18 @@ std::string verdicts_text(const std::vector<Verified>& all) {
     text += separator;
     text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
             ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
+            ", \"words\": " + quoted(each.words) +
             ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
             ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
   return text + "\n ]}\n";
+}
+
+std::set<std::string> scenes_of(const Claim& claim) {
+  std::set<std::string> scenes(claim.measure.scenes.begin(), claim.measure.scenes.end());
+  for (const auto& [name, call] : claim.also) scenes.insert(call.scenes.begin(), call.scenes.end());
+  return scenes;
 }
 
 // The figures may rest on no claim that does not exist.
@@ -167,7 +169,7 @@ void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
 // engine.
 void check_runs(const SceneRuns& folders, const std::vector<Claim>& claims) {
   std::set<std::string> scenes;
-  for (const Claim& claim : claims) scenes.insert(claim.measure.scenes.begin(), claim.measure.scenes.end());
+  for (const Claim& claim : claims) scenes.merge(scenes_of(claim));
   std::optional<Run> first;
   for (const std::string& scene : scenes) {
     Run run = folders.read(scene);
@@ -195,7 +197,7 @@ int verify(Arguments arguments) {
   if (catalogue) check_catalogue(*catalogue, claims);
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
-    for (const std::string& scene : claim.measure.scenes) inputs.push_back(folders.file_of(scene));
+    for (const std::string& scene : scenes_of(claim)) inputs.push_back(folders.file_of(scene));
   arguments.refuse_overwriting("--output", verdicts_file, inputs);
   arguments.refuse_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
@@ -217,8 +219,10 @@ int verify(Arguments arguments) {
       told = now;
     }
     try {
-      const Spread ours = measure(runs, claim.measure);
-      all.push_back({&claim, ours, judge(claim, ours.median)});
+      NamedSpreads spreads{{"", measure(runs, claim.measure)}};
+      for (const auto& [name, call] : claim.also) spreads[name] = measure(runs, call);
+      const Spread ours = spreads.at("");
+      all.push_back({&claim, ours, in_words(claim.words, spreads), judge(claim, ours.median)});
     } catch (const std::invalid_argument& problem) {
       throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
     }
@@ -250,9 +254,11 @@ Command verify_command(CLI::App& program) {
   add_threads_option(*app);
   app->footer(
       "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
-      "and extremes over an ensemble of minutely different releases), and the verdict: reproduced, not\n"
-      "reproduced, or corrected. Exit code 1 if a verdict differs from the recorded one, either way. A run\n"
-      "that was altered, contradicts itself or is of another scene or engine than the others is refused.\n\n"
+      "and extremes over an ensemble of minutely different releases), and the verdict on the median:\n"
+      "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
+      "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
+      "is\n"
+      "of another scene or engine than the others is refused.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");

@@ -111,7 +111,7 @@ def main():
 
     def wanting_more(text):
         claims = json.loads(text)
-        claims["claims"][0].update(value=9, verdict="not reproduced", explanation="planted", evidence="planted")
+        claims["claims"][0].update(digits=["9"], verdict="not reproduced", explanation="planted", evidence="planted")
         return json.dumps(claims)
     tree.edit("data/claims.json", wanting_more)
     text = tree.make("verify")

@@ -104,6 +104,10 @@ std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrd
       case LossOrdinate::by_restitution:
         y = loss_by_restitution(product, scene.restitution);
         break;
+      case LossOrdinate::carried:
+        y = amplitude_times_loss(loss.amplitude[i],
+                                 specific_carried_loss(loss.eta[i], scene.damping_ratio, scene.mass_ratio));
+        break;
     }
     column.push_back(y);
   }

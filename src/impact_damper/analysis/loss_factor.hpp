@@ -45,14 +45,21 @@ inline double specific_secondary_loss(double eta, double damping_ratio, double m
   return (eta - 2 * damping_ratio) / mass_ratio;
 }
 
+// (eta - 2 zeta / (1 + nu)) / nu: the same where the primary mass carries the secondary along
+// (docs/mathematics.md, section 6).
+inline double specific_carried_loss(double eta, double damping_ratio, double mass_ratio) {
+  return (eta - 2 * damping_ratio / (1 + mass_ratio)) / mass_ratio;
+}
+
 // A (eta - 2 zeta) / nu, and that by 1 - e (e < 1): the ordinates of Figures 12, 13 and 14.
 inline double amplitude_times_loss(double amplitude, double specific) { return amplitude * specific; }
 inline double loss_by_restitution(double ordinate, double restitution) {
   return ordinate / (1 - restitution);
 }
 
-// One of these ordinates for every row of `loss`, with the scene's nu, zeta and e.
-enum class LossOrdinate { eta, specific, specific_secondary, amplitude_times, by_restitution };
+// One of these ordinates for every row of `loss`, with the scene's nu, zeta and e; carried is
+// A (eta - 2 zeta / (1 + nu)) / nu.
+enum class LossOrdinate { eta, specific, specific_secondary, amplitude_times, by_restitution, carried };
 std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrdinate which);
 
 }  // namespace impact_damper

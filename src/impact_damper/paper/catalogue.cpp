@@ -12,6 +12,12 @@ namespace {
 
 constexpr TextRule a_number{1, 8, true};           // of a figure: its files are called after it
 constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
+constexpr auto ordinates = {LossOrdinate::eta,
+                            LossOrdinate::specific,
+                            LossOrdinate::specific_secondary,
+                            LossOrdinate::amplitude_times,
+                            LossOrdinate::by_restitution,
+                            LossOrdinate::carried};
 
 Record read_record(ObjectReader& scene) {
   Record record;
@@ -153,9 +159,9 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   figure.curves = read_curves(item, figure.table);
   if (figure.table == TableKind::loss_factor) {
     figure.ordinate = LossOrdinate::eta;
-    item.required("ordinate", *figure.ordinate,
-                  {LossOrdinate::eta, LossOrdinate::specific, LossOrdinate::specific_secondary,
-                   LossOrdinate::amplitude_times, LossOrdinate::by_restitution});
+    item.required("ordinate", *figure.ordinate, ordinates);
+    if (item.has("second_ordinate"))
+      item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta), ordinates);
     if (item.has("range") && item.optional("range", figure.range, amplitudes) &&
         !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
       item.refuse("range", "must be two amplitudes, the lower first, got " +
@@ -230,6 +236,8 @@ std::string_view name_of(LossOrdinate ordinate) {
       return "amplitude_times";
     case LossOrdinate::by_restitution:
       return "by_restitution";
+    case LossOrdinate::carried:
+      return "carried";
   }
   return "";
 }

@@ -54,11 +54,12 @@ struct Figure {
   std::string number;  // "1" ... "15", "A", "B"
   std::string title;
   TableKind table = TableKind::drawing;
-  std::vector<FigureCurve> curves;       // one for motion and phase, none for a drawing
-  std::optional<LossOrdinate> ordinate;  // loss_factor tables, and only they
-  std::optional<Varied> varied;          // if there is more than one curve
-  std::optional<double> window;          // motion tables: the amplitude of one of the scene's history windows
-  std::optional<double> down_to;         // amplitude that every curve must reach, or its run is short
+  std::vector<FigureCurve> curves;              // one for motion and phase, none for a drawing
+  std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
+  std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
+  std::optional<Varied> varied;                 // if there is more than one curve
+  std::optional<double> window;     // motion tables: the amplitude of one of the scene's history windows
+  std::optional<double> down_to;    // amplitude that every curve must reach, or its run is short
   std::vector<double> range;        // loss_factor: amplitudes over which the spread is shown; empty or two
   std::string script;               // beside the catalogue
   std::vector<std::string> claims;  // ids in data/claims.json

@@ -1,12 +1,14 @@
 #include "impact_damper/paper/claims.hpp"
 
 #include <set>
+#include <stdexcept>
 
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/json_reader.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/paper/measure_numbers.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/words.hpp"
 
 namespace impact_damper {
 namespace {
@@ -66,7 +68,55 @@ MeasureCall read_measure(ObjectReader object) {
   return call;
 }
 
-constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected};
+constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected,
+                           Verdict::derived};
+
+// By the kind of what is printed, or a value or range with a tolerance of its own.
+Admitted read_admitted(ObjectReader& object) {
+  Admitted admitted;
+  if (object.has("kind")) {
+    std::vector<std::string_view> names;
+    for (const PrintedKind& kind : printed_kinds()) names.push_back(kind.name);
+    const auto index = object.word("kind", names);
+    std::vector<std::string> digits;
+    const bool is_read = object.optional("digits", digits, TextRule{1, 20}, 2);
+    if (!index || !is_read) return admitted;
+    try {
+      return admitted_by(printed_kinds()[*index], digits);
+    } catch (const std::invalid_argument& problem) {
+      object.refuse("digits", problem.what());
+    }
+    return admitted;
+  }
+  if (object.has("value") == object.has("range")) {
+    object.refuse("value", "one of it, \"range\" and \"kind\" must be given, got " +
+                               std::string(object.has("value") ? "both" : "none"));
+  }
+  if (object.has("value")) {
+    double value = 0;
+    object.optional("value", value);
+    admitted.printed = {value, value};
+  } else {
+    admitted.printed = read_interval(object, "range");
+  }
+  object.required("tolerance", admitted.below, at_least(0));
+  admitted.above = admitted.below;
+  object.required("reason", admitted.reason, some_text);
+  return admitted;
+}
+
+void read_words(ObjectReader& object, Claim& claim) {
+  std::set<std::string, std::less<>> names;
+  if (auto also = object.optional_object("also")) {
+    for (const std::string& name : also->keys()) {
+      claim.also[name] = read_measure(also->required_object(name));
+      names.insert(name);
+      if (!a_name.admits(name)) also->refuse(name, "its key must be " + a_name.describe());
+    }
+  }
+  if (!object.optional("words", claim.words, some_text)) return;
+  if (const auto problem = problem_of_words(claim.words, names)) object.refuse("words", *problem);
+}
 
 Claim read_claim(ObjectReader& object) {
   Claim claim;
@@ -74,20 +124,10 @@ Claim read_claim(ObjectReader& object) {
   object.required("section", claim.section, some_text);
   object.required("statement", claim.statement, some_text);
   object.required("printed", claim.printed, some_text);
-  if (object.has("value") == object.has("range")) {
-    object.refuse("value", "either it or \"range\" must be given, got " +
-                               std::string(object.has("value") ? "both" : "none"));
-  }
-  if (object.has("value")) {
-    double value = 0;
-    object.optional("value", value);
-    claim.admitted = {value, value};
-  } else {
-    claim.admitted = read_interval(object, "range");
-  }
-  object.required("tolerance", claim.tolerance, at_least(0));
-  object.required("reason", claim.reason, some_text);
+  object.optional("source", claim.source, {Source::paper, Source::ours});
+  claim.admitted = read_admitted(object);
   claim.measure = read_measure(object.required_object("measure"));
+  read_words(object, claim);
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
   const bool recorded = object.required("verdict", claim.recorded, verdicts);
   if (auto engines = object.optional_object("with_engine")) {
@@ -105,7 +145,7 @@ Claim read_claim(ObjectReader& object) {
   }
   if (claim.recorded != Verdict::reproduced) {
     object.required("explanation", claim.explanation, some_text);
-    object.required("evidence", claim.evidence, some_text);
+    if (claim.recorded != Verdict::derived) object.required("evidence", claim.evidence, some_text);
   }
   const bool corrected = object.has("corrected");
   if ((claim.recorded == Verdict::corrected) != corrected) {
@@ -142,6 +182,18 @@ std::string_view name_of(Verdict verdict) {
       return "not reproduced";
     case Verdict::corrected:
       return "corrected";
+    case Verdict::derived:
+      return "derived";
+  }
+  return {};
+}
+
+std::string_view name_of(Source source) {
+  switch (source) {
+    case Source::paper:
+      return "paper";
+    case Source::ours:
+      return "ours";
   }
   return {};
 }
@@ -159,13 +211,15 @@ Verdict recorded_for(const Claim& claim, std::string_view engine) {
 }
 
 Verdict judge(const Claim& claim, double ours) {
-  const auto lies_in = [&](const Interval& interval, double margin) {
+  const auto lies_in = [&](const Interval& interval, double below, double above) {
     if (!(ours == ours)) return false;
-    return !(interval.least && !(ours >= *interval.least - margin)) &&
-           !(interval.most && !(ours <= *interval.most + margin));
+    return !(interval.least && !(ours >= *interval.least - below)) &&
+           !(interval.most && !(ours <= *interval.most + above));
   };
-  if (lies_in(claim.admitted, claim.tolerance)) return Verdict::reproduced;
-  if (claim.corrected && lies_in(*claim.corrected, 0)) return Verdict::corrected;
+  const Admitted& admitted = claim.admitted;
+  if (lies_in(admitted.printed, admitted.below, admitted.above))
+    return claim.recorded == Verdict::derived ? Verdict::derived : Verdict::reproduced;
+  if (claim.corrected && lies_in(*claim.corrected, 0, 0)) return Verdict::corrected;
   return Verdict::not_reproduced;
 }
 

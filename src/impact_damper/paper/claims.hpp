@@ -1,20 +1,26 @@
 // What the paper reports, claim by claim, and the verdict on each. Kept in data/claims.json:
 //
 //   {"schema": "impact-damper/claims/1",
-//    "claims": [{"id": "product-mid-range", "section": "3, Effects of viscous damping",
+//    "claims": [{"id": "failure-04", "section": "3, Effects of the coefficient of restitution",
 //                "statement": "...",            what is claimed, in our words
-//                "printed": "0.339",            as the paper prints it
-//                "value": 0.339,                or "range": [0.05, 0.1], either end null for none
-//                "tolerance": 0.008, "reason": "where the tolerance comes from",
-//                "measure": {"name": "product_mid_range", "scenes": ["nu2-e06"], "from": 0.1, "to": 6},
-//                "verdict": "reproduced"}]}
+//                "printed": "approximately 0.15",  as the paper prints it
+//                "kind": "approximate", "digits": ["0.15"],  how it is judged: printed.hpp
+//                "measure": {"name": "first_missed", "scenes": ["nu2-e04"]},
+//                "words": "first missed at {}", "also": {},  our result in the statement's terms: words.hpp
+//                "verdict": "not reproduced", "explanation": "...", "evidence": "..."}]}
+//
+// Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
+// "range" (either end null for none) with a "tolerance" and its "reason" take the place of kind and digits.
+// "source": "ours" marks a claim that is not the paper's but ours.
 //
 // Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
 // and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method
 // that finds contact at whole steps, with its default step; locating touch and release it has no exceptions.
 //
 // A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
-// one the "corrected" interval [least, most] that takes the place of what is printed.
+// one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as
+// "derived" has an "explanation": no engine enters its number, which confirms a derivation and measures
+// nothing.
 #pragma once
 
 #include <filesystem>
@@ -25,15 +31,15 @@
 #include <vector>
 
 #include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/paper/printed.hpp"
 
 namespace impact_damper {
 
-struct Interval {  // both ends included; absent: none
-  std::optional<double> least, most;
-};
+enum class Verdict { reproduced, not_reproduced, corrected, derived };
+std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "corrected", "derived"
 
-enum class Verdict { reproduced, not_reproduced, corrected };
-std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "corrected"
+enum class Source { paper, ours };  // whose claim it is
+std::string_view name_of(Source source);
 
 // How our value is found: a name out of measures.hpp, the scenes it looks at and its numbers.
 struct MeasureCall {
@@ -44,10 +50,11 @@ struct MeasureCall {
 
 struct Claim {
   std::string id, section, statement, printed;
-  Interval admitted;     // [value, value] or the range, before the tolerance
-  double tolerance = 0;  // >= 0, in the units of the value
-  std::string reason;
+  Source source = Source::paper;
+  Admitted admitted;
   MeasureCall measure;
+  std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the words show
+  std::string words = "{}";                              // our result, a template of words.hpp
   std::optional<Interval> corrected;
   Verdict recorded = Verdict::reproduced;
   std::string explanation, evidence;
@@ -67,8 +74,9 @@ inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 
-// The verdict that `ours` gives: reproduced if it lies in the admitted interval widened by the tolerance,
-// corrected if it does not but lies in the corrected one, else not reproduced. NaN never agrees.
+// The verdict that `ours`, the median of an ensemble, gives: if it lies in the admitted interval widened by
+// the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
+// lies in the corrected interval; else not reproduced. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
 
 }  // namespace impact_damper

@@ -1,6 +1,7 @@
 // Measures on the curves of the averaged loss factor.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "impact_damper/analysis/loss_factor.hpp"
@@ -15,7 +16,7 @@ Curve loss_curve(const Run& run, LossOrdinate which, double from, double to, int
   const LossFactor loss = averaged_loss_factor(half_cycles_of(run), {half_cycles});
   const std::vector<double> y = ordinate(loss, run.scene, which);
   Curve curve;
-  for (std::size_t i = 0; i < y.size(); ++i) {
+  for (std::size_t i = 1; i < y.size(); ++i) {
     if (!(loss.amplitude[i] >= from && loss.amplitude[i] <= to)) continue;
     curve.x.push_back(loss.amplitude[i]);
     curve.y.push_back(y[i]);
@@ -32,13 +33,12 @@ double log_slope(const Curve& curve) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-double spread_percent(const std::vector<Curve>& curves, double from, double to) {
+std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to) {
   // Twelve bins, equal in ln A: wide enough to hold several half cycles of every run, narrow enough to see
   // the structure of the curve.
   constexpr int bins = 12;
   const double width = logarithm(to / from) / bins;
-  double sum = 0;
-  int used = 0;
+  std::vector<double> spreads;
   for (int bin = 0; bin < bins; ++bin) {
     const double low = from * exponential(width * bin), high = from * exponential(width * (bin + 1));
     double least = std::numeric_limits<double>::infinity(), most = -least, total = 0;
@@ -56,10 +56,21 @@ double spread_percent(const std::vector<Curve>& curves, double from, double to) 
       total += mean;
     }
     if (!all) continue;
-    sum += (most - least) / (total / static_cast<double>(curves.size()));
-    ++used;
+    spreads.push_back(100 * (most - least) / (total / static_cast<double>(curves.size())));
   }
-  return 100 * sum / used;  // no bin that all curves reach: NaN
+  return spreads;
+}
+
+double spread_percent(const std::vector<Curve>& curves, double from, double to) {
+  double sum = 0;
+  const std::vector<double> spreads = bin_spreads_percent(curves, from, to);
+  for (const double spread : spreads) sum += spread;
+  return sum / static_cast<double>(spreads.size());
+}
+
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to) {
+  const std::vector<double> spreads = bin_spreads_percent(curves, from, to);
+  return spreads.empty() ? std::nan("") : *std::ranges::max_element(spreads);
 }
 
 namespace {
@@ -76,14 +87,15 @@ std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdi
   return {least, most};
 }
 
-template <LossOrdinate which>
+using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double);
+template <LossOrdinate which, SpreadOfCurves spread = spread_percent>
 Spread collapse(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     std::vector<Curve> curves;
     curves.reserve(group.size());
     for (const Run* run : group) curves.push_back(loss_curve(*run, which, from, to));
-    return spread_percent(curves, from, to);
+    return spread(curves, from, to);
   });
 }
 
@@ -195,6 +207,23 @@ Spread smoothing_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
+// How wide the peak of eta is: ln of the ratio of the amplitudes around it down to half its height.
+Spread smoothing_width_ratio(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    const auto width = [&](int half_cycles) {
+      const Curve curve = loss_curve(run, LossOrdinate::eta, 0, everywhere, half_cycles);
+      const auto top = std::ranges::max_element(curve.y);
+      if (top == curve.y.end()) return std::nan("");
+      auto first = top, last = top;
+      while (first != curve.y.begin() && *std::prev(first) >= *top / 2) --first;
+      while (std::next(last) != curve.y.end() && *std::next(last) >= *top / 2) ++last;
+      return logarithm(curve.x[static_cast<std::size_t>(first - curve.y.begin())] /
+                       curve.x[static_cast<std::size_t>(last - curve.y.begin())]);
+    };
+    return width(18) / width(10);
+  });
+}
+
 Spread single_impact_advantage(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     const auto window = longest_window(regular_windows(run), 1);
@@ -265,6 +294,48 @@ std::vector<Measure> loss_measures() {
        {"from", "to"},
        collapse<LossOrdinate::by_restitution>,
        "the same of A (eta - 2 zeta)/nu/(1 - e)"},
+      {"collapse_product_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::amplitude_times>,
+       "the same of A (eta - 2 zeta)/nu"},
+      {"collapse_carried_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::carried>,
+       "the same of A (eta - 2 zeta/(1 + nu))/nu"},
+      {"collapse_specific_worst_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific, worst_spread_percent>,
+       "spread of eta/nu between the scenes in the bin of amplitudes where it is greatest, in percent"},
+      {"collapse_secondary_worst_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::specific_secondary, worst_spread_percent>,
+       "the same of (eta - 2 zeta)/nu"},
+      {"collapse_restitution_worst_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::by_restitution, worst_spread_percent>,
+       "the same of A (eta - 2 zeta)/nu/(1 - e)"},
+      {"collapse_product_worst_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::amplitude_times, worst_spread_percent>,
+       "the same of A (eta - 2 zeta)/nu"},
+      {"collapse_carried_worst_percent",
+       2,
+       8,
+       {"from", "to"},
+       collapse<LossOrdinate::carried, worst_spread_percent>,
+       "the same of A (eta - 2 zeta/(1 + nu))/nu"},
       {"mass_ratio_exponent",
        2,
        8,
@@ -289,6 +360,14 @@ std::vector<Measure> loss_measures() {
        {},
        smoothing_ratio,
        "largest eta averaged over 18 half cycles, by that over 10"},
+      {"smoothing_width_ratio",
+       1,
+       1,
+       {},
+       smoothing_width_ratio,
+       "width of the peak of eta in ln A, at half its height, averaged over 18 half cycles, divided by that "
+       "over "
+       "10"},
       {"single_impact_advantage",
        1,
        1,

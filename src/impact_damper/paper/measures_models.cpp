@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/files/errors.hpp"
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/paper/measures.hpp"
@@ -82,6 +83,31 @@ Spread later_release_difference(Runs& runs, const MeasureCall& call) {
   return curves_apart(ours, theirs, from, to);
 }
 
+// Share of the half cycles with an amplitude in [from, to] that belong to no regular window.
+double mixed_share(const Run& run, double from, double to) {
+  const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
+  const std::vector<RegularWindow> windows = regular_windows(run);
+  double rows = 0, mixed = 0;
+  for (std::size_t row = 1; row < amplitude.size(); ++row) {
+    if (!(amplitude[row] >= from && amplitude[row] <= to)) continue;
+    ++rows;
+    mixed += std::ranges::none_of(
+        windows, [row](const RegularWindow& window) { return window.first <= row && row <= window.last; });
+  }
+  return mixed / rows;
+}
+
+Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  std::vector<double> values;
+  values.reserve(ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    values.push_back(mixed_share(ours[i], from, to) / mixed_share(theirs[i], from, to));
+  return spread_of(values);
+}
+
 Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
@@ -135,27 +161,52 @@ Spread contact_frequency(Runs&, const MeasureCall& call) {
   return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
 }
 
+// Run once more by its own engine, the wall sampled finely through the contact that its fastest impact
+// begins.
 Spread wall_overlap(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [](const Run& run) {
     if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
-    double fastest = 0;
-    for (const double w : run.impacts->relative_velocity) fastest = std::max(fastest, std::abs(w));
-    return fastest * nominal_contact_time(run.scene) / half_turn<double>();
+    const std::vector<double>& speed = run.impacts->relative_velocity;
+    if (speed.empty()) return std::nan("");
+    const auto fastest = std::ranges::max_element(
+        speed, [](double one, double other) { return std::abs(one) < std::abs(other); });
+    const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
+    Scene scene = run.scene;
+    scene.until_amplitude.reset();
+    scene.until_time = begin + nominal_contact_time(scene);
+    Record record;
+    record.history = {{begin, *scene.until_time, 201}};
+    const Run again = simulate(scene, run.engine, record);
+    double overlap = 0;
+    for (const double y : again.history->y) overlap = std::max({overlap, -y, y - 1});
+    return overlap;
   });
 }
 
-// Largest step h of x_{n+1} = 2 x_n - x_{n-1} - h^2 x_n that stays bounded: by bisection, stepped through.
+// Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary
+// mass that swings by a hundredth of the travel, its secondary mass out of reach.
+bool is_stable(double h) {
+  Scene scene;
+  scene.x0 = 0.01;
+  scene.y0 = 0.5;
+  scene.until_time = 10000 * h;
+  Cem cem;
+  cem.time_step = h;
+  cem.unstable = true;
+  try {
+    const std::vector<double> amplitude = simulate(scene, cem, Record{}).half_cycles->amplitude;
+    return std::ranges::none_of(amplitude, [&](double a) { return !(a < 10 * scene.x0); });
+  } catch (const NumericalError&) {
+    return false;  // beyond the largest number
+  }
+}
+
+// Largest step that stays bounded, by bisection. The highest mode is the primary mass's, of frequency 1.
 Spread step_limit(Runs&, const MeasureCall&) {
   double low = 0.5, high = 8;
   while (high - low > 1e-6) {
     const double h = (low + high) / 2;
-    double before = 0, x = 1;
-    for (int i = 0; i < 100000 && std::abs(x) < 1e9; ++i) {
-      const double next = 2 * x - before - h * h * x;
-      before = x;
-      x = next;
-    }
-    (std::abs(x) < 1e9 ? low : high) = h;
+    (is_stable(h) ? low : high) = h;
   }
   return once(low);
 }
@@ -191,6 +242,13 @@ std::vector<Measure> model_measures() {
        {"from", "to"},
        models_difference,
        "spread of A eta_s / nu between the scene's engine and the restitution engine, in percent"},
+      {"mixed_share_ratio",
+       1,
+       1,
+       {"from", "to"},
+       mixed_share_ratio,
+       "share of the half cycles that belong to no regular window, divided by that of the restitution "
+       "engine"},
       {"time_saved_percent",
        1,
        1,
@@ -242,7 +300,7 @@ std::vector<Measure> model_measures() {
        0,
        {},
        step_limit,
-       "largest stable omega h of central differences, undamped, by trial"},
+       "largest omega h at which the component element method stays bounded, undamped, by trial"},
       {"step_refinement",
        1,
        1,

@@ -18,16 +18,21 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to].
+// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The
+// first point is left out: row 0, which ran from the release and is less than a half cycle, is among the
+// peaks it is fitted to.
 Curve loss_curve(const Run& run, LossOrdinate which, double from = 0, double to = everywhere,
                  int half_cycles = 10);
 
 // Slope of ln y against ln x by least squares.
 double log_slope(const Curve& curve);
 
-// How far curves lie apart at equal x: the largest minus the least of their bin means by the mean of these,
-// averaged over the bins that all of them reach, in percent. Bins are equal in ln x on [from, to].
+// How far curves lie apart at equal x: the largest minus the least of their bin means divided by the mean of
+// these, in percent, for each of the bins that all of them reach. Twelve bins, equal in ln x on [from, to].
+std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to);
+// Their mean, and the largest of them. NaN if there is none.
 double spread_percent(const std::vector<Curve>& curves, double from, double to);
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to);
 
 inline const HalfCycles& half_cycles_of(const Run& run) {
   if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");

@@ -85,16 +85,34 @@ Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-Spread window_distance(Runs& runs, const MeasureCall& call) {
+// What `find` says of the regular window of so many impacts that lies nearest to an amplitude. Infinite if
+// there is none: unlike NaN, that leaves the median over other members alone.
+template <class Find>
+Spread of_nearest_window(Runs& runs, const MeasureCall& call, Find find) {
   const double amplitude = number(call, "amplitude");
   return over_members(runs, call, [&](const Run& run) {
-    double distance = infinity;
+    double least = infinity, found = infinity;
     for (const RegularWindow& window : regular_windows(run)) {
       if (static_cast<double>(window.impacts) != number(call, "impacts")) continue;
-      distance = std::min(distance, std::max({0.0, amplitude - window.upper, window.lower - amplitude}));
+      const double distance = std::max({0.0, amplitude - window.upper, window.lower - amplitude});
+      if (!(distance < least)) continue;
+      least = distance;
+      found = find(window);
     }
-    return distance;
+    return found;
   });
+}
+Spread window_nearest(Runs& runs, const MeasureCall& call) {
+  const double amplitude = number(call, "amplitude");
+  return of_nearest_window(runs, call, [amplitude](const RegularWindow& window) {
+    return std::min(window.upper, std::max(window.lower, amplitude));
+  });
+}
+Spread window_upper(Runs& runs, const MeasureCall& call) {
+  return of_nearest_window(runs, call, [](const RegularWindow& window) { return window.upper; });
+}
+Spread window_lower(Runs& runs, const MeasureCall& call) {
+  return of_nearest_window(runs, call, [](const RegularWindow& window) { return window.lower; });
 }
 
 Spread windows_in_order(Runs& runs, const MeasureCall& call) {
@@ -152,6 +170,17 @@ Spread stuck_share(Runs& runs, const MeasureCall& call) {
     const std::vector<std::size_t> rows = rows_between(run, number(call, "from"), number(call, "to"));
     for (const std::size_t row : rows) count += stuck[row];
     return count / static_cast<double>(rows.size());
+  });
+}
+
+Spread longest_stuck_series(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [](const Run& run) {
+    double longest = 0, series = 0;
+    for (const bool stuck : sticks(run)) {
+      series = stuck ? series + 1 : 0;
+      longest = std::max(longest, series);
+    }
+    return longest;
   });
 }
 
@@ -263,12 +292,16 @@ std::vector<Measure> regime_measures() {
       {"first_missed", 1, 1, {}, first_missed, "amplitude at the first missed impact"},
       {"first_missed_ratio", 2, 2, {}, first_missed_ratio, "that of the first scene by the second's"},
       {"failure_for_good", 1, 1, {}, failure_for_good, "amplitude from which on impacts are missed for good"},
-      {"window_distance",
+      {"window_nearest",
        1,
        1,
        {"impacts", "amplitude"},
-       window_distance,
-       "how far an amplitude lies outside the nearest regular window of so many impacts; 0 inside it"},
+       window_nearest,
+       "amplitude of a regular window of so many impacts that is nearest to the given one, which it is "
+       "inside a "
+       "window; infinite if there is none"},
+      {"window_upper", 1, 1, {"impacts", "amplitude"}, window_upper, "amplitude at which that window begins"},
+      {"window_lower", 1, 1, {"impacts", "amplitude"}, window_lower, "amplitude at which it ends"},
       {"windows_in_order",
        1,
        1,
@@ -299,6 +332,12 @@ std::vector<Measure> regime_measures() {
        {"amplitude", "half_cycles"},
        impacts_ratio,
        "mean number of impacts of the first scene by the second's"},
+      {"longest_stuck_series",
+       1,
+       1,
+       {},
+       longest_stuck_series,
+       "most half cycles in succession in which the mass sticks to a wall"},
       {"stuck_share", 1, 1, {"from", "to"}, stuck_share, "share of the half cycles in which the mass sticks"},
       {"alternation",
        1,

@@ -26,7 +26,8 @@ using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 //   decay        "curve-1" ... in the order of the figure's curves (time, amplitude)
 //   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1"
 //                ...; "band-1" ... (amplitude, least, greatest) for curves with an ensemble, which is
-//                simulated here with the run's own scene and engine; "spread" over Figure::range; closed
+//                simulated here with the run's own scene and engine; "second-1" ... in the second ordinate,
+//                if there is one; "spread" over Figure::range, without each curve's first point; closed
 //                forms, for the curves that have them, "one-impact-1" ..., "bounce-down-1" ...
 //   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ...
 //                "bounce-4", "accumulation"

@@ -29,6 +29,8 @@ std::string meaning(LossOrdinate which) {
       return "A (eta - 2 zeta) / nu, A by epsilon";
     case LossOrdinate::by_restitution:
       return "A (eta - 2 zeta) / (nu (1 - e)), A by epsilon";
+    case LossOrdinate::carried:
+      return "A (eta - 2 zeta / (1 + nu)) / nu, A by epsilon";
   }
   return "";
 }
@@ -192,6 +194,14 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   block("curve-" + number, "", 0, kept);
   if (kept < values.size())
     block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
+  if (figure.second_ordinate) {
+    table.blocks.push_back(
+        {.name = "second-" + number,
+         .notes = {"scene " + curve.scene + ", the same curve in the second panel's ordinate"},
+         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, 0, kept)},
+                     {legend, meaning(*figure.second_ordinate),
+                      part(ordinate(loss, source.run.scene, *figure.second_ordinate), 0, kept)}}});
+  }
   if (curve.ensemble > 0)
     add_band_block(figure, curve, source.run, neighbours(curve, source.run, threads), number, table);
 }
@@ -200,7 +210,8 @@ void add_spread_block(const Figure& figure, Table& table) {
   double least = std::numeric_limits<double>::max(), most = std::numeric_limits<double>::lowest();
   for (const TableBlock& block : table.blocks) {
     if (!block.name.starts_with("curve-")) continue;
-    for (std::size_t i = 0; i < block.columns[0].values.size(); ++i) {
+    // But for the first point: among the peaks that it is fitted to is the release.
+    for (std::size_t i = 1; i < block.columns[0].values.size(); ++i) {
       const double amplitude = block.columns[0].values[i], value = block.columns[1].values[i];
       if (amplitude < figure.range[0] || amplitude > figure.range[1]) continue;
       least = std::min(least, value);
@@ -212,13 +223,14 @@ void add_spread_block(const Figure& figure, Table& table) {
   const double percent = 100 * (most - middle) / middle;
   const std::string legend =
       number_text(std::round(middle * 1e3) / 1e3) + " ± " + number_text(std::round(percent)) + " %";
-  table.blocks.push_back(
-      {.name = "spread",
-       .notes = {"middle, least and greatest ordinate of all curves over the amplitudes of its two rows"},
-       .columns = {{"amplitude", "by epsilon", figure.range},
-                   {"least", "of all curves", {least, least}, Ordinate::low},
-                   {"most", "of all curves", {most, most}, Ordinate::high},
-                   {legend, "half way between least and most", {middle, middle}}}});
+  table.blocks.push_back({.name = "spread",
+                          .notes = {"middle, least and greatest ordinate of all curves over the amplitudes "
+                                    "of its two rows, but for each "
+                                    "curve's first point, which the release enters"},
+                          .columns = {{"amplitude", "by epsilon", figure.range},
+                                      {"least", "of all curves", {least, least}, Ordinate::low},
+                                      {"most", "of all curves", {most, most}, Ordinate::high},
+                                      {legend, "half way between least and most", {middle, middle}}}});
 }
 
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,

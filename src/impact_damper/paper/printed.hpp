@@ -1,0 +1,45 @@
+// From what the paper prints to the interval that a result must lie in: one rule for all claims. What decides
+// is how the paper says it, a number by its digits or a word, never what comes out here.
+//
+//   a number              half a unit of its last digit to either side: what rounding leaves open
+//   "approximately" it    a whole unit, but not more than half of the number
+//   a word                the same interval wherever the word, or one that says the same, is used
+//
+// The last digit of a whole number is the last that is not zero: "31" is of two digits, "10" of one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace impact_damper {
+
+struct Interval {  // both ends included; absent: none
+  std::optional<double> least, most;
+};
+
+struct PrintedKind {
+  std::string_view name;
+  std::size_t digits;       // how many printed numbers it takes
+  Interval interval;        // of a word; empty for numbers
+  std::string_view reason;  // why the interval is what it is
+};
+const std::vector<PrintedKind>& printed_kinds();
+
+// The unit of the last digit of a number as printed, "0.339" -> 0.001, "31" -> 1, "10" -> 10. Absent if the
+// text is not digits with at most one point among them, or all of them are zero.
+std::optional<double> last_digit(std::string_view digits);
+
+// What a printed value admits: the value (or both ends of the range) before the tolerance, the tolerance at
+// each end, and its reason.
+struct Admitted {
+  Interval printed;
+  double below = 0, above = 0;  // tolerances, >= 0
+  std::string reason;
+};
+// `digits` as many as the kind takes, each with a last_digit(), a range ascending; std::invalid_argument
+// else.
+Admitted admitted_by(const PrintedKind& kind, const std::vector<std::string>& digits);
+
+}  // namespace impact_damper
