@@ -111,8 +111,10 @@ std::string engine_sentence(const Findings& findings) {
   return text + ".</p>\n";
 }
 
+}  // namespace
+
 // Numbers that are admitted, but are more often a slip than meant: a length in metres, a mass in grams.
-std::string second_looks(const Findings& findings) {
+std::string warnings_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const Speech speech(findings.subject.scales);
   const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
@@ -125,7 +127,13 @@ std::string second_looks(const Findings& findings) {
                     " times as long as the first amplitude: is it given in millimetres?");
   if (scene.mass_ratio > 1)
     looks.push_back("The loose mass is " + number_html(scene.mass_ratio) +
-                    " times as heavy as the primary mass.");
+                    " times as heavy as the primary mass" +
+                    (speech.in_units() ? ": are both given in kilograms?" : "."));
+  if (const double outside = std::max(-scene.y0, scene.y0 - 1); outside > 0)
+    looks.push_back("The loose mass begins " + speech.length(outside) +
+                    " outside its box, pressed into a wall, where an energy of " +
+                    speech.energy(findings.run.energy->initial.wall) + " is stored: the spring holds " +
+                    speech.energy(findings.run.energy->initial.spring) + ".");
   if (scene.wall_stiffness < 100 && !std::holds_alternative<Restitution>(findings.subject.engine))
     looks.push_back(
         "The walls are only " + number_html(scene.wall_stiffness) +
@@ -139,8 +147,6 @@ std::string second_looks(const Findings& findings) {
   return html + "</ul>\n";
 }
 
-}  // namespace
-
 std::string scene_html(const Findings& findings) {
   const std::string scales =
       findings.subject.scales
@@ -152,7 +158,7 @@ std::string scene_html(const Findings& findings) {
             "natural frequency, velocities in εΩ, energies in Kε². A scene file may give masses in kilograms "
             "and lengths in "
             "millimetres instead; this page then speaks of both.</p>\n";
-  return scene_table(findings.subject) + scales + engine_sentence(findings) + second_looks(findings);
+  return scene_table(findings.subject) + scales + engine_sentence(findings);
 }
 
 }  // namespace impact_damper
