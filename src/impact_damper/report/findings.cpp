@@ -226,7 +226,11 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   if (findings.forced() && findings.first_amplitude) {
     // Central differences would take minutes: the same walls in closed form.
     Engine engine = subject.engine;
-    if (std::holds_alternative<Cem>(engine)) engine = Exact{.calibration = calibration_of(engine)};
+    if (std::holds_alternative<Cem>(engine)) {
+      Exact same_walls;
+      same_walls.calibration = calibration_of(engine);
+      engine = same_walls;
+    }
     findings.response = frequency_response(subject.scene, engine, ensemble.threads, [&](std::size_t done) {
       progress("simulating other frequencies, " + std::to_string(done) + " done");
     });
