@@ -1,8 +1,14 @@
-# The averaged loss factor over amplitude, its ensemble, and the closed forms thinly beside it.
+# The loss factor over amplitude, its ensemble, and the closed forms thinly beside it.
 load folder."/own.gp"
 eval require("curve-1", 10)
 eval look("curve-1", 1)
 from = STATS_min / 1.15; to = STATS_max * 1.15
+fold = 0
+if (has("fold")) {
+  stats table index "fold" using 1 nooutput
+  fold = STATS_max
+  from = fold / 1.15 < from ? fold / 1.15 : from
+}
 eval look("curve-1", 2)
 logarithmic = (is_wide(from, to) ? "x" : "").(STATS_min > 0 ? "y" : "")
 if (STATS_min > 0) {
@@ -18,7 +24,17 @@ eval axis("x", "length", from, to, is_wide(from, to))
 optional(block, clause) = !has(block) ? "" : sprintf("table index '%s' using ", block).clause
 forms = optional("one-impact-1", '1:2 with lines ls 9 title "closed forms, ν → 0",').\
   optional("bounce-down-1", '1:2 with lines ls 9 notitle,')
+if (fold > 0 && fold < to) {
+  set arrow 1 from fold,graph 0 to fold,graph 1 nohead ls 10 dt (6,4)
+  set label 1 "impacts fail" at fold,graph 0.03 left offset 0.4,0 font ",11" textcolor rgb grey
+}
+# After failure the amplitude is often below the axis; a legend for nothing is no help.
+is_seen = 0
+if (has("failed-1")) {
+  stats table index "failed-1" using 1 nooutput
+  is_seen = STATS_max > from
+}
 eval 'plot '.optional("band-1", '1:2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
-  optional("failed-1", '1:2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",').\
+  (!is_seen ? "" : optional("failed-1", '1:2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",')).\
   'table index "curve-1" using 1:2 with lines ls 1 title columnheader(2)'
 eval axes("A", "η", logarithmic)

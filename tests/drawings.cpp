@@ -60,6 +60,7 @@ TEST_CASE("a scene in units has its scales in every table, a dimensionless one i
     CHECK(scales.name == "scales");
     CHECK(scales.columns[0].values == std::vector<double>{0.2});
     CHECK(scales.columns[1].values == std::vector<double>{4});
+    CHECK(scales.columns[2].values[0] == doctest::Approx(5 / (2 * std::numbers::pi)));
   }
   for (const Drawing& drawing : drawings_of(examined(scene)))
     CHECK(std::ranges::find(drawing.table.blocks, "scales", &TableBlock::name) == drawing.table.blocks.end());
@@ -90,7 +91,49 @@ TEST_CASE("what a scene has nothing of is not drawn") {
   forced.force_amplitude = 0.1;
   forced.until_time = 200;
   CHECK(names(drawings_of(examined(forced))) ==
-        std::vector<std::string>{"decay", "phase", "begin", "best", "prediction"});
+        std::vector<std::string>{"decay", "response", "phase", "begin", "best", "prediction"});
+}
+
+TEST_CASE("the response is drawn from the runs, the closed forms beside it where they are finite") {
+  Scene forced;
+  forced.x0 = 0;
+  forced.force_amplitude = 0.1;
+  forced.force_frequency = 1.02;
+  forced.until_time = 200;
+  const Findings findings = examined(forced);
+  const std::vector<Drawing> drawings = drawings_of(findings);
+  const TableBlock& curve = block(drawings, "response", "curve");
+  REQUIRE(curve.columns[0].values.size() == findings.response.points.size());
+  for (std::size_t i = 0; i < findings.response.points.size(); ++i) {
+    CHECK(curve.columns[0].values[i] == findings.response.points[i].frequency);
+    CHECK(curve.columns[1].values[i] == findings.response.points[i].amplitude.mean);
+  }
+  for (const auto& [name, mass] : {std::pair{"locked", 1.02}, std::pair{"empty", 1.0}}) {
+    const TableBlock& form = block(drawings, "response", name);
+    REQUIRE(form.columns[0].values.size() > 100);
+    for (std::size_t i = 0; i < form.columns[0].values.size(); ++i) {
+      const double omega = form.columns[0].values[i];
+      CHECK(form.columns[1].values[i] == doctest::Approx(0.1 / std::abs(1 - mass * omega * omega)));
+    }
+  }
+  CHECK(block(drawings, "response", "given").columns[0].values == std::vector<double>{1.02});
+}
+
+TEST_CASE("the loss factor is drawn up to impact failure, apart behind it, with the fold") {
+  Scene scene;
+  scene.mass_ratio = 0.04;
+  scene.until_amplitude = 0.02;
+  const Findings findings = examined(scene);
+  const std::vector<Drawing> drawings = drawings_of(findings);
+  CHECK(block(drawings, "loss", "curve-1").columns[1].values == findings.loss.eta);
+  CHECK(block(drawings, "loss", "failed-1").columns[1].values == findings.loss_after_failure.eta);
+  // A = b / sqrt(pi^2 + 4 b^2), b = 1/4.
+  CHECK(block(drawings, "loss", "fold").columns[0].values[0] ==
+        doctest::Approx(0.25 / std::sqrt(std::numbers::pi * std::numbers::pi + 0.25)));
+  const TableBlock& band = block(drawings, "loss", "band-1");
+  REQUIRE(band.columns[0].values.size() > 50);
+  for (std::size_t i = 0; i < band.columns[0].values.size(); ++i)
+    CHECK(band.columns[1].values[i] <= band.columns[2].values[i]);
 }
 
 TEST_CASE("from rest the releases differ in the exciting force") {
@@ -113,5 +156,15 @@ TEST_CASE("numbers are rounded for reading and keep their digits for programs") 
   CHECK(Speech(std::nullopt).length(6) == "<data value=\"6\">6</data>\u00a0ε");
   CHECK(Speech(Scales{2, 50, 4}).length(6) ==
         "<data value=\"24\">24</data>\u00a0mm (<data value=\"6\">6</data>\u00a0ε)");
+  CHECK(Speech(Scales{2, 50, 4}).length(0.01) ==
+        "<data value=\"40\">40</data>\u00a0µm (<data value=\"0.01\">0.01</data>\u00a0ε)");
+  CHECK(Speech(Scales{2, 50, 4}).velocity(0.5) ==
+        "<data value=\"0.01\">0.01</data>\u00a0m/s (<data value=\"0.5\">0.5</data>\u00a0εΩ)");
+  CHECK(Speech(Scales{2, 50, 4}).force(0.5) ==
+        "<data value=\"0.1\">0.1</data>\u00a0N (<data value=\"0.5\">0.5</data>\u00a0Kε)");
+  CHECK(Speech(Scales{2, 50, 4}).duration(0.5) ==
+        "<data value=\"100\">100</data>\u00a0ms (<data value=\"0.5\">0.5</data>\u00a0/Ω)");
+  CHECK(Speech(std::nullopt).frequency(0.5) == "<data value=\"0.5\">0.5</data>\u00a0Ω");
+  CHECK(without_tags(number_html(0.5) + " m") == "0.5 m");
   CHECK(escaped("<\"a&b\">") == "&lt;&quot;a&amp;b&quot;&gt;");
 }

@@ -32,8 +32,8 @@ class Page(HTMLParser):
             self.headings.append(int(tag[1]))
         if tag == "html" and not given.get("lang"):
             self.faults.append("no language")
-        if tag == "section":
-            self.section = given.get("id")
+        if tag in ("section", "header"):
+            self.section = given.get("id", tag)
             self.numbers[self.section], self.words[self.section] = [], ""
         if tag == "table":
             self.tables.append({"caption": False})
@@ -64,7 +64,7 @@ class Page(HTMLParser):
             self.faults.append(f"</{tag}> closes {self.open[-1:]}")
             return
         self.open.pop()
-        if tag == "section":
+        if tag in ("section", "header"):
             self.section = None
         if tag == "data":
             self.value = None

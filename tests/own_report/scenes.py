@@ -13,7 +13,7 @@ import sys
 from page import Page
 
 program, example, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-SECTIONS = ["scene", "decay", "loss", "regimes", "phase", "motion", "energy", "prediction", "made"]
+SECTIONS = ["header", "scene", "decay", "loss", "regimes", "phase", "motion", "loads", "energy", "prediction", "made"]
 MEMBERS = "4"
 
 # Options of a scene, and what its page must say, by section; a figure's name stands for the figure.
@@ -23,25 +23,27 @@ SCENES = {
     "the paper's": (["--until-amplitude", "0.03"], {"regimes": "sticking ends", "prediction": "agree within"},
                     ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "no impact": (["--x0", "0.3", "--damping-ratio", "0.01", "--until-time", "200"], {"regimes": "never strikes a wall",
-                  "phase": "no impact lies between", "energy": "There are no impacts", "loss": "viscous damping alone"},
+                  "phase": "no impact lies between", "loads": "no impact", "energy": "There are no impacts", "loss": "viscous damping alone"},
                   ["decay", "begin", "prediction"]),
     "forced from rest": (["--x0", "0", "--force-amplitude", "0.05", "--until-time", "600"],
-                         {"decay": "would grow without end", "loss": "This motion is forced"},
-                         ["decay", "phase", "begin", "best", "prediction"]),
+                         {"response": "without bound|locked to its box|over the last quarter", "header": "At its worst frequency"},
+                         ["decay", "response", "phase", "begin", "best", "prediction"]),
+    "forced in units": (["--scene", "forced.json"], {"header": "locked to its box", "response": "Hz", "loads": "in an hour|an assumption"},
+                        ["decay", "response", "phase", "begin", "best", "prediction"]),
     "overdamped": (["--damping-ratio", "3", "--until-time", "50"], {"decay": "not one whole half cycle",
-                   "loss": "Without half cycles", "prediction": "no amplitude", "scene": "times critically"}, ["begin"]),
-    "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound"},
+                   "loss": "Without half cycles", "prediction": "no amplitude", "header": "times critically"}, ["begin"]),
+    "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound", "loads": "rigid"},
                 ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "lossless": (["--restitution", "1", "--until-time", "100"], {"loss": "nothing is ever lost"},
                  ["decay", "phase", "begin", "prediction"]),
     "three half cycles": (["--until-time", "10"], {"loss": "too short for that"}, ["decay", "phase", "begin", "prediction"]),
-    "slip of the units": (["--scene", "slip.json"], {"scene": "is the free travel given in millimetres?"},
-                          ["decay", "loss", "phase", "begin", "prediction"]),
+    "slip of the units": (["--scene", "slip.json"], {"header": "is the free travel given in millimetres?"},
+                          ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
-    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted"},
-                         ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted", "header": "outside its box", "loads": "in which the run begins"},
+                         ["decay", "loss", "phase", "begin", "prediction"]),
     "released by w0": (["--x0", "0", "--w0", "3", "--until-time", "400"], {"prediction": "releases that differ"},
-                       ["decay", "phase", "begin", "best", "prediction"]),
+                       ["decay", "phase", "begin", "prediction"]),
     "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
                ["decay", "phase", "begin", "prediction"]),
 }
@@ -64,23 +66,43 @@ def call(*words, code=0):
     return done
 
 
-def parabola(times, values):
-    """Value and slope at the middle of a least-squares parabola, by its normal equations."""
-    t0 = times[len(times) // 2]
-    rows = [[(t - t0) ** k for k in range(3)] for t in times]
-    a = [[sum(r[i] * r[j] for r in rows) for j in range(3)] + [sum(r[i] * v for r, v in zip(rows, values))] for i in range(3)]
-    for i in range(3):
-        a[i] = [each / a[i][i] for each in a[i]]
-        for j in range(3):
-            if j != i:
-                a[j] = [x - a[j][i] * y for x, y in zip(a[j], a[i])]
-    return a[0][3], a[1][3]
+def line(times, values):
+    """Mean and slope of a least-squares line, by the normal equations as they stand."""
+    n, t0 = len(times), times[0]
+    times = [t - t0 for t in times]
+    t, tt, v, tv = sum(times), sum(t * t for t in times), sum(values), sum(t * v for t, v in zip(times, values))
+    return v / n, (n * tv - t * v) / (n * tt - t * t)
+
+
+def failure(rows):
+    """The row of impact failure, or how many rows there are."""
+    impacts = rows["impacts"]
+    short = [i for i in range(1, len(impacts) - 1) if sum(impacts[i - 1:i + 2]) < 3]  # with its neighbours
+    regular = [last for first in range(1, len(impacts)) for last in [first + 7]
+               if impacts[first] and len(set(impacts[first:last + 1])) == 1 and last < len(impacts)]
+    missed = [i for i in short if not impacts[i] and i > max([1] + regular)]
+    if missed:
+        return missed[0]
+    row, for_good = len(impacts) - 3, len(impacts)
+    while row >= 1 and row + 1 in short:
+        for_good = for_good if impacts[row] else row
+        row -= 1
+    return for_good
 
 
 def best_damping(rows):
-    times, amplitudes = rows["peak_time"], rows["amplitude"]
-    fits = [parabola(times[i - 5:i + 6], amplitudes[i - 5:i + 6]) for i in range(5, len(times) - 5)]
-    return max((-2 * slope / value, value) for value, slope in fits)
+    """The largest loss factor before impact failure, and its amplitude: lines through the logarithm of the amplitude over
+    3 to 11 peaks, the outer ones within a factor of 2 of each other."""
+    end, fits = failure(rows), []
+    times, amplitudes = rows["peak_time"][1:end], rows["amplitude"][1:end]
+    for i in range(1, len(times) - 1):
+        m = 1
+        while m < 5 and m < i and i + m + 1 < len(times) and 0.5 <= amplitudes[i - m - 1] / amplitudes[i + m + 1] <= 2:
+            m += 1
+        mean, slope = line(times[i - m:i + m + 1], [math.log(a) for a in amplitudes[i - m:i + m + 1]])
+        if end == len(rows["impacts"]) or math.exp(mean) > rows["amplitude"][end]:
+            fits.append((-2 * slope, math.exp(mean)))
+    return max(fits)
 
 
 def windows(impacts):
@@ -131,6 +153,44 @@ def holds(page, section, value, what, digits=1e-9):
           f"{name}: {section} does not have the {what}, {value}: {page.numbers[section]}")
 
 
+def loads(page, run, scales):
+    """Speed and number of the impacts, and the force of the hardest, by stepping through its contact."""
+    impacts, scene = run["impacts"], run["scene"]
+    if not impacts["time"]:
+        return
+    speed, end = max(map(abs, impacts["relative_velocity"])), run["end_time"]
+    since = 0.75 * end if scene["force_amplitude"] else 0
+    rate = sum(time >= since for time in impacts["time"]) / (end - since)
+    holds(page, "loads", speed * (scales[1] / scales[0] / 1000 if scales else 1), "largest impact speed")
+    holds(page, "loads", rate * (3600 / scales[0] if scales else 2 * math.pi), "number of impacts in an hour or a period")
+    if run["engine"]["name"] == "restitution":
+        return
+    nu, k, decrement = scene["mass_ratio"], scene["wall_stiffness"], -math.log(scene["restitution"])
+    damping = 2 * math.sqrt(k / nu) * decrement / math.hypot(math.pi, decrement)
+    q, v, largest, h = 0.0, speed, 0.0, 1e-4 * math.sqrt(nu / k)
+    while q >= 0:
+        force = damping * v + k / nu * q
+        largest = max(largest, nu * force)
+        v -= h * (1 + nu) * force
+        q += h * v
+    holds(page, "loads", largest * (scales[2] / scales[1] * 1000 if scales else 1), "largest force", 1e-3)
+
+
+def response(page, run, scales):
+    """The amplitudes of the two linear oscillators, by solving for their complex amplitude and trying frequencies."""
+    scene, length = run["scene"], scales[1] if scales else 1
+    for mass in (1 + scene["mass_ratio"], 1):
+        def amplitude(omega):
+            stiffness = complex(1 - mass * omega * omega, 2 * scene["damping_ratio"] * omega)
+            return scene["force_amplitude"] / abs(stiffness) if stiffness else math.inf
+        given = amplitude(scene["force_frequency"])
+        if math.isfinite(given):
+            holds(page, "response", given * length, f"amplitude with the mass {mass}")
+        if scene["damping_ratio"]:
+            around = [mass ** -0.5 * (1 + 1e-6 * i) for i in range(-2000, 2001)]
+            holds(page, "response", max(map(amplitude, around)) * length, f"worst amplitude with the mass {mass}", 1e-6)
+
+
 def compare(page, run, scales):
     """The numbers of the page against those of a run, read anew. `scales` are (s, mm, J), or nothing."""
     rows, energy = run["half_cycles"], run["energy"]
@@ -143,15 +203,23 @@ def compare(page, run, scales):
             holds(page, "energy", value * scales[2], part + " in J", 1e-6)
     first = min(4 * math.pi if amplitudes else run["end_time"], run["end_time"])
     holds(page, "motion", first / (2 * math.pi), "length of the first window")
-    holds(page, "motion", sum(time <= first for time in run["impacts"]["time"]), "impacts in the first window")
+    struck = sum(time <= first for time in run["impacts"]["time"])
+    if struck > 1:
+        holds(page, "motion", struck, "impacts in the first window")
+    else:
+        check(("strikes a wall once" if struck else "does not strike") in page.words["motion"], f"{name}: {struck} impacts in the first window")
     if energy["impact_loss"]:
         holds(page, "energy", len(energy["impact_loss"]), "number of impacts")
+    loads(page, run, scales)
     if not amplitudes:
         return
     if run["scene"]["force_amplitude"]:
         last = amplitudes[-(len(amplitudes) // 4):]
-        for value in (min(last), max(last), sum(last) / len(last)):
-            holds(page, "decay", value, "amplitude in the last quarter")
+        shown = [sum(last) / len(last)] + ([min(last), max(last)] if "lies between" in page.words["decay"] else [])
+        for value in shown:
+            holds(page, "decay", value * (scales[1] if scales else 1), "amplitude in the last quarter")
+        check(len(shown) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
+        response(page, run, scales)
         return
     if amplitudes[0] == max(amplitudes[:2]):
         for part in (0.5, 0.1, 0.01):
@@ -186,6 +254,9 @@ folder.mkdir(parents=True)
 given = json.loads(example.read_text())
 (folder / "slip.json").write_text(json.dumps({**given, "clearance": given["clearance"] / 1000, "until_seconds": 10,
                                               "description": "1 < 2 & \"3\" {{title}}"}))
+forced = {**given, "exciting_force": 10, "exciting_frequency": 3.18, "until_seconds": 60}
+del forced["until_millimetres"]
+(folder / "forced.json").write_text(json.dumps(forced))
 for name, (options, words, drawn) in SCENES.items():
     file = folder / f"{name.replace(' ', '-').replace(chr(39), '')}.html"
     made = call("report", *options, "--members", MEMBERS, "-o", file.name)
@@ -196,7 +267,9 @@ for name, (options, words, drawn) in SCENES.items():
     page = Page(text)
     for fault in page.faults:
         check(False, f"{name}: {fault}")
-    check([s for s in page.numbers if s] == SECTIONS, f"{name}: sections {list(page.numbers)}")
+    forced = "--force-amplitude" in options or "forced.json" in options
+    sections = ["response" if forced and each == "loss" else each for each in SECTIONS]
+    check([s for s in page.numbers if s] == sections, f"{name}: sections {list(page.numbers)}")
     check(page.figures == [f"figure-{each}" for each in drawn], f"{name}: figures {page.figures}")
     check(len(page.svgs) == len(drawn), f"{name}: {len(page.svgs)} drawings")
     check("http" not in text.replace("http://www.w3.org/", ""), f"{name}: refers to the network")
@@ -204,7 +277,7 @@ for name, (options, words, drawn) in SCENES.items():
     for section, wanted in words.items():
         for each in wanted.split("|"):
             check(each in page.words.get(section, ""), f"{name}: {section} does not say {each!r}: {page.words.get(section)}")
-    for section in SECTIONS:
+    for section in sections:
         check(page.words[section].count(" ") > 5, f"{name}: {section} is empty")
     run = json.loads(call("run", *options, "--record", "half_cycles,impacts,energy").stdout)
     scales = None

@@ -1,8 +1,11 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 
+#include <cmath>
 #include <span>
 #include <stdexcept>
 #include <string>
+
+#include "impact_damper/motion/elementary.hpp"
 
 namespace impact_damper {
 namespace {
@@ -50,6 +53,20 @@ Parabola fitted_parabola(std::span<const double> time, std::span<const double> a
           linear - quadratic * (2 * mean + alpha)};
 }
 
+struct Peaks {
+  std::vector<double> time, amplitude;
+};
+Peaks peaks_of(const HalfCycles& rows, std::size_t first, std::size_t last) {
+  Peaks peaks;
+  for (std::size_t i = first; i < last; ++i) {
+    if (!(rows.amplitude[i] > 0)) continue;
+    if (!peaks.time.empty() && !(rows.peak_time[i] > peaks.time.back())) continue;
+    peaks.time.push_back(rows.peak_time[i]);
+    peaks.amplitude.push_back(rows.amplitude[i]);
+  }
+  return peaks;
+}
+
 }  // namespace
 
 LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
@@ -71,14 +88,39 @@ LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std:
 }
 
 LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorOptions& options) {
-  std::vector<double> time, amplitude;
-  for (std::size_t i = 0; i < half_cycles.amplitude.size(); ++i) {
-    if (!(half_cycles.amplitude[i] > 0)) continue;
-    if (!time.empty() && !(half_cycles.peak_time[i] > time.back())) continue;
-    time.push_back(half_cycles.peak_time[i]);
-    amplitude.push_back(half_cycles.amplitude[i]);
+  const Peaks peaks = peaks_of(half_cycles, 0, half_cycles.amplitude.size());
+  return averaged_loss_factor(peaks.time, peaks.amplitude, options);
+}
+
+LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
+                             const LogarithmicFit& fit) {
+  const auto [time, amplitude] = peaks_of(half_cycles, first, last);
+  std::vector<double> logarithms;
+  for (const double each : amplitude) logarithms.push_back(logarithm(each));
+  const double widest = logarithm(fit.factor);
+  const auto most = static_cast<std::size_t>(fit.most_half_cycles) / 2;
+  LossFactor loss;
+  for (std::size_t i = 1; i + 1 < time.size(); ++i) {
+    std::size_t reach = 1;
+    while (reach < most && reach < i && i + reach + 1 < time.size() &&
+           std::abs(logarithms[i - reach - 1] - logarithms[i + reach + 1]) <= widest)
+      ++reach;
+    const double points = static_cast<double>(2 * reach + 1);
+    double mean_time = 0, mean = 0, squares = 0, products = 0;
+    for (std::size_t j = i - reach; j <= i + reach; ++j) {
+      mean_time += (time[j] - time[i]) / points;
+      mean += (logarithms[j] - logarithms[i]) / points;
+    }
+    for (std::size_t j = i - reach; j <= i + reach; ++j) {
+      const double t = time[j] - time[i] - mean_time;
+      squares += t * t;
+      products += t * (logarithms[j] - logarithms[i]);
+    }
+    loss.amplitude.push_back(amplitude[i] * exponential(mean));
+    loss.time.push_back(time[i]);
+    loss.eta.push_back(-2 * products / squares);
   }
-  return averaged_loss_factor(time, amplitude, options);
+  return loss;
 }
 
 std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrdinate which) {

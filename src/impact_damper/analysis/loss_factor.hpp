@@ -37,6 +37,19 @@ LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std:
 // starts on its way out of a peak of no height) is no peak and is left out.
 LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorOptions& options = {});
 
+// The loss factor without the parabola's bias, for strong damping too: about each peak a straight line is
+// fitted by least squares to ln A over time, over as many peaks on either side as keep the first and the last
+// within a factor of each other: one at least, so a whole cycle, `most_half_cycles` / 2 at most. Exact on an
+// exponential envelope of any decrement; docs/mathematics.md, equations (6) and (7).
+struct LogarithmicFit {
+  double factor = 2;          // >= 1
+  int most_half_cycles = 10;  // even, >= 2
+};
+// Of the rows [first, last), with those left out that are no peak, as above. One row per peak that has a
+// neighbour on either side; its amplitude is the geometric mean of the peaks it is fitted to.
+LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
+                             const LogarithmicFit& fit = {});
+
 // eta / nu: "specific total loss factor".
 inline double specific_loss(double eta, double mass_ratio) { return eta / mass_ratio; }
 

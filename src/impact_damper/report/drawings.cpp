@@ -1,11 +1,14 @@
 #include "impact_damper/report/drawings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/paper/series_blocks.hpp"
 
 namespace impact_damper {
@@ -46,12 +49,17 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
   std::string& parameters = drawing.table.header[1];
   parameters += "ν = " + ratio(subject.scene.mass_ratio) + ", e = " + ratio(subject.scene.restitution) +
                 ", ζ = " + ratio(subject.scene.damping_ratio);
+  if (findings.forced())
+    parameters +=
+        ", f = " + ratio(subject.scene.force_amplitude) + ", ω = " + ratio(subject.scene.force_frequency);
   if (!std::holds_alternative<Exact>(subject.engine))
     parameters += "; " + std::string(name_of(subject.engine)) + " engine";
   if (subject.scales) {
-    drawing.table.blocks.push_back({.name = "scales",
-                                    .columns = {{"time", "1/Omega_n in s", {subject.scales->time()}},
-                                                {"length", "epsilon in mm", {subject.scales->length}}}});
+    drawing.table.blocks.push_back(
+        {.name = "scales",
+         .columns = {{"time", "1/Omega_n in s", {subject.scales->time()}},
+                     {"length", "epsilon in mm", {subject.scales->length}},
+                     {"frequency", "Omega_n/(2 pi) in Hz", {subject.scales->frequency()}}}});
   }
   return drawing;
 }
@@ -85,6 +93,91 @@ std::optional<Drawing> decay(const Findings& findings) {
   return drawing;
 }
 
+// Least and greatest loss factor of all releases over amplitudes that all of them have.
+TableBlock loss_band(const Findings& findings) {
+  TableBlock block{
+      .name = "band-1",
+      .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+                  {"least", "eta of the ensemble", {}},
+                  {std::to_string(findings.others.size() + 1) + " releases", "greatest eta", {}}}};
+  if (findings.losses_of_others.empty()) return block;
+  std::vector<const LossFactor*> members{&findings.loss};
+  for (const LossFactor& each : findings.losses_of_others) members.push_back(&each);
+  constexpr int last = 240;
+  const auto [from, to] = std::ranges::minmax(findings.loss.amplitude);
+  const double range = logarithm(to / from);
+  for (int k = 0; k <= last; ++k) {
+    const double amplitude = from * exponential(range * k / last);
+    std::optional<double> least, greatest;
+    for (const LossFactor* member : members) {
+      // Between the first row below the amplitude and the one before it.
+      const auto below = std::ranges::find_if(member->amplitude, [&](double a) { return a < amplitude; });
+      const auto i = static_cast<std::size_t>(below - member->amplitude.begin());
+      if (i == 0 || i == member->amplitude.size()) {
+        least.reset();
+        break;
+      }
+      const double part =
+          (member->amplitude[i - 1] - amplitude) / (member->amplitude[i - 1] - member->amplitude[i]);
+      const double eta = member->eta[i - 1] + part * (member->eta[i] - member->eta[i - 1]);
+      least = std::min(least.value_or(eta), eta);
+      greatest = std::max(greatest.value_or(eta), eta);
+    }
+    if (!least) continue;
+    block.columns[0].values.push_back(amplitude);
+    block.columns[1].values.push_back(*least);
+    block.columns[2].values.push_back(*greatest);
+  }
+  return block;
+}
+
+// Frequencies at which the closed forms are drawn: the runs' own and some between each two.
+std::vector<double> drawn_frequencies(const FrequencyResponse& response) {
+  constexpr int between = 8;
+  std::vector<double> frequencies;
+  for (std::size_t i = 0; i + 1 < response.points.size(); ++i) {
+    const double from = response.points[i].frequency, to = response.points[i + 1].frequency;
+    for (int k = 0; k < between; ++k) frequencies.push_back(from + (to - from) * k / between);
+  }
+  frequencies.push_back(response.points.back().frequency);
+  return frequencies;
+}
+
+std::optional<Drawing> response(const Findings& findings) {
+  if (findings.response.points.size() < least_points) return std::nullopt;
+  const Scene& scene = findings.subject.scene;
+  Drawing drawing = drawing_of(findings, "response", "Amplitude over frequency");
+  TableBlock curve{.name = "curve",
+                   .columns = {{"frequency", "of the force, by Omega_n", {}},
+                               {"with the damper", "mean amplitude in the last quarter, by epsilon", {}}}};
+  for (const ResponsePoint& point : findings.response.points) {
+    curve.columns[0].values.push_back(point.frequency);
+    curve.columns[1].values.push_back(point.amplitude.mean);
+  }
+  drawing.table.blocks.push_back(std::move(curve));
+  const auto linear = [&](const std::string& name, const std::string& legend, double mass) {
+    TableBlock block{
+        .name = name,
+        .columns = {{"frequency", "of the force, by Omega_n", {}}, {legend, "amplitude, by epsilon", {}}}};
+    for (const double frequency : drawn_frequencies(findings.response)) {
+      const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
+      if (!std::isfinite(amplitude)) continue;
+      block.columns[0].values.push_back(frequency);
+      block.columns[1].values.push_back(amplitude);
+    }
+    drawing.table.blocks.push_back(std::move(block));
+  };
+  linear("locked", "loose mass locked", 1 + scene.mass_ratio);
+  linear("empty", "box empty", 1);
+  drawing.table.blocks.push_back(
+      {.name = "given",
+       .columns = {{"frequency", "that the scene gives, by Omega_n", {scene.force_frequency}},
+                   {"frequency given",
+                    "its amplitude of the damped motion",
+                    {findings.response.worst().amplitude.mean}}}});
+  return drawing;
+}
+
 std::optional<Drawing> loss(const Findings& findings) {
   constexpr std::size_t least = 10;
   if (findings.loss.eta.size() < least || !findings.best) return std::nullopt;
@@ -92,16 +185,26 @@ std::optional<Drawing> loss(const Findings& findings) {
   Figure figure;
   figure.number = drawing.name;
   figure.table = TableKind::loss_factor;
-  figure.curves = {{"given", {}}};  // a file may be called anything, a line break among it
   figure.ordinate = LossOrdinate::eta;
+  const auto block = [&](const std::string& block_name, const std::string& legend, const LossFactor& loss) {
+    drawing.table.blocks.push_back({.name = block_name,
+                                    .columns = {{"amplitude", "peak amplitude A, by epsilon", loss.amplitude},
+                                                {legend, "eta = -2 d ln A/dt, per radian", loss.eta}}});
+  };
+  block("curve-1", "simulated", findings.loss);
+  if (!findings.loss_after_failure.eta.empty())
+    block("failed-1", "after impact failure", findings.loss_after_failure);
+  if (TableBlock band = loss_band(findings); !band.columns[0].values.empty())
+    drawing.table.blocks.push_back(std::move(band));
+  if (const double e = findings.subject.scene.restitution; e > 0 && e < 1)
+    drawing.table.blocks.push_back(
+        {.name = "fold",
+         .columns = {
+             {"amplitude",
+              "below it one impact per half cycle cannot go on, by epsilon",
+              {fold_amplitude(e)}},
+             {"impacts fail", "least loss factor drawn", {*std::ranges::min_element(findings.loss.eta)}}}});
   FigureRun source{"given", findings.run};
-  add_loss_block(figure, figure.curves[0], source, "1", "simulated", {}, drawing.table);
-  const auto curve = std::ranges::find(drawing.table.blocks, "curve-1", &TableBlock::name);
-  if (curve->columns[0].values.size() < least) return std::nullopt;
-  if (!findings.others.empty()) {
-    add_band_block(figure, figure.curves[0], findings.run, findings.others, "1", drawing.table);
-    if (drawing.table.blocks.back().columns[0].values.empty()) drawing.table.blocks.pop_back();
-  }
   // The closed forms are for zeta = 0. What the primary system's own damping takes comes on top of them.
   const double viscous = 2 * std::exchange(source.run.scene.damping_ratio, 0);
   const std::size_t before = drawing.table.blocks.size();
@@ -157,7 +260,7 @@ std::vector<Drawing> drawings_of(const Findings& findings) {
     drawings.push_back(std::move(*drawing));
   };
   add(decay(findings));
-  if (!findings.forced()) add(loss(findings));
+  add(findings.forced() ? response(findings) : loss(findings));
   add(phase(findings));
   add(motion(findings, findings.begin, "begin", "The motion, from the release on"));
   add(motion(findings, findings.chosen, "best",

@@ -21,14 +21,15 @@ struct Drawing {
 // What there is to draw of the findings, in the order of the page:
 //
 //   decay        "curve" (time, amplitude), "band" (time, least, greatest) if there is an ensemble
-//   loss         as the table of a figure of the loss factor (paper/series.hpp) with one curve; closed forms
-//   are
-//                those of zeta = 0, on which 2 zeta is put
-//   phase        as the table of the figure of phases, but for what the scene has nothing of
+//   loss         as the table of a figure of the loss factor (paper/series.hpp) with one curve, that of the
+//   local
+//                loss factor; closed forms are those of zeta = 0, on which 2 zeta is put; "fold" (amplitude)
+//   response     forced motion: "curve" (frequency, amplitude), "locked" and "empty" likewise, "given"
+//   (frequency) phase        as the table of the figure of phases, but for what the scene has nothing of
 //   begin, best  as the table of a figure of motion
 //   prediction   "curve" (time, spread of the ensemble's amplitudes in percent)
 //
-// A scene in units has "scales" (s by 1/Omega_n, mm by epsilon) beside these.
+// A scene in units has "scales" (s by 1/Omega_n, mm by epsilon, Hz by Omega_n) beside these.
 std::vector<Drawing> drawings_of(const Findings& findings);
 
 }  // namespace impact_damper

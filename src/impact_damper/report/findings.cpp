@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double two_periods = 4 * std::numbers::pi;
 constexpr std::int64_t window_samples = 1001;
-constexpr std::size_t least_half_cycles = 12;  // two rows of the averaged loss factor
 
 // The amplitude that falls are counted from: a release on the way out has no height in its first row.
 std::optional<std::size_t> first_row(const HalfCycles& rows) {
@@ -54,10 +54,27 @@ void find_falls(Findings& findings) {
   }
 }
 
+// The row of impact failure, or behind the last row.
+std::size_t failure_row(const Run& run) {
+  const ImpactFailure failure = impact_failure(run);
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  const std::optional<double> amplitude = failure.first_missed ? failure.first_missed : failure.for_good;
+  if (!amplitude) return rows.size();
+  return static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+}
+
+// Before impact failure, and above its amplitude. Row 0 is less than a half cycle.
 LossFactor loss_of(const Run& run) {
-  const auto is_height = [](double amplitude) { return amplitude > 0; };
-  if (!std::ranges::all_of(run.half_cycles->amplitude, is_height)) return {};
-  return averaged_loss_factor(*run.half_cycles);
+  const std::size_t failure = failure_row(run);
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  LossFactor all = local_loss_factor(*run.half_cycles, 1, failure), loss;
+  for (std::size_t i = 0; i < all.eta.size(); ++i) {
+    if (failure < rows.size() && !(all.amplitude[i] > rows[failure])) continue;
+    loss.amplitude.push_back(all.amplitude[i]);
+    loss.time.push_back(all.time[i]);
+    loss.eta.push_back(all.eta[i]);
+  }
+  return loss;
 }
 
 std::size_t best_row(const LossFactor& loss) {
@@ -65,36 +82,50 @@ std::size_t best_row(const LossFactor& loss) {
 }
 
 void find_best_damping(Findings& findings) {
+  const HalfCycles& rows = *findings.run.half_cycles;
   findings.loss = loss_of(findings.run);
+  findings.loss_after_failure = local_loss_factor(rows, failure_row(findings.run), rows.amplitude.size());
+  for (const Run& other : findings.others) findings.losses_of_others.push_back(loss_of(other));
   const LossFactor& loss = findings.loss;
   const Scene& scene = findings.subject.scene;
   if (scene.restitution == 1 && scene.damping_ratio == 0) return;  // energy only goes to and fro
   if (findings.run.impacts->time.empty()) return;                  // the same at every amplitude
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
   const std::size_t best = best_row(loss);
-  const auto over_losses = [&](const std::vector<double> LossFactor::*column) {
-    return over_all(findings, [&](const Run& run) -> std::optional<double> {
-      const LossFactor each = loss_of(run);
+  const auto over_losses = [&](const std::vector<double> LossFactor::*column) -> std::optional<Spread> {
+    std::vector<double> values{(loss.*column)[best]};
+    for (const LossFactor& each : findings.losses_of_others) {
       if (each.eta.empty()) return std::nullopt;
-      return (each.*column)[best_row(each)];
-    });
+      values.push_back((each.*column)[best_row(each)]);
+    }
+    return spread_of(values);
   };
   findings.best = {loss.eta[best], loss.amplitude[best], loss.time[best], over_losses(&LossFactor::eta),
                    over_losses(&LossFactor::amplitude)};
 }
 
-void find_steady_state(Findings& findings) {
-  const std::vector<double>& all = findings.run.half_cycles->amplitude;
-  if (all.size() < least_half_cycles) return;
-  const std::vector<double> last(all.end() - static_cast<std::ptrdiff_t>(all.size() / 4), all.end());
-  const auto [least, greatest] = std::ranges::minmax(last);
-  const double mean = std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size());
-  findings.steady = {least, mean, greatest, {}};
+Calibration calibration_of(const Engine& engine) {
+  if (const auto* exact = std::get_if<Exact>(&engine)) return exact->calibration;
+  if (const auto* cem = std::get_if<Cem>(&engine)) return cem->calibration;
+  return Calibration::fixed_wall;
+}
+
+void find_loads(Findings& findings) {
+  const Impacts& impacts = *findings.run.impacts;
   const Scene& scene = findings.subject.scene;
-  const double real = 1 - scene.force_frequency * scene.force_frequency;
-  const double imaginary = 2 * scene.damping_ratio * scene.force_frequency;
-  const double response = std::abs(scene.force_amplitude) / std::sqrt(real * real + imaginary * imaginary);
-  if (std::isfinite(response)) findings.steady->without_impacts = response;
+  const Engine& engine = findings.subject.engine;
+  if (impacts.time.empty()) return;
+  Loads loads;
+  for (const double speed : impacts.relative_velocity) loads.speed = std::max(loads.speed, std::abs(speed));
+  const double end = findings.run.end_time, from = findings.forced() ? 0.75 * end : 0;
+  loads.impacts = static_cast<double>(impacts.time.end() - std::ranges::lower_bound(impacts.time, from));
+  loads.time = end - from;
+  if (!std::holds_alternative<Restitution>(engine)) {
+    loads.initial_force = initial_wall_force(scene, calibration_of(engine));
+    if (nominal_contact_time(scene) <= longest_short_contact)
+      loads.contact = short_contact(scene, calibration_of(engine), loads.speed);
+  }
+  findings.loads = loads;
 }
 
 void find_regimes(Findings& findings) {
@@ -183,13 +214,26 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
     findings.last_amplitude = rows.amplitude.back();
     findings.last_peak = rows.peak_time.back();
     if (findings.forced()) {
-      find_steady_state(findings);
+      findings.steady = steady_amplitude(rows);
     } else {
       find_falls(findings);
       find_best_damping(findings);
     }
     find_regimes(findings);
     find_spread(findings);
+  }
+  find_loads(findings);
+  if (findings.forced() && findings.first_amplitude) {
+    // Central differences would take minutes: the same walls in closed form.
+    Engine engine = subject.engine;
+    if (std::holds_alternative<Cem>(engine)) {
+      Exact same_walls;
+      same_walls.calibration = calibration_of(engine);
+      engine = same_walls;
+    }
+    findings.response = frequency_response(subject.scene, engine, ensemble.threads, [&](std::size_t done) {
+      progress("simulating other frequencies, " + std::to_string(done) + " done");
+    });
   }
 
   progress("recording the motion");

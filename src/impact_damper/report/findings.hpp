@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
@@ -33,18 +34,21 @@ struct Fall {
 };
 
 struct BestDamping {
-  double eta = 0;                          // largest averaged loss factor, per radian
+  double eta = 0;                          // largest local loss factor before impact failure, per radian
   double amplitude = 0;                    // at which it is met, by epsilon
   double time = 0;                         // when, by 1/Omega_n
   std::optional<Spread> etas, amplitudes;  // over the ensemble
 };
 
-// A forced motion's amplitudes in the last quarter of its half cycles, by epsilon.
-struct SteadyState {
-  double least = 0, mean = 0, greatest = 0;
-  std::optional<double>
-      without_impacts;  // |f0| / |1 - omega^2 + 2 i zeta omega|; absent where that is infinite
+// What the box and the loose mass have to bear.
+struct Loads {
+  double speed = 0;              // largest relative speed of an impact, by epsilon Omega_n
+  double impacts = 0, time = 0;  // how many there are in which time: of a forced motion its last quarter
+  std::optional<ShortContact> contact;  // of that impact; absent for rigid walls and for soft ones
+  double initial_force = 0;             // of the wall in which the scene begins, by K epsilon
 };
+// A contact that lasts longer, by 1/Omega_n, is not short beside the primary mass's period.
+inline constexpr double longest_short_contact = 0.15;
 
 // A stretch of the recorded history: its samples, both included.
 struct MotionWindow {
@@ -58,11 +62,15 @@ struct Findings {
 
   std::optional<double> first_amplitude;  // of the first half cycle with a peak; the others if there is one
   double last_amplitude = 0;
-  double first_peak = 0, last_peak = 0;  // their times
-  std::vector<Fall> falls;               // free motion: to a half, a tenth, a hundredth, as far as it got
-  std::optional<SteadyState> steady;     // forced motion with enough half cycles
+  double first_peak = 0, last_peak = 0;   // their times
+  std::vector<Fall> falls;                // free motion: to a half, a tenth, a hundredth, as far as it got
+  std::optional<SteadyAmplitude> steady;  // forced motion with enough half cycles
+  FrequencyResponse response;             // forced motion
+  std::optional<Loads> loads;             // if there is an impact
 
-  LossFactor loss;  // free motion; empty where it is too short
+  LossFactor loss;                // free motion, before impact failure; empty where it is too short
+  LossFactor loss_after_failure;  // the same from there on
+  std::vector<LossFactor> losses_of_others;  // as `loss`
   std::optional<BestDamping> best;
 
   std::optional<double> sticking_ends;  // amplitude, end of bounce-down

@@ -21,9 +21,13 @@ std::string caption_of(const std::string& name) {
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss")
-    return "The loss factor over the amplitude, averaged over half cycles; a decay runs from right to left. "
+    return "The loss factor over the amplitude; a decay runs from right to left. "
            "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
-           "put on.";
+           "put on. Dashed: where the closed form ends and impacts fail.";
+  if (name == "response")
+    return "The amplitude under the same force over its frequency: each dot is a run with the damper. "
+           "Dashed: the "
+           "loose mass locked to its box, and the box empty. Upright: the frequency given.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "
@@ -90,7 +94,9 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   const std::vector<Section> sections{
       {"scene", "The scene", scene_html(findings), {}},
       {"decay", findings.forced() ? "Amplitude over time" : "Decay", decay_html(findings), {"decay"}},
-      {"loss", "Loss factor", loss_html(findings), {}},
+      findings.forced()
+          ? Section{"response", "Amplitude over frequency", response_html(findings), {"response"}}
+          : Section{"loss", "Loss factor", loss_html(findings), {}},
       {"regimes", "Regimes", regimes_html(findings), {}},
       {"phase",
        "Phase of the impacts",
@@ -101,6 +107,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
              "two.</p>\n",
        {"phase"}},
       {"motion", "The motion itself", motion_html(findings), {"begin", "best"}},
+      {"loads", "What the walls bear", loads_html(findings), {}},
       {"energy", "Where the energy goes", energy_html(findings), {}},
       {"prediction", "How far this can be predicted", prediction_html(findings), {"prediction"}},
       {"made", "How this page was made", made_html(findings), {}},
@@ -108,7 +115,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   const std::string name = escaped(subject.name);
   std::string body = "<header>\n<h1>Impact damper: " + name + "</h1>\n";
   if (!subject.description.empty()) body += "<p>" + escaped(subject.description) + "</p>\n";
-  body += summary_html(findings) + "</header>\n<nav aria-label=\"Contents\"><ul>\n";
+  body += warnings_html(findings) + summary_html(findings) + "</header>\n<nav aria-label=\"Contents\"><ul>\n";
   for (const Section& section : sections)
     body += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
   body += "</ul></nav>\n<main>\n";

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/motion/elementary.hpp"
 #include "impact_damper/report/speech.hpp"
@@ -14,22 +16,14 @@ std::string part_in_words(double part) {
   return part == 0.5 ? "half" : part == 0.1 ? "a tenth" : "a hundredth";
 }
 
-// What is read of a text with numbers in it: equal for numbers that differ in digits not shown.
-std::string shown(const std::string& html) {
-  std::string text;
-  bool in_tag = false;
-  for (const char c : html) {
-    if (c == '<') in_tag = true;
-    if (!in_tag) text += c;
-    if (c == '>') in_tag = false;
-  }
-  return text;
-}
-
 // "0.1 to 0.2", or one of them where a reader would see no difference.
 std::string range_html(const std::string& low, const std::string& high) {
-  return shown(low) == shown(high) ? high : low + " to " + high;
+  return without_tags(low) == without_tags(high) ? high : low + " to " + high;
 }
+
+// A loss factor for which the closed forms do not hold: they take the amplitude to change little from peak to
+// peak.
+constexpr double far_too_much = 0.5;
 
 // An equivalent viscous damping ratio: that of an oscillator with this loss factor.
 std::string as_viscous(double eta) { return "a viscous damping ratio of " + percent_html(eta / 2); }
@@ -46,21 +40,20 @@ std::string fall_in_short(const Findings& findings) {
   return from + "falls to " + speech.length(last) + " by the end of the run. ";
 }
 
-std::string steady_sentences(const Findings& findings) {
+std::string steady_sentence(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (!findings.steady)
     return "The run is too short to speak of a steady motion: it has " +
            count_html(std::ssize(findings.run.half_cycles->amplitude)) + " half cycles.";
-  const SteadyState& steady = *findings.steady;
-  const std::string text = "In the last quarter of the run the amplitude lies between " +
-                           speech.length(steady.least) + " and " + speech.length(steady.greatest) + ", " +
-                           speech.length(steady.mean) + " on average. With the loose mass taken out ";
-  if (steady.without_impacts)
-    return text + "the same force would hold the primary mass at " + speech.length(*steady.without_impacts) +
-           ".";
-  return text +
-         "the amplitude would grow without end: the force meets the undamped primary mass at its natural "
-         "frequency.";
+  const SteadyAmplitude& steady = *findings.steady;
+  const std::string least = speech.length(steady.least), greatest = speech.length(steady.greatest);
+  std::string text = "In the last quarter of the run the amplitude ";
+  text += without_tags(least) == without_tags(greatest)
+              ? "is " + speech.length(steady.mean) + ". "
+              : "lies between " + least + " and " + greatest + ", " + speech.length(steady.mean) +
+                    " on average. ";
+  if (!steady.settled) text += "It is not settled: it still changes from quarter to quarter of the run. ";
+  return text;
 }
 
 std::string falls_table(const Findings& findings) {
@@ -84,16 +77,21 @@ std::string best_sentences(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   const BestDamping& best = *findings.best;
   const double zeta = findings.subject.scene.damping_ratio;
-  std::string text = "The loss factor η is the part of the energy lost per radian, read off " +
-                     count_html(LossFactorOptions{}.half_cycles + 1) + " successive peaks. It is largest, " +
-                     number_html(best.eta) + ", at an amplitude of " + speech.length(best.amplitude) +
-                     ": the primary mass is damped there as by " + as_viscous(best.eta) + ". ";
+  const LogarithmicFit fit;
+  std::string text =
+      "The loss factor η is the part of the energy lost per radian. It is the slope of a straight line "
+      "through the logarithm of 3 to " +
+      count_html(fit.most_half_cycles + 1) + " successive peaks, no more than lie within a factor of " +
+      number_html(fit.factor) + " of each other. Before impacts fail it is largest, " +
+      number_html(best.eta) + ", at an amplitude of " + speech.length(best.amplitude) +
+      ": the primary mass is damped there as by " + as_viscous(best.eta) + ". ";
   if (zeta > 0) text += "Its own damping accounts for η = 2ζ = " + number_html(2 * zeta) + " of that. ";
   if (best.etas && best.etas->low < best.etas->high)
     text += "Over all releases it is " +
             range_html(number_html(best.etas->low), number_html(best.etas->high)) + ", at " +
             range_html(speech.length(best.amplitudes->low), speech.length(best.amplitudes->high)) + ". ";
-  if (best.amplitude == findings.loss.amplitude.back())
+  const bool failed = findings.failure.first_missed || findings.failure.for_good;
+  if (!failed && best.amplitude == findings.loss.amplitude.back())
     text += "It is found at the end of the run: further down the damping may be better still. ";
   return text;
 }
@@ -108,16 +106,58 @@ std::string theory_sentences(const Findings& findings) {
     return "With <i>e</i> = 0 there is no rebound, and the closed forms drawn for other restitutions do not "
            "hold.";
   const double eta = peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio;
-  constexpr double far_too_much = 0.5;  // for a decay in which the amplitude changes little from peak to peak
   std::string text =
       "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
       "amplitude of " +
-      speech.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the free travel";
-  if (eta < far_too_much)
-    text +=
-        ", with η = " + number_html(eta) + " and a narrower peak than an average over half cycles can show";
-  return text + ". To damp best at the amplitude that matters, choose a free travel of " +
-         number_html(1 / peak_loss_amplitude(e)) + " times that amplitude.";
+      speech.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the clearance";
+  if (eta < far_too_much) text += ", with η = " + number_html(eta);
+  text += ". ";
+  const BestDamping& best = *findings.best;
+  if (const auto motion = single_impact(e, best.amplitude);
+      motion && eta < far_too_much && best.amplitude < equal_spacing_amplitude(e))
+    text += "Where this run is damped best it gives η = " +
+            number_html(motion->loss * scene.mass_ratio + 2 * scene.damping_ratio) + " in place of " +
+            number_html(best.eta) +
+            ": it holds for a steady amplitude, behind which a heavier loose mass lags. ";
+  return text + "The best amplitude is " + percent_html(peak_loss_amplitude(e) / fold_amplitude(e) - 1) +
+         " above " + speech.length(fold_amplitude(e)) +
+         ", where this motion ceases: below, impacts fail and only the primary mass's own damping is left.";
+}
+
+std::string clearance_html(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  const Scene& scene = findings.subject.scene;
+  if (!(scene.restitution > 0 && scene.restitution < 1)) return "";
+  const Tolerances tolerances;
+  const ClearanceRule rule = clearance_rule(scene.restitution, tolerances);
+  const auto percent = [](double part) { return number_html(100 * part) + " %"; };
+  const std::string text =
+      "To damp a given amplitude choose a clearance of " + number_html(1 / rule.amplitude) +
+      " times that amplitude: it is then " + number_html(rule.margin) +
+      " times the one at which impacts fail. So far may <i>e</i> be " + number_html(tolerances.restitution) +
+      " lower, the clearance " + percent(tolerances.clearance) + " wider and the amplitude " +
+      percent(tolerances.amplitude) +
+      " smaller than thought, all at once. This scene's clearance is right for " +
+      speech.length(rule.amplitude) + ".";
+  HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
+                  .heads = {"Clearance", "amplitude", "impacts fail at", "margin"},
+                  .rows = {}};
+  const bool light = peak_loss(scene.restitution) * scene.mass_ratio < far_too_much;
+  if (light) table.heads.emplace_back("η of the impacts");
+  const auto row = [&](const std::string& what, double amplitude, double fold, double loss) {
+    table.rows.push_back({what, number_html(amplitude), number_html(fold), number_html(amplitude / fold)});
+    if (light) table.rows.back().push_back(number_html(loss * scene.mass_ratio));
+  };
+  const double e = scene.restitution;
+  row("for the best damping, without a margin", peak_loss_amplitude(e), rule.fold, peak_loss(e));
+  row("recommended", rule.amplitude, rule.fold, rule.loss);
+  row("recommended, all tolerances at their worst", rule.worst_amplitude, rule.worst_fold, rule.worst_loss);
+  return paragraph_html(text) + table_html(table);
+}
+
+// "is 125 mm (12.5 ε)", or that there is no bound.
+std::string amplitude_or_none(const Speech& speech, double amplitude) {
+  return std::isfinite(amplitude) ? speech.length(amplitude) : "without bound";
 }
 
 }  // namespace
@@ -134,6 +174,19 @@ std::string summary_html(const Findings& findings) {
   else if (findings.steady)
     text = "Under the exciting force the amplitude is in the end " + speech.length(findings.steady->mean) +
            " on average. ";
+  if (findings.steady && !findings.response.empty()) {
+    const Scene& scene = findings.subject.scene;
+    const double force = scene.force_amplitude, zeta = scene.damping_ratio;
+    const double locked = 1 + scene.mass_ratio;
+    const ResponsePoint& worst = findings.response.worst();
+    text += "With the loose mass locked to its box it would be " +
+            amplitude_or_none(speech, linear_response(force, locked, zeta, scene.force_frequency)) +
+            ". At its worst frequency, " + speech.frequency(worst.frequency) + ", the same force " +
+            (worst.amplitude.settled ? "holds" : "drives") + " the damped mass at " +
+            (worst.amplitude.settled ? "" : "an amplitude that is not settled yet, ") +
+            speech.length(worst.amplitude.mean) + "; with the loose mass locked the worst is " +
+            amplitude_or_none(speech, worst_linear_response(force, locked, zeta).amplitude) + ". ";
+  }
   if (findings.best)
     text += "It is damped best at an amplitude of " + speech.length(findings.best->amplitude) + ", as by " +
             as_viscous(findings.best->eta) + ". ";
@@ -149,7 +202,7 @@ std::string decay_html(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   if (!findings.first_amplitude)
     return paragraph_html("The run holds not one whole half cycle: there is no amplitude to follow.");
-  if (findings.forced()) return paragraph_html(steady_sentences(findings));
+  if (findings.forced()) return paragraph_html(steady_sentence(findings));
   const double time = findings.last_peak - findings.first_peak;
   const double fallen = *findings.first_amplitude / findings.last_amplitude;
   std::string html =
@@ -167,22 +220,20 @@ std::string decay_html(const Findings& findings) {
 }
 
 std::string loss_html(const Findings& findings) {
-  if (findings.forced())
-    return paragraph_html(
-        "A loss factor is read off a free decay. This motion is forced: see its amplitudes above, and its "
-        "energy below.");
   if (!findings.first_amplitude)
     return paragraph_html("Without half cycles there is no loss factor to read off.");
   if (findings.best)
-    return paragraph_html(best_sentences(findings)) + paragraph_html(theory_sentences(findings));
+    return paragraph_html(best_sentences(findings)) + paragraph_html(theory_sentences(findings)) +
+           clearance_html(findings);
   const Scene& scene = findings.subject.scene;
   if (findings.run.impacts->time.empty())
     return paragraph_html("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
                           number_html(2 * scene.damping_ratio) + ", at every amplitude.");
   if (findings.loss.eta.empty())
     return paragraph_html(
-        "The loss factor is averaged over " + count_html(LossFactorOptions{}.half_cycles) +
-        " half cycles, and this run is too short for that: let it go further, by a later or a lower stop.");
+        "The loss factor is read off three successive peaks or more, each of a whole half cycle before "
+        "impacts "
+        "fail, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph_html(
       scene.restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
@@ -219,8 +270,96 @@ std::string energy_html(const Findings& findings) {
                 : ". ";
   }
   return table_html(table) +
-         paragraph_html(text + "What is left over when all are added up is " + number_html(ledger.residual) +
-                        " of what went through: rounding.");
+         paragraph_html(text + (ledger.residual == 0
+                                    ? "All of it adds up, to the last digit."
+                                    : "When all are added up, " + number_html(ledger.residual) +
+                                          " of the energy that went through is left over: rounding."));
+}
+
+std::string response_html(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  const Scene& scene = findings.subject.scene;
+  if (findings.response.empty())
+    return paragraph_html("There are too few half cycles to speak of a steady motion at any frequency.");
+  const double force = scene.force_amplitude, zeta = scene.damping_ratio, given = scene.force_frequency;
+  const ResponsePoint& worst = findings.response.worst();
+  HtmlTable table{.caption = "Amplitude under the same force, at the frequency given and at the worst one",
+                  .heads = {"", "at " + speech.frequency(given), "at its worst frequency", "that is at"},
+                  .rows = {}};
+  table.rows.push_back({"with the damper",
+                        findings.steady ? speech.length(findings.steady->mean) : "too short a run",
+                        speech.length(worst.amplitude.mean), speech.frequency(worst.frequency)});
+  const auto linear = [&](const std::string& what, double mass) {
+    const WorstResponse most = worst_linear_response(force, mass, zeta);
+    table.rows.push_back({what, amplitude_or_none(speech, linear_response(force, mass, zeta, given)),
+                          amplitude_or_none(speech, most.amplitude), speech.frequency(most.frequency)});
+  };
+  linear("the loose mass locked to its box", 1 + scene.mass_ratio);
+  linear("the box empty", 1);
+  std::string text =
+      "The loose mass also weighs on the primary one and shifts its resonance. What the impacts do is the "
+      "difference to the loose mass locked to its box, over all frequencies; at a single frequency most of "
+      "it may be "
+      "the shift. ";
+  std::string made =
+      "With the damper each frequency is a run of its own, from the scene's release, of " +
+      speech.time(findings.response.time) +
+      "; the amplitude is the mean over the last quarter of its half cycles. Another release may "
+      "lead to another steady motion. ";
+  if (worst.amplitude.greatest > 1.02 * worst.amplitude.mean)
+    made +=
+        "At the worst frequency the largest half cycle has " + speech.length(worst.amplitude.greatest) + ". ";
+  if (!worst.amplitude.settled)
+    made += "There the amplitude is not settled within that time: it may become larger, or smaller. ";
+  return paragraph_html(text) + table_html(table) + paragraph_html(made);
+}
+
+std::string loads_html(const Findings& findings) {
+  const Speech speech(findings.subject.scales);
+  const Scene& scene = findings.subject.scene;
+  if (!findings.loads)
+    return paragraph_html("There is no impact in this run, so there is nothing for the walls to bear.");
+  const Loads& loads = *findings.loads;
+  const auto& scales = findings.subject.scales;
+  HtmlTable table{.caption = "Loads of the box and of the loose mass in this run",
+                  .heads = {"What", "how much"},
+                  .rows = {}};
+  const auto row = [&](const std::string& what, const std::string& value) {
+    table.rows.push_back({what, value});
+  };
+  row("Largest impact speed, relative", speech.velocity(loads.speed));
+  constexpr double per_hour = 3600;
+  const double rate = loads.impacts / loads.time;
+  row(findings.forced() ? "Impacts, in the last quarter of the run" : "Impacts, on average over the run",
+      scales ? number_html(rate * per_hour / scales->time()) + " in an hour"
+             : number_html(2 * std::numbers::pi * rate) + " in a period 2π/Ω");
+  std::string text;
+  if (loads.contact) {
+    row("Largest force of a wall, in that impact", speech.force(loads.contact->force));
+    row("Duration of a contact",
+        loads.contact->duration ? speech.duration(*loads.contact->duration) : "the mass does not rebound");
+    text =
+        "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
+        "duration as "
+        "1/√<i>k</i>; the speed and the number of impacts hardly do. ";
+    if (scene.wall_stiffness == Scene{}.wall_stiffness)
+      text += "Here <i>k</i> = " + number_html(scene.wall_stiffness) + " times the primary stiffness" +
+              (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "") +
+              ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
+              (scales ? "contact_stiffness" : "wall_stiffness") + "</code>) before you use these two. ";
+  } else if (std::holds_alternative<Restitution>(findings.subject.engine)) {
+    text =
+        "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
+        "contact "
+        "follow from the stiffness of the walls, with the engine <code>exact</code>. ";
+  } else {
+    text =
+        "The walls are so soft that a contact lasts a good part of a period: there is no closed form for its "
+        "force. ";
+  }
+  if (loads.initial_force > 0)
+    row("Force of the wall in which the run begins", speech.force(loads.initial_force));
+  return table_html(table) + paragraph_html(text);
 }
 
 std::string prediction_html(const Findings& findings) {

@@ -7,10 +7,13 @@
 
 namespace impact_damper {
 
-std::string summary_html(const Findings& findings);  // of the whole, a few sentences
+std::string summary_html(const Findings& findings);   // of the whole, a few sentences
+std::string warnings_html(const Findings& findings);  // of the scene, or nothing
 std::string scene_html(const Findings& findings);
-std::string decay_html(const Findings& findings);  // of a forced motion: its amplitudes
-std::string loss_html(const Findings& findings);
+std::string decay_html(const Findings& findings);     // of a forced motion: its amplitudes
+std::string loss_html(const Findings& findings);      // of a free motion
+std::string response_html(const Findings& findings);  // of a forced one
+std::string loads_html(const Findings& findings);
 std::string regimes_html(const Findings& findings);
 std::string motion_html(const Findings& findings);
 std::string energy_html(const Findings& findings);

@@ -12,6 +12,12 @@ std::string impacts_in_words(std::int64_t impacts) {
   return count_html(impacts) + (impacts == 1 ? " impact" : " impacts") + " in every half cycle";
 }
 
+std::string impacts_counted(const Findings& findings) {
+  const auto count = std::ssize(findings.run.impacts->time);
+  return count == 0 ? "there are no impacts"
+                    : count_html(count) + (count == 1 ? " impact was" : " impacts were") + " counted";
+}
+
 std::string regime_table(const Findings& findings) {
   const Speech speech(findings.subject.scales);
   HtmlTable table{.caption = "Regimes found, by the amplitudes between which each lasts",
@@ -65,7 +71,8 @@ std::string strikes(const Findings& findings, const MotionWindow& window) {
   const std::vector<double>& impacts = findings.run.impacts->time;
   const auto count = std::ranges::upper_bound(impacts, time[window.last]) -
                      std::ranges::lower_bound(impacts, time[window.first]);
-  return "the loose mass strikes " + count_html(count) + (count == 1 ? " time. " : " times. ");
+  if (count == 0) return "the loose mass does not strike a wall. ";
+  return "the loose mass strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
 }
 
 }  // namespace
@@ -86,12 +93,14 @@ std::string motion_html(const Findings& findings) {
 std::string regimes_html(const Findings& findings) {
   if (!findings.first_amplitude)
     return paragraph_html("Without half cycles there are no regimes to tell apart; " +
-                          count_html(std::ssize(findings.run.impacts->time)) + " impacts were counted.");
+                          impacts_counted(findings) + ".");
   if (findings.run.impacts->time.empty())
     return paragraph_html(
         "The loose mass never strikes a wall: the primary mass moves too little for that, or too slowly.");
-  std::string text = sticking_sentence(findings) + "There are up to " + count_html(findings.most_impacts) +
-                     (findings.most_impacts == 1 ? " impact" : " impacts") + " in one half cycle. ";
+  std::string text = sticking_sentence(findings);
+  text += findings.most_impacts == 1
+              ? "No half cycle has more than one impact. "
+              : "There are up to " + count_html(findings.most_impacts) + " impacts in one half cycle. ";
   if (findings.windows.empty())
     text += "Their number is nowhere the same for " + count_html(RegimeOptions{}.window_half_cycles) +
             " half cycles in a row. ";

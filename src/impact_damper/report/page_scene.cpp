@@ -1,9 +1,11 @@
 // What a report's page says of the scene itself.
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/report/page_parts.hpp"
 #include "impact_damper/report/speech.hpp"
@@ -111,21 +113,24 @@ std::string engine_sentence(const Findings& findings) {
   return text + ".</p>\n";
 }
 
-// Numbers that are admitted, but are more often a slip than meant: a length in metres, a mass in grams.
-std::string second_looks(const Findings& findings) {
+}  // namespace
+
+// Numbers that are valid, but more often a slip than meant: a length in metres, a mass in grams.
+std::string warnings_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const Speech speech(findings.subject.scales);
   const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
   std::vector<std::string> looks;
+  for (std::string caution : cautions_of(scene, findings.subject.scales)) {
+    caution[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(caution[0])));
+    looks.push_back(caution + (caution.ends_with('?') ? "" : "."));
+  }
   if (speech.in_units() && reach > 1000)
     looks.push_back("The primary mass begins with an amplitude of about " + speech.length(reach) +
                     ": is the free travel given in millimetres?");
   if (speech.in_units() && reach > 0 && reach < 1e-3)
     looks.push_back("The free travel is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
-  if (scene.mass_ratio > 1)
-    looks.push_back("The loose mass is " + number_html(scene.mass_ratio) +
-                    " times as heavy as the primary mass.");
   if (scene.wall_stiffness < 100 && !std::holds_alternative<Restitution>(findings.subject.engine))
     looks.push_back(
         "The walls are only " + number_html(scene.wall_stiffness) +
@@ -139,8 +144,6 @@ std::string second_looks(const Findings& findings) {
   return html + "</ul>\n";
 }
 
-}  // namespace
-
 std::string scene_html(const Findings& findings) {
   const std::string scales =
       findings.subject.scales
@@ -152,7 +155,7 @@ std::string scene_html(const Findings& findings) {
             "natural frequency, velocities in εΩ, energies in Kε². A scene file may give masses in kilograms "
             "and lengths in "
             "millimetres instead; this page then speaks of both.</p>\n";
-  return scene_table(findings.subject) + scales + engine_sentence(findings) + second_looks(findings);
+  return scene_table(findings.subject) + scales + engine_sentence(findings);
 }
 
 }  // namespace impact_damper

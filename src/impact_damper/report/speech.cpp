@@ -54,6 +54,17 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
+std::string without_tags(const std::string& html) {
+  std::string text;
+  bool in_tag = false;
+  for (const char c : html) {
+    if (c == '<') in_tag = true;
+    if (!in_tag) text += c;
+    if (c == '>') in_tag = false;
+  }
+  return text;
+}
+
 std::string number_html(double value, int digits) {
   const double size = std::abs(value);
   double power = 1;  // of ten: from here on the digits asked for are all before the point
@@ -74,7 +85,10 @@ std::string Speech::both(double value, double scale, std::string_view unit, std:
 }
 
 std::string Speech::length(double value) const {
-  return both(value, scales_ ? scales_->length : 1, "mm", "ε");
+  constexpr double small = 0.1;  // mm
+  const double scale = scales_ ? scales_->length : 1;
+  if (value != 0 && std::abs(value * scale) < small) return both(value, 1e3 * scale, "µm", "ε");
+  return both(value, scale, "mm", "ε");
 }
 
 std::string Speech::time(double value) const {
@@ -84,7 +98,19 @@ std::string Speech::time(double value) const {
 }
 
 std::string Speech::velocity(double value) const {
-  return both(value, scales_ ? scales_->velocity() : 1, "mm/s", "εΩ");
+  return both(value, scales_ ? scales_->velocity() / 1000 : 1, "m/s", "εΩ");
+}
+
+std::string Speech::force(double value) const {
+  return both(value, scales_ ? scales_->force() : 1, "N", "Kε");
+}
+
+std::string Speech::frequency(double value) const {
+  return both(value, scales_ ? scales_->frequency() : 1, "Hz", "Ω");
+}
+
+std::string Speech::duration(double value) const {
+  return both(value, scales_ ? 1000 * scales_->time() : 1, "ms", "/Ω");
 }
 
 std::string Speech::energy(double value) const {

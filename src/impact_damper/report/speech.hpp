@@ -18,6 +18,8 @@ std::string escaped(std::string_view text);
 std::string number_html(double value, int digits = 3);
 std::string count_html(std::int64_t count);
 std::string percent_html(double part);  // of 1: "12.3 %"
+// What is read of HTML: equal for numbers that differ in digits not shown.
+std::string without_tags(const std::string& html);
 
 class Speech {
  public:
@@ -27,10 +29,13 @@ class Speech {
   const Scales& scales() const { return *scales_; }
 
   // Of a dimensionless number. In units these come first, the dimensionless number in brackets:
-  std::string length(double value) const;    // "60 mm (6 ε)", or "6 ε"
+  std::string length(double value) const;    // "60 mm (6 ε)", or "6 ε"; below 0.1 mm "4.94 µm (0.0236 ε)"
   std::string time(double value) const;      // "12.3 s (39.2 periods)", or "39.2 periods (t = 246)"
-  std::string velocity(double value) const;  // "50 mm/s (0.25 εΩ)"
+  std::string velocity(double value) const;  // "0.05 m/s (0.25 εΩ)"
+  std::string force(double value) const;     // "28.8 N (0.18 Kε)"
   std::string energy(double value) const;    // "28.8 J (18 Kε²)"
+  std::string frequency(double value) const;  // "3.12 Hz (0.98 Ω)"
+  std::string duration(double value) const;   // of a contact: "0.32 ms (0.0064 by 1/Ω)"
 
  private:
   std::string both(double value, double scale, std::string_view unit, std::string_view by) const;
