@@ -32,7 +32,8 @@ def typed(text: str) -> list:
     value in disguise."""
     text = re.sub(r"\{\{[^{}]*\}\}|^::: figure .*$|\(#reference-\d+\)", "", text, flags=re.M)
     text = re.sub(r"^::: equation .*\n((?:.*\n)*?):::$", r"$$\1$$", text, flags=re.M)
-    text = re.sub(r"[Ee]quations? \(\d+\)( (and|to) \(\d+\))?|\[reference \d+\]|SHA-256|10\^\{-\d+\}", "", text)
+    text = re.sub(r"[Ee]quations? \(\d+\)( (and|to) \(\d+\))?|\[reference \d+\]|SHA-256", "", text)
+    text = re.sub(r"10\^\{-\d+\}", "x", text)
     text = re.sub(r"\b(19|20)\d\d\b", "", text)
     formulas = re.findall(r"\$\$.*?\$\$|\$[^$]*\$", text, re.S)
     found = [number for formula in formulas for number in re.findall(r"\d+\.\d+|\d{2,}|\.\d+", formula)]
@@ -62,7 +63,7 @@ class TheReport(unittest.TestCase):
         other = FOLDER / "verdicts.json"
         other.write_text(json.dumps(verdicts))
         after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
-        sentence = r'the result here is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
+        sentence = r'the\s+result\s+here\s+is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
         self.assertEqual(re.search(sentence, before)[1], said)
         self.assertEqual(re.search(sentence, after)[1], "0.4321")
         count = r'title="count.not-reproduced">(\d+)<'
