@@ -56,7 +56,7 @@ def markdown(text: str) -> str:
 
 def plain(value) -> str:
     """A result in four digits, without markup."""
-    return "none" if value is None else f"{value + 0.0:.4g}".replace("-", "−")  # + 0.0: there is no -0
+    return "none" if value is None else re.sub("^-", "−", f"{value + 0.0:.4g}")  # + 0.0: there is no -0
 
 
 def ours(told: dict) -> str:
@@ -178,7 +178,7 @@ class Html(Form):
             f'<tr id="claim-{name}"><th scope="row" data-head="name"><code>{name}</code></th>'
             f'<td data-head="where">{escape(self.values.claims[name]["section"])}</td>'
             f'<td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
-            f'<td data-head="ours">{self.words(ours)}</td>'
+            f'<td data-head="ours" data-value="{self.values.verdicts[name]["ours"]}">{self.words(ours)}</td>'
             f'<td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for name, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("name", "where", "claim", "paper", "ours", "verdict"))

@@ -39,8 +39,9 @@ std::string set_swhid(std::string_view swhid) {
          std::string(swhid.substr(digits)) + '}';
 }
 
-// One entry, in fields that every style of BibTeX prints; `note` is TeX. The commit and its tree are this program's:
-// they are not known for another version's manifest, nor for a program built from sources that were changed.
+// One entry, in fields that every style of BibTeX prints; `note` is TeX. The commit and its tree are this
+// program's: they are not known for another version's manifest, nor for a program built from sources that
+// were changed.
 std::string entry(const Manifest& manifest, const std::string& note) {
   std::string authors;
   for (const std::string& author : manifest.authors)
@@ -155,7 +156,8 @@ int cite(Arguments arguments) {
   for (const Stamped& each : figures) {
     text += made_from(manifest, each);
     const CitedFile& cited = each.table ? each.table->content : each.figure->script;
-    note += (note.empty() ? "Figure " : "; figure ") + each.figure->number + ", stamp " + stamp_of(each).substr(0, 8);
+    note += (note.empty() ? "Figure " : "; figure ") + each.figure->number + ", stamp " +
+            stamp_of(each).substr(0, 8);
     if (!cited.swhid.empty()) note += ", " + set_swhid(cited.swhid);
   }
   text += entry(manifest, note);
@@ -175,8 +177,10 @@ Command cite_command(CLI::App& program) {
   app->add_option("--manifest", "what the figures were made from; default data/reference/manifest.json")
       ->type_name("FILE");
   app->footer(
-      "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers (SWHID) of "
-      "the\nsource tree and of the table; what a figure was made from stands above it as a comment. A stamp is the "
+      "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers "
+      "(SWHID) of "
+      "the\nsource tree and of the table; what a figure was made from stands above it as a comment. A stamp "
+      "is the "
       "beginning\nof the SHA-256 of the table\n"
       "that is drawn (of the script where there is none) and the version: it holds for data, not for the "
       "picture's\n"
