@@ -78,8 +78,10 @@ class TheReport(unittest.TestCase):
             cycles = json.loads((BUILD / f"runs/exact/{scene}.json").read_text())["half_cycles"]
             time, amplitude = next((t, a) for t, a in zip(cycles["peak_time"], cycles["amplitude"]) if a <= 0.1)
             rate = (36 - amplitude ** 2) / (6 + amplitude) / (time - cycles["peak_time"][0]) / ratio
-            [told] = set(re.findall(rf'title="rate.{scene}">([\d.]+)<', page))
-            self.assertLess(abs(float(told) - rate), 0.0006, scene)
+            told = re.findall(rf'title="rate.{scene}">([\d.]+)<', page)
+            self.assertTrue(told, scene)
+            for each in told:  # in two digits or three, of which trailing zeros are not written
+                self.assertLess(abs(float(each) - rate), 0.0051 if len(each) == 4 else 0.0006, scene)
         [told] = set(re.findall(r'title="rate.rule">([\d.]+)<', page))
         self.assertEqual(told, "0.17")
 
