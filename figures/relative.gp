@@ -27,7 +27,7 @@ set arrow 2 from from,1 to to,1 nohead lc rgb black lw 2.2 front
 set key at graph 0.985, first 1.07 right center horizontal width 1 font ",11"
 stuck = !has("stuck") ? "" : \
   'table index "stuck" using 1:3:($2-$1):(0) with vectors nohead lc rgb orange lw 6 title "stuck",'
-eval 'plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6 notitle,'.stuck.\
+eval 'plot table index "motion" using 1:5 with lines lc rgb blue lw 1.6 title "secondary mass",'.stuck.\
   'table index "impacts" using 1:2 with points pt 7 ps 0.45 lc rgb vermillion title "impacts"'
 eval axes("t", "y", "")
 
@@ -45,6 +45,6 @@ set ylabel "cavity x" offset 1,0
 set yrange [-reach:reach]
 set ytics autofreq
 set arrow 3 from from,0 to to,0 nohead lc rgb grey lw 0.6
-plot table index "motion" using 1:2 with lines lc rgb black lw 1.4
+plot table index "motion" using 1:2 with lines lc rgb black lw 1.4 title "cavity"
 eval axes("t", "x", "")
 unset multiplot

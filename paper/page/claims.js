@@ -4,8 +4,9 @@
 for (const table of document.querySelectorAll(".claims table")) {
   const body = table.tBodies[0], rows = [...body.rows];
   const key_of = (row, column) => {
-    const text = row.cells[column].textContent, number = parseFloat(text.replaceAll("−", "-"));
-    return /^[-−.\d]/.test(text) && !Number.isNaN(number) ? [0, number, text] : [1, 0, text];
+    const {textContent: text, dataset: {value}} = row.cells[column];
+    const number = parseFloat(value ?? (/^[-−.\d]/.test(text) ? text.replace("−", "-") : ""));
+    return Number.isNaN(number) ? [1, 0, text] : [0, number, text];
   };
   const compare = (a, b) => a[0] - b[0] || a[1] - b[1] || a[2].localeCompare(b[2], "en");
   [...table.tHead.rows[0].cells].forEach((head, column) => {

@@ -74,6 +74,26 @@ function nearest_on(chain, to) {
   return best;
 }
 
+// Below a figure that says its file's name: the drawing as it was made, and the table that stands in the page, to keep.
+function offer(figure) {
+  if (!figure.dataset.file) return;
+  const links = document.createElement("p");
+  links.className = "files";
+  const link = (name, type, text) => {
+    const a = links.appendChild(document.createElement("a"));
+    a.download = a.textContent = name;
+    a.href = URL.createObjectURL(new Blob([text], {type}));
+  };
+  const drawing = figure.querySelector("svg").cloneNode(true);
+  const {width, height} = drawing.viewBox.baseVal;
+  drawing.setAttribute("width", width);
+  drawing.setAttribute("height", height);
+  link(figure.dataset.file, "image/svg+xml", new XMLSerializer().serializeToString(drawing));
+  const table = figure.querySelector("script[data-file]");
+  if (table) link(table.dataset.file, table.type, table.textContent.replace(/^\n/, ""));
+  figure.querySelector("figcaption").append(links);
+}
+
 function enliven(figure) {
   const svg = figure.querySelector("svg");
   const {axes} = JSON.parse(svg.querySelector("metadata").textContent);
@@ -98,11 +118,12 @@ function enliven(figure) {
       mark.setAttribute("cx", point[0]);
       mark.setAttribute("cy", point[1]);
       const {width, height} = svg.viewBox.baseVal;
-      // On that side of the point where there is more room.
-      const right = point[0] > width / 2;
-      reading.style.left = right ? "auto" : `${100 * point[0] / width + 2}%`;
-      reading.style.right = right ? `${100 - 100 * point[0] / width + 2}%` : "auto";
-      reading.style.top = `${100 * point[1] / height}%`;
+      // On that side of the point where there is more room of what is in sight: a narrow window shows a part.
+      const box = svg.parentNode, at = point[0] / width * svg.clientWidth;
+      const right = at - box.scrollLeft > box.clientWidth / 2;
+      reading.style.left = `${right ? at - 8 : at + 8}px`;
+      reading.style.top = `${point[1] / height * svg.clientHeight}px`;
+      reading.style.transform = `translate(${right ? "-100%" : "0"}, -50%)`;
     }
     reading.textContent = text;
   };
@@ -170,4 +191,7 @@ function enliven(figure) {
   figure.querySelector(".drawing").after(switches);
 }
 
-document.querySelectorAll("figure.plot").forEach(enliven);
+document.querySelectorAll("figure.plot").forEach(figure => {
+  offer(figure);
+  enliven(figure);
+});

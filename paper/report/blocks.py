@@ -1,19 +1,57 @@
-"""What the report's text calls for by {{figures N...}}, {{picture FILE WORDS}} and {{claims}}: figures with what stands
-beside them, and the table of all claims; as HTML and as LaTeX."""
+"""What the report's text calls for: figures with what stands beside them, numbered equations, the list of references and
+the table of all claims; as HTML and as LaTeX.
+
+    ::: figure N             figure N of the catalogue; the lines up to ::: are its caption, in Markdown
+    ::: picture LETTER FILE  another picture, an SVG of this project, with the next letter for its number
+    ::: equation NAME        a numbered equation, in LaTeX's notation
+    {{figure N}}, {{equation NAME}}          links to them
+    {{references}}, {{claims}}               references.md; the table of all claims
+"""
 import re
+import subprocess
 from html import escape
 from pathlib import Path
 
 from values import Mistake, Values, stem_of
 
-# What the claims' and figures' words hold beyond ASCII, for a LaTeX that reads it as text (frame.tex declares the
-# rest). A character that is missing there stops LaTeX with its name.
-LATEX = {"\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "_": r"\_", "%": r"\%",
-         "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}"}
+# Mathematics in the words of claims, which are plain ASCII: what is set, and as which formula.
+GREEK = {"eta": r"\eta", "nu": r"\nu", "zeta": r"\zeta", "pi": r"\pi"}
+FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
+    (r"L/sqrt\(pi\^2 \+ L\^2\) with L = -ln e", r"$L/\\sqrt{\\pi^2 + L^2}$ with $L = -\\ln e$"),
+    (r"Omega_m = sqrt\(K_M/M\)", r"$\\Omega_m = \\sqrt{K_M/M}$"),
+    (r"sqrt\(k\)", r"$\\sqrt{k}$"),
+    (r"nu \(x'\^2 \+ y'\^2\)/2", r"$\\nu(x'^2 + y'^2)/2$"),
+    (r"y'' = -x''", r"$y'' = -x''$"),
+    (r"d ln \(w/A\) / d ln A", r"$d\\ln(w/A)/d\\ln A$"),
+    (r"d ln (eta|w) / d ln (A|nu)", lambda m: rf"$d\ln {GREEK.get(m[1], m[1])}/d\ln {GREEK.get(m[2], m[2])}$"),
+    (r"2 dx/x", r"$2\\Delta x/x$"),
+    (r"A eta_s/nu", r"$A\\eta_s/\\nu$"),
+    (r"A eta/nu", r"$A\\eta/\\nu$"),
+    (r"\b2 (pi|zeta)\b", lambda m: f"$2{GREEK[m[1]]}$"),
+    (r"\b(nu|zeta|eta|e|k|A|x0) = ([\d.]+(?:e[+-]?\d+)?)",
+     lambda m: f"${GREEK.get(m[1], m[1].replace('x0', 'x_0'))} = {scientific(m[2])}$"),
+    (r"\b1 - e\b", r"$1 - e$"),
+    (r"\b(nu|zeta|eta|pi)\b", lambda m: f"${GREEK[m[1]]}$"),
+    (r"\b[\d.]+e[+-]?\d+\b", lambda m: f"${scientific(m[0])}$"))]
 
 
-def latex(text: str) -> str:
-    return "".join(LATEX.get(c, c) for c in text)
+def scientific(number: str) -> str:
+    """1e-8 as a formula."""
+    mantissa, _, exponent = number.partition("e")
+    if not exponent:
+        return number
+    return ("" if mantissa == "1" else mantissa + r"\times ") + f"10^{{{int(exponent)}}}"
+
+
+def markdown(text: str) -> str:
+    """The words of a claim with their formulas as Markdown."""
+    parts = [text]
+    for pattern, formula in FORMULAS:
+        # What is already a formula is no text: every other part.
+        parts = [piece for i, part in enumerate(parts) for piece in
+                 (re.split(r"(\$[^$]*\$)", pattern.sub(formula, part)) if i % 2 == 0 else [part])]
+    return "".join(re.sub(r"([\\`*_{}\[\]<>#^~|@\"'])", r"\\\1", part) if i % 2 == 0 else part
+                   for i, part in enumerate(parts))
 
 
 def rows_of(values: Values, ids) -> list:
@@ -23,17 +61,30 @@ def rows_of(values: Values, ids) -> list:
              values.verdicts[name]["verdict"]) for name in ids]
 
 
-def files_of(figure: dict) -> str:
-    scenes = dict.fromkeys(curve["scene"] for curve in figure.get("curves", []))
-    parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] if scenes else []
-    parts += [f"table {stem_of(figure['figure'])}.dat"] if scenes else []
-    return "; ".join(parts + [f"script {figure['script']}"])
+def scenes_of(figure: dict) -> list:
+    return list(dict.fromkeys(curve["scene"] for curve in figure.get("curves", [])))
+
+
+def table_of(values: Values, number: str):
+    """The file of a figure's table; None for a drawing."""
+    file = values.build / f"series/exact/{stem_of(number)}.dat"
+    return file if values.figures[number]["table"] != "drawing" else None
 
 
 def parameters_of(values: Values, number: str) -> str:
-    table = values.build / f"series/exact/{stem_of(number)}.dat"
-    found = re.search("^# Parameters: (.*)$", table.read_text(encoding="utf-8"), re.M) if table.exists() else None
+    table = table_of(values, number)
+    found = re.search("^# Parameters: (.*)$", table.read_text(encoding="utf-8"), re.M) if table else None
     return found[1] if found else ""
+
+
+def made_from(values: Values, number: str) -> str:
+    """What a figure is made from, as a sentence."""
+    figure, scenes = values.figures[number], scenes_of(values.figures[number])
+    table = table_of(values, number)
+    parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + [f"table {table.name}" if table else ""]
+    return (f"{parameters_of(values, number)}. " if parameters_of(values, number) else "") + \
+        f"Made from {', '.join([part for part in parts if part] + ['script ' + figure['script']])}; " \
+        f"stamp {values.stamps[number]} · {values.version}."
 
 
 def picture_html(svg: str, name: str, words: str) -> str:
@@ -43,9 +94,31 @@ def picture_html(svg: str, name: str, words: str) -> str:
     return re.sub(r"(id=['\"]|href='#|url\(#)(?!" + name + "-)", rf"\g<1>{name}-", svg)
 
 
-class Html:
+class Form:
+    """What HTML and LaTeX have in common."""
+
     def __init__(self, values: Values):
         self.values = values
+        self.pictures = {}   # letter -> SVG file
+        self.equations = {}  # name -> number, in the order of the text
+        self.set = {}        # words of a claim -> the same, set
+
+    def words(self, text: str) -> str:
+        """The words of a claim, set: all claims' by one call of pandoc, a paragraph each."""
+        if not self.set:
+            known = list(dict.fromkeys(text for row in rows_of(self.values, self.values.verdicts) for text in row[1:4]))
+            done = subprocess.run(["pandoc", "--from=markdown-smart", f"--to={self.pandoc}", "--mathml", "--wrap=none"],
+                                  input="\n\n".join(map(markdown, known)), capture_output=True, text=True, check=True)
+            self.set = dict(zip(known, self.paragraphs(done.stdout), strict=True))
+        return self.set[text]
+
+
+class Html(Form):
+    pandoc = "html5"
+
+    def paragraphs(self, text: str) -> list:
+        # The formula's source, which MathML carries beside it, would be part of the words.
+        return re.findall(r"<p>(.*)</p>", re.sub(r"<annotation.*?</annotation>", "", text))
 
     def value(self, name: str, text: str) -> str:
         """Whose value it is shows under the cursor."""
@@ -54,29 +127,37 @@ class Html:
     def reference(self, number: str) -> str:
         return f"[Figure {number}](#figure-{number})"
 
-    def figures(self, numbers: list) -> str:
-        return "\n\n".join(self.figure(number) for number in numbers)
+    def equation_reference(self, name: str) -> str:
+        return f"[equation ({self.equations[name]})](#equation-{name})"
 
-    def figure(self, number: str) -> str:
+    def equation(self, name: str, formula: str) -> str:
+        return f"::: {{#equation-{name} .equation}}\n$${formula}$$\n\n[({self.equations[name]})]{{.number}}\n:::"
+
+    def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
         svg = (values.build / f"figures/{stem_of(number)}.svg").read_text(encoding="utf-8")
         rows = "".join(
-            f"<tr><td>{escape(statement)}</td><td>{escape(paper)}</td><td>{escape(ours)}</td>"
-            f'<td class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
+            f'<tr><td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
+            f'<td data-head="ours">{self.words(ours)}</td><td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
-        return raw("html", f"""<figure class="plot" id="figure-{number}">
-<div class="drawing">{picture_html(svg, stem_of(number), figure['title'])}</div>
-<figcaption><b>Figure {number}.</b> {escape(figure['title'])}{'. ' * bool(parameters_of(values, number))}{escape(parameters_of(values, number))}
-<span class="pale">— {escape(files_of(figure))}; stamp {values.stamps[number]} · {values.version}</span></figcaption>
-<div class="wide"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th><th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
-<tbody>{rows}</tbody></table></div>
+        table = table_of(values, number)
+        # The page's script makes a link of it.
+        data = f'<script type="text/plain" data-file="{table.name}">\n{table.read_text(encoding="utf-8")}</script>' if table else ""
+        claims = f"""<div class="wide rows"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th>
+<th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
+<tbody>{rows}</tbody></table></div>""" if rows else ""
+        return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(number)}.svg">
+<div class="drawing">{picture_html(svg, stem_of(number), figure['title'])}</div>{data}
+<figcaption>""") + f"\n\n**Figure {number}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
+</figcaption>
+{claims}
 </figure>""")
 
-    def picture(self, file: Path, words: str) -> str:
+    def picture(self, letter: str, file: Path, caption: str) -> str:
         name = file.stem.replace("_", "-")
-        return raw("html", f'<figure id="{name}"><div class="drawing">'
-                           f'{picture_html(file.read_text(encoding="utf-8"), name, words)}</div>'
-                           f"<figcaption>{escape(words)}</figcaption></figure>")
+        drawing = picture_html(file.read_text(encoding="utf-8"), name, caption.split(". ")[0].replace("\n", " "))
+        return raw("html", f'<figure class="other" id="figure-{letter}"><div class="drawing">{drawing}</div>\n<figcaption>') + \
+            f"\n\n**Figure {letter}.** {caption}\n\n" + raw("html", "</figcaption></figure>")
 
     def claims(self) -> str:
         counts = {verdict: sum(v["verdict"] == verdict for v in self.values.verdicts.values())
@@ -85,21 +166,24 @@ class Html:
             f'<button type="button" aria-pressed="false" data-verdict="{verdict.replace(" ", "-")}">{count} {verdict}</button>'
             for verdict, count in counts.items())
         rows = "".join(
-            f'<tr id="claim-{name}"><th scope="row"><code>{name}</code></th><td>{escape(self.values.claims[name]["section"])}</td>'
-            f"<td>{escape(statement)}</td><td>{escape(paper)}</td>"
-            f"<td>{escape(ours)}</td>"
-            f'<td class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
+            f'<tr id="claim-{name}"><th scope="row" data-head="name"><code>{name}</code></th>'
+            f'<td data-head="where">{escape(self.values.claims[name]["section"])}</td>'
+            f'<td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
+            f'<td data-head="ours" data-value="{self.values.verdicts[name]["ours"]}">{self.words(ours)}</td>'
+            f'<td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for name, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("name", "where", "claim", "paper", "ours", "verdict"))
         return raw("html", f"""<div class="claims"><div class="switches" role="group" aria-label="Claims shown">{buttons}</div>
-<div class="wide" tabindex="0" role="region" aria-label="All claims"><table><caption>Ours is the median over an ensemble of minutely different releases, on which the verdict is; in brackets its extremes.</caption>
+<div class="wide rows" tabindex="0" role="region" aria-label="All claims"><table><caption>Ours is the median of the ensemble;
+in brackets its extremes.</caption>
 <thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>""")
 
 
-class Latex:
-    def __init__(self, values: Values):
-        self.values = values
-        self.pictures = []  # SVG files that are wanted as PDF
+class Latex(Form):
+    pandoc = "latex"
+
+    def paragraphs(self, text: str) -> list:
+        return [part.strip() for part in text.strip().split("\n\n")]
 
     def value(self, name: str, text: str) -> str:
         return text
@@ -107,46 +191,76 @@ class Latex:
     def reference(self, number: str) -> str:
         return rf"`\hyperlink{{figure-{number}}}{{Figure~{number}}}`{{=latex}}"
 
-    def figures(self, numbers: list) -> str:
-        return "\n\n".join(self.figure(number) for number in numbers)
+    def equation_reference(self, name: str) -> str:
+        return rf"`\hyperref[{name}]{{equation~(\ref*{{{name}}})}}`{{=latex}}"
 
-    def figure(self, number: str) -> str:
+    def equation(self, name: str, formula: str) -> str:
+        return raw("latex", rf"\begin{{equation}}\label{{{name}}}" + f"\n{formula}\n" + r"\end{equation}")
+
+    def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
         picture = values.build / f"figures/{stem_of(number)}.pdf"
-        rows = "\n\n".join(rf"\claim{{{latex(statement)}}}{{{latex(paper)}}}{{{latex(ours)}}}{{{verdict}}}"
+        rows = "\n\n".join(rf"\claim{{{self.words(statement)}}}{{{self.words(paper)}}}{{{self.words(ours)}}}{{{verdict}}}"
                            for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
-        words = ". ".join(part for part in (figure["title"], parameters_of(values, number)) if part)
-        return raw("latex", rf"""\paperfigure{{{number}}}{{{picture}}}{{{latex(words)}.}}{{{latex(files_of(figure))}; stamp
-{values.stamps[number]}~· {values.version}}}{{{rows}}}""")
+        made = made_from(values, number).replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
+        return raw("latex", rf"\begin{{paperfigure}}{{{number}}}{{{picture}}}") + f"\n\n**Figure {number}.** {caption}\n\n" + \
+            raw("latex", rf"\madefrom{{{made}}}" + f"\n\n{rows}\n" + r"\end{paperfigure}")
 
-    def picture(self, file: Path, words: str) -> str:
-        self.pictures.append(file)
-        return raw("latex", rf"\widepicture{{{file.stem}.pdf}}{{{latex(words)}}}")
+    def picture(self, letter: str, file: Path, caption: str) -> str:
+        return raw("latex", rf"\begin{{widepicture}}{{{letter}}}{{{file.stem}.pdf}}") + f"\n\n**Figure {letter}.** {caption}\n\n" + \
+            raw("latex", r"\end{widepicture}")
 
     def claims(self) -> str:
-        rows = "\n".join(rf"{latex(statement)} & {latex(paper)} & {latex(ours)} & {verdict} \\"
+        rows = "\n".join(rf"{self.words(statement)} & {self.words(paper)} & {self.words(ours)} & {verdict} \\"
                          for _, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
-        return raw("latex", rf"\begin{{claimtable}}" + "\n" + rows + "\n" + r"\end{claimtable}")
+        return raw("latex", r"\begin{claimtable}" + "\n" + rows + "\n" + r"\end{claimtable}")
 
 
 def raw(form: str, text: str) -> str:
     return f"```{{={form}}}\n{text}\n```"
 
 
+BLOCK = re.compile(r"^::: (figure|picture|equation) (.*)\n((?:(?!:::).*\n)*?):::$", re.M)
+
+
 def filled(text: str, values: Values, form) -> str:
     """The Markdown of `text` with all names and blocks put in."""
+    for kind, words, _ in BLOCK.findall(text):
+        if kind == "equation":
+            if words in form.equations:
+                raise Mistake(f"::: equation {words}: there are two")
+            form.equations[words] = len(form.equations) + 1
+        elif kind == "picture":
+            letter, _, file = words.partition(" ")
+            form.pictures[letter] = values.source / file
+        elif words not in values.figures:
+            raise Mistake(f"::: figure {words}: no figure is called {words}")
+
+    def block(match) -> str:
+        kind, words, inside = match[1], match[2], match[3].strip()
+        if kind == "equation":
+            return form.equation(words, inside)
+        if kind == "figure":
+            return form.figure(words, inside)
+        letter = words.partition(" ")[0]
+        return form.picture(letter, form.pictures[letter], inside)
+
     def called(match) -> str:
         name, _, how = match[1].replace("\\|", "|").partition("|")  # in a table's row it is written \|
-        word, *rest = name.split()
-        if word in ("figure", "figures"):
-            for number in rest:
-                if number not in values.figures:
-                    raise Mistake(f"{{{{{match[1]}}}}}: no figure is called {number}")
-            return form.reference(rest[0]) if word == "figure" else form.figures(rest)
-        if word == "picture":
-            return form.picture(values.source / rest[0], " ".join(rest[1:]))
+        word, _, rest = name.partition(" ")
+        if word == "figure":
+            if rest not in values.figures and rest not in form.pictures:
+                raise Mistake(f"{{{{{match[1]}}}}}: no figure is called {rest}")
+            return form.reference(rest)
+        if word == "equation":
+            if rest not in form.equations:
+                raise Mistake(f"{{{{{match[1]}}}}}: no equation is called {rest}")
+            return form.equation_reference(rest)
+        if name == "references":
+            return (Path(__file__).parent / "references.md").read_text(encoding="utf-8")
         if name == "claims":
             return form.claims()
         return form.value(name, values.written(name, how))
 
-    return re.sub(r"\{\{([^{}]+)\}\}", called, text)
+    # First the values: a figure's claims and table, which blocks put in, are no text to fill.
+    return BLOCK.sub(block, re.sub(r"\{\{([^{}]+)\}\}", called, text))

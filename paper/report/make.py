@@ -40,7 +40,8 @@ def converted(text: str, form: str, frame: str, values: Values, *options: str) -
         template.write_text(frame, encoding="utf-8")
         return called(["pandoc", "--from=markdown", f"--to={form}", "--toc", f"--template={template}",
                        "-M", f"date={values.state['date']}", "-M", f"commit={values.state['commit']}",
-                       "-M", f"version={values.version}", *options], input=text)
+                       "-M", f"version={values.version}", "-M", f"author={values.authors}", "--number-sections", *options],
+                      input=text)
 
 
 def put(text, file: Path):
@@ -63,6 +64,7 @@ def html_of(text: str, values: Values) -> str:
         frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
     page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
                      "--shift-heading-level-by=1", "--toc-depth=3")
+    page = re.sub(r'((?:section-number">|data-number="))0\.', r"\1", page)  # headings are shifted, numbers are not
     return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
@@ -74,7 +76,7 @@ def pdf_of(text: str, values: Values) -> bytes:
         work = Path(folder)
         form = Latex(values)
         (work / "report.tex").write_text(converted(filled(text, values, form), "latex", frame, values))
-        for svg in form.pictures:
+        for svg in form.pictures.values():
             called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
         command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
         if not shutil.which(command[0]):

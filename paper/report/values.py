@@ -1,5 +1,5 @@
 """The values that the report's text may name, {{NAME}}, and how they are written. None is computed here but by
-counting, picking and comparing; all come from what the program made:
+counting, picking, comparing and dividing; all come from what the program made:
 
     CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
     CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict
@@ -9,7 +9,9 @@ counting, picking and comparing; all come from what the program made:
     figNN.BLOCK.N.peak      column N where column 2 is greatest
     bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
     study.NAME              percent of time saved, by a run of studies.json against its base, on the way to the
-                            amplitude study.until
+                            amplitude study.until; study.NAME.OPTION a number that it changes, such as mass-ratio
+    rate.SCENE              average -dA/dt of a decay of Figure 7, divided by the mass ratio, from the release to the
+                            first peak not above study.until; rate.rule what the median of A eta/nu makes of it
     stamp.NUMBER, version, commit, date, year
 
 {{NAME|3}} writes three significant digits, {{NAME|%}} a hundred times the value.
@@ -89,8 +91,18 @@ def studies(source: Path, program: Path) -> dict:
     base = run(file["base"])
     values = {"study.until": float(file["common"][file["common"].index("--until-amplitude") + 1])}
     for study in file["studies"]:
-        values[f"study.{study['name']}"] = 100 * (1 - run(study["arguments"]) / base)
+        name, arguments = f"study.{study['name']}", study["arguments"]
+        values[name] = 100 * (1 - run(arguments) / base)
+        for option, value in zip(arguments[::2], arguments[1::2]):
+            if re.fullmatch(r"[\d.e+-]+", value):
+                values[f"{name}.{option.removeprefix('--')}"] = float(value)
     return values
+
+
+def rate_of_decay(times: list, amplitudes: list, until: float) -> float:
+    """Average -dA/dt from the first peak to the first that is not above `until`."""
+    end = next(i for i, amplitude in enumerate(amplitudes) if amplitude <= until)
+    return (amplitudes[0] - amplitudes[end]) / (times[end] - times[0])
 
 
 class Values:
@@ -111,6 +123,7 @@ class Values:
         self.tables, self.stamps = {}, {}
         self.state = state_of(source, build / "src/impact-damper")
         self.version = re.search(r"project\(impact-damper VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]
+        self.authors = " and ".join(read(source / "paper/facts.json")["authors"])
         self.known = {"version": self.version, **{name: self.state[name] for name in ("commit", "date", "year")}}
         self.used = set()
 
@@ -149,6 +162,12 @@ class Values:
         self.known["bench.commit"] = self.bench["provenance"]["commit"]
         self.known["bench.yardstick"] = self.bench["yardstick"]["nanoseconds"]["median"]
         self.known |= studies(source, build / "src/impact-damper")
+        decays = blocks_of(build / "series/exact/fig07.dat")
+        for i, curve in enumerate(self.figures["7"]["curves"], 1):
+            self.known[f"rate.{curve['scene']}"] = (rate_of_decay(*decays[f"curve-{i}"][:2], self.known["study.until"]) /
+                                                    self.known[f"scene.{curve['scene']}.mass_ratio"])
+        # With A eta/nu = c the definition eta = -2 A'/A is A' = -c nu/2.
+        self.known["rate.rule"] = self.known["product-mid-range"] / 2
 
     def written(self, name: str, how: str = "") -> str:
         """A value as Markdown."""

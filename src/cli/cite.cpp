@@ -32,19 +32,31 @@ std::string comment(std::string_view text) {
   return line + '\n';
 }
 
-std::string entries(const Manifest& manifest, const std::string& note) {
+// An identifier of Software Heritage, which TeX may break before its digits. It is made of git's own hash.
+std::string set_swhid(std::string_view swhid) {
+  const std::size_t digits = swhid.rfind(':') + 1;
+  return "\\texttt{" + std::string(swhid.substr(0, digits)) + "\\allowbreak{}" +
+         std::string(swhid.substr(digits)) + '}';
+}
+
+// One entry, in fields that every style of BibTeX prints; `note` is TeX. The commit and its tree are this
+// program's: they are not known for another version's manifest, nor for a program built from sources that
+// were changed.
+std::string entry(const Manifest& manifest, const std::string& note) {
   std::string authors;
   for (const std::string& author : manifest.authors)
     authors += (authors.empty() ? "" : " and ") + braced(author);
-  std::string text = "@software{impact-damper-" + manifest.version + ",\n";
+  std::string published = "Software, version " + manifest.version;
+  if (provenance().version == manifest.version && !provenance().tree.empty())
+    published += ", commit " + std::string(provenance().commit) + ", " +
+                 set_swhid("swh:1:dir:" + std::string(provenance().tree));
+  std::string text = "@misc{impact-damper-" + manifest.version + ",\n";
   text += "  author = {" + authors + "},\n";
   text += "  title = {" + braced(manifest.title) + "},\n";
-  text += "  version = {" + manifest.version + "},\n";
+  text += "  howpublished = {" + published + "},\n";
   text += "  year = {" + std::to_string(manifest.year) + "}";
-  if (!note.empty()) text += ",\n  note = {" + braced(note) + "}";
-  text += "\n}\n@misc{impact-damper-paper,\n";
-  text += "  title = {" + braced(manifest.paper_title) + "},\n";
-  return text + "  note = {" + braced(manifest.paper_note) + "}\n}\n";
+  if (!note.empty()) text += ",\n  note = {" + note + "}";
+  return text + "\n}\n";
 }
 
 // Labels beside values, of which there may be several.
@@ -144,9 +156,12 @@ int cite(Arguments arguments) {
   std::string note;
   for (const Stamped& each : figures) {
     text += made_from(manifest, each);
-    note += (note.empty() ? "Figure " : "; figure ") + each.figure->number + ", stamp " + stamp_of(each);
+    const CitedFile& cited = each.table ? each.table->content : each.figure->script;
+    note += (note.empty() ? "Figure " : "; figure ") + each.figure->number + ", stamp " +
+            stamp_of(each).substr(0, 8);
+    if (!cited.swhid.empty()) note += ", " + set_swhid(cited.swhid);
   }
-  text += entries(manifest, note);
+  text += entry(manifest, note);
   write_standard_output(text);
   return 0;
 }
@@ -163,9 +178,11 @@ Command cite_command(CLI::App& program) {
   app->add_option("--manifest", "what the figures were made from; default data/reference/manifest.json")
       ->type_name("FILE");
   app->footer(
-      "What is printed is BibTeX; the rest is a comment to it. A stamp is the beginning of the SHA-256 of "
-      "the "
-      "table\n"
+      "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers "
+      "(SWHID) of "
+      "the\nsource tree and of the table; what a figure was made from stands above it as a comment. A stamp "
+      "is the "
+      "beginning\nof the SHA-256 of the table\n"
       "that is drawn (of the script where there is none) and the version: it holds for data, not for the "
       "picture's\n"
       "looks, and knows this version's tables by all engines, no others.\n\n"

@@ -8,6 +8,7 @@ and the commands that it prints are run and make the same picture again.
 import hashlib
 import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -55,12 +56,36 @@ def sum_of(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
+def git(*arguments, content: bytes = None) -> str:
+    """What git says; nothing without a repository of this project."""
+    done = subprocess.run(["git", "-C", SOURCE, *arguments], input=content, capture_output=True)
+    return done.stdout.decode().strip() if done.returncode == 0 else ""
+
+
+def without_breaks(text: str) -> str:
+    return text.replace(r"\allowbreak{}", "")
+
+
+def said_by_bibtex(text: str, folder: Path) -> str:
+    """What BibTeX complains of in an entry, with a style that every installation has; nothing where it is not installed."""
+    if not shutil.which("bibtex"):
+        return ""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "entry.bib").write_text(text)
+    key = re.search(r"^@misc\{([^,]*),", text, re.M)[1]
+    (folder / "entry.aux").write_text(f"\\citation{{{key}}}\n\\bibstyle{{plain}}\n\\bibdata{{entry}}\n")
+    done = subprocess.run(["bibtex", "entry"], cwd=folder, capture_output=True, text=True)
+    printed = re.sub(r"\s+", " ", (folder / "entry.bbl").read_text())
+    missing = [part for part in re.findall(r"swh:1:[a-z]+:|version [\d.]+", text) if part not in printed]
+    return (done.stdout if done.returncode or "Warning" in done.stdout else "") + "".join(missing)
+
+
 def bibtex_problems(text: str) -> list:
-    """Entries as BibTeX reads them: a type, a key, fields in balanced braces; no @ outside."""
+    """The entry as BibTeX reads it: a type, a key, fields in balanced braces; no @ outside."""
     found = []
     entries = re.split(r"^(?=@)", text, flags=re.M)
     for entry in entries[1:]:
-        if not re.match(r"@(software|misc)\{[\w.-]+,\n(  [a-z]+ = \{.*\},?\n)+\}\n\Z", entry):
+        if not re.match(r"@misc\{[\w.-]+,\n(  [a-z]+ = \{.*\},?\n)+\}\n\Z", entry):
             found.append(f"no entry: {entry}")
         depth = 0
         for brace in re.findall(r"(?<!\\)[{}]", entry):
@@ -69,10 +94,17 @@ def bibtex_problems(text: str) -> list:
                 found.append(f"braces: {entry}")
         if depth or re.search(r"^  \w+ = .*\}\n  \w+ =", entry, re.M):
             found.append(f"braces or commas: {entry}")
-    return found + ["an @ in a comment"] * ("@" in entries[0]) + ["not two entries"] * (len(entries) != 3)
+    return found + ["an @ in a comment"] * ("@" in entries[0]) + ["not one entry"] * (len(entries) != 2)
 
 
 manifest = json.loads(MANIFEST.read_text())
+complaint = said_by_bibtex(cite("--figure", "8"), options.folder.parent / "bibtex")
+wanted(not complaint, f"BibTeX complains: {complaint}")
+# The program knows the commit that it was built at, which need not be today's.
+commit = re.search(r"\((.*)\)", subprocess.run([options.program, "--version"], capture_output=True, text=True).stdout)[1]
+tree = git("rev-parse", f"{commit}^{{tree}}")
+wanted(f", commit {commit}, \\texttt{{swh:1:dir:{tree}}}}},\n" in without_breaks(cite()) if tree else "swh:1:dir" not in cite(),
+       f"commit {commit}, tree {tree}: {cite()}")
 version = manifest["software"]["version"]
 figures = {figure["figure"]: figure for figure in manifest["figures"]}
 wanted(set(figures) == {"A", "B", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
@@ -87,6 +119,8 @@ for number, figure in figures.items():
     wanted(rows(text, "script") == [script], f"figure {number}: script")
     wanted(rows(text, "scenes") == [each["file"] for each in figure["scenes"]], f"figure {number}: scenes")
     wanted(not bibtex_problems(text), f"figure {number}: {bibtex_problems(text)}")
+    hashed = git("hash-object", "--stdin", content=stamped.read_bytes())
+    wanted(not hashed or f"swh:1:cnt:{hashed}}}}}\n" in without_breaks(text), f"figure {number}: no SWHID {hashed}")
     for typed in (stamp, stamp.upper(), stamp[:8], stamp[:8].upper(), f" {stamp[:8]}  {version} ", sum_of(stamped)):
         wanted(cite("--stamp", typed) == text, f"--stamp {typed!r} does not say what --figure {number} says")
     for other in figure["tables"][1:]:

@@ -81,7 +81,7 @@ class Page:
             self.messages.append(parameters["entry"]["text"])
         elif method == "Network.requestWillBeSent":
             url = parameters["request"]["url"]
-            if not url.startswith(("file:", "data:", "about:")):
+            if not url.startswith(("file:", "data:", "about:", "blob:")):
                 self.messages.append(f"asks for {url}")
         self.events.append(method)
         return event

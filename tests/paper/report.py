@@ -27,10 +27,13 @@ def made(name: str, *options: str, verdicts: Path = None) -> Path:
 
 
 def typed(text: str) -> list:
-    """Numbers that stand in the text and are none of: a value's name, an equation's number, a year, part of a formula.
-    In a formula only whole numbers of one digit may stand, or it would be a value in disguise."""
-    text = re.sub(r"\{\{[^{}]*\}\}", "", text)
-    text = re.sub(r"[Ee]quations? \(\d+\)( (and|to) \(\d+\))?|SHA-256", "", text)
+    """Numbers that stand in the text and are none of: a value's name, a figure's, an equation's or a reference's number, a
+    year, part of a formula. In a formula only whole numbers of one digit and powers of ten may stand, or it would be a
+    value in disguise."""
+    text = re.sub(r"\{\{[^{}]*\}\}|^::: figure .*$|\(#reference-\d+\)", "", text, flags=re.M)
+    text = re.sub(r"^::: equation .*\n((?:.*\n)*?):::$", r"$$\1$$", text, flags=re.M)
+    text = re.sub(r"[Ee]quations? \(\d+\)( (and|to) \(\d+\))?|\[reference \d+\]|SHA-256", "", text)
+    text = re.sub(r"10\^\{-\d+\}", "x", text)
     text = re.sub(r"\b(19|20)\d\d\b", "", text)
     formulas = re.findall(r"\$\$.*?\$\$|\$[^$]*\$", text, re.S)
     found = [number for formula in formulas for number in re.findall(r"\d+\.\d+|\d{2,}|\.\d+", formula)]
@@ -42,9 +45,11 @@ class TheText(unittest.TestCase):
         self.assertEqual(typed(TEXT.read_text(encoding="utf-8")), [])
 
     def test_typed_numbers_are_found(self):
-        for fault in ("a loss of 0.339", "$\\nu = 0.02$", "$$A = 12$$", "31 percent", "in 3 runs", "the 10th"):
+        for fault in ("a loss of 0.339", "$\\nu = 0.02$", "$$A = 12$$", "31 percent", "in 3 runs", "the 10th",
+                      "::: equation a\nA = 0.5\n:::\n", "$10^{-9} + 10$"):
             self.assertNotEqual(typed(fault), [], fault)
-        for admitted in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}"):
+        for admitted in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}", "$10^{-9}$",
+                         "::: figure 8\nA\n:::\n", "::: equation a\n2\\zeta\n:::\n", "[reference 9](#reference-9)"):
             self.assertEqual(typed(admitted), [], admitted)
 
 
@@ -58,13 +63,54 @@ class TheReport(unittest.TestCase):
         other = FOLDER / "verdicts.json"
         other.write_text(json.dumps(verdicts))
         after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
-        sentence = r'here it is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
+        sentence = r'the\s+result\s+here\s+is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
         self.assertEqual(re.search(sentence, before)[1], said)
         self.assertEqual(re.search(sentence, after)[1], "0.4321")
         count = r'title="count.not-reproduced">(\d+)<'
         self.assertEqual(int(re.search(count, after)[1]), int(re.search(count, before)[1]) + 1)
         row = r'<tr id="claim-product-mid-range">.*?</tr>'
         self.assertIn('class="not-reproduced"', re.search(row, after, re.S)[0])
+
+    def test_the_rate_of_decay_is_the_runs(self):
+        page = re.sub(r"\s+", " ", (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8"))
+        for scene, ratio in (("nu1-e06", 0.01), ("nu2-e06", 0.02), ("nu4-e06", 0.04)):
+            # Independently of the table: energy, which falls from half the square of the release, over the run's own time.
+            cycles = json.loads((BUILD / f"runs/exact/{scene}.json").read_text())["half_cycles"]
+            time, amplitude = next((t, a) for t, a in zip(cycles["peak_time"], cycles["amplitude"]) if a <= 0.1)
+            rate = (36 - amplitude ** 2) / (6 + amplitude) / (time - cycles["peak_time"][0]) / ratio
+            told = re.findall(rf'title="rate.{scene}">([\d.]+)<', page)
+            self.assertTrue(told, scene)
+            for each in told:  # in two digits or three, of which trailing zeros are not written
+                self.assertLess(abs(float(each) - rate), 0.0051 if len(each) == 4 else 0.0006, scene)
+        [told] = set(re.findall(r'title="rate.rule">([\d.]+)<', page))
+        self.assertEqual(told, "0.17")
+
+    def test_what_claims_say_is_set(self):
+        sys.path.insert(0, str(SOURCE / "paper/report"))
+        from blocks import markdown
+        for said, wanted in (("A eta_s/nu at nu = 0.02", r"$A\eta_s/\nu$ at $\nu = 0.02$"), ("A clear pattern", "A clear pattern"),
+                             ("1e-8 of velocity", "$10^{-8}$ of velocity"), ("d ln eta / d ln nu", r"$d\ln \eta/d\ln \nu$"),
+                             ("k = 1e+06", r"$k = 10^{6}$"), ("2 zeta and e = 0.6", r"$2\zeta$ and $e = 0.6$"),
+                             ("5e-8 <b> * x_1", r"$5\times 10^{-8}$ \<b\> \* x\_1")):
+            self.assertEqual(markdown(said), wanted)
+        for claim in json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))["claims"]:
+            words = re.sub(r"\$[^$]*\$", "", markdown(claim["statement"]))
+            self.assertNotRegex(words, r"\b(nu|eta|zeta|sqrt)\b|\^|_", claim["id"])
+
+    def test_the_pdf_says_what_it_is_and_is_full(self):
+        if not (shutil.which("latexmk") and shutil.which("pdfinfo")):
+            self.skipTest("no LaTeX or no poppler-utils")
+        pdf = made("whole") / "report.pdf"
+        said = subprocess.run(["pdfinfo", pdf], capture_output=True, text=True, check=True).stdout
+        self.assertRegex(said, r"Title: +The impact damped oscillator")
+        self.assertRegex(said, r"Author: +The impact-damper developers\n")
+        pages = int(re.search(r"Pages: +(\d+)", said)[1])
+        for page in range(1, pages):  # the last one may end anywhere
+            words = subprocess.run(["pdftotext", "-bbox", "-f", str(page), "-l", str(page), pdf, "-"], capture_output=True,
+                                   text=True, check=True).stdout
+            height = float(re.search(r'<page width="[\d.]+" height="([\d.]+)"', words)[1])
+            feet = sorted(float(foot) for foot in re.findall(r'yMax="([\d.]+)"', words))
+            self.assertGreater(feet[-2], 0.6 * height, f"page {page}: its lower third is empty")
 
     def test_an_unknown_name_is_refused_and_nothing_is_written(self):
         copy = FOLDER / "source"

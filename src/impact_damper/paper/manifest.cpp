@@ -16,6 +16,12 @@ bool is_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
 
 bool is_sum(std::string_view text) { return text.size() == 64 && std::ranges::all_of(text, is_digit); }
 
+bool is_swhid(std::string_view text) {
+  constexpr std::string_view content = "swh:1:cnt:";
+  return text.starts_with(content) && text.size() == content.size() + 40 &&
+         std::ranges::all_of(text.substr(content.size()), is_digit);
+}
+
 bool is_path(std::string_view text) {
   if (text.size() > 200) return false;
   for (;;) {
@@ -40,6 +46,9 @@ bool read_cited_file(ObjectReader object, CitedFile& file) {
       object, "file", file.file, is_path,
       "a path of names of letters, digits, '-', '_' and '.', the first of each a letter or digit, divided "
       "by '/', of up to 200 characters");
+  if (object.has("swhid"))
+    read_text_of(object, "swhid", file.swhid, is_swhid,
+                 "\"swh:1:cnt:\" and 40 hexadecimal digits in lower case");
   return read_text_of(object, "sha256", file.sha256, is_sum, "64 hexadecimal digits in lower case");
 }
 

@@ -7,7 +7,7 @@
 //    "1a2b3c4d · 0.1.0",
 //                 "scenes": [{"file": "data/scenes/nu1-e06.json", "sha256": "..."}],
 //                 "tables": [{"engine": "exact", "file": "data/reference/series/fig08.dat", "sha256":
-//                 "1a2b3c4d..."},
+//                             "1a2b3c4d...", "swhid": "swh:1:cnt:..."},
 //                            {"engine": "restitution", ...}, {"engine": "cem", ...}],
 //                 "csv": {"file": "data/reference/series/fig08.csv", "sha256": "..."},
 //                 "script": {"file": "figures/fig08.gp", "sha256": "..."},
@@ -29,6 +29,7 @@ namespace impact_damper {
 struct CitedFile {
   std::string file;    // relative to the source folder
   std::string sha256;  // 64 hexadecimal digits in lower case
+  std::string swhid;   // "swh:1:cnt:" and git's hash of the content; empty if the manifest has none
 };
 
 struct CitedTable {
