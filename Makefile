@@ -28,7 +28,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install figures verify paper test bench bench-record stress \
+.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper test bench bench-record stress \
   stress-results check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
@@ -114,6 +114,9 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	echo "Setting the report"; \
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
+
+report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
+	@cp $(BUILD)/paper/report.html docs/report.html
 
 test:  ## run every test
 	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
