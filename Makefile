@@ -84,9 +84,12 @@ with_bench = $(call with,BENCH,deps-bench)
 build: $(BUILD)/build.ninja  ## compile the program
 	@$(alone) cmake --build $(BUILD) --target impact-damper
 
-# PREFIX must be absolute; DESTDIR, for who makes packages, is put before it by CMake.
+# DESTDIR, for who makes packages, is put before PREFIX by CMake.
 PREFIX ?= /usr/local
 export DESTDIR
+ifeq ($(filter /%,$(PREFIX)),)
+$(error PREFIX must be an absolute path, got $(PREFIX))
+endif
 install: $(BUILD)/build.ninja  ## install program, data, man page and completions (PREFIX=/usr/local, DESTDIR=)
 	@$(alone) cmake --build $(BUILD) --target installed || exit; \
 	cmake --install $(BUILD) --prefix "$(PREFIX)" >$(BUILD)/install.log || { cat $(BUILD)/install.log; exit 1; }; \
