@@ -1,4 +1,4 @@
-# The door for people: CMake and the program do the work. `make help` lists what there is.
+# The commands of README.md: CMake and the program do the work. `make help` lists them.
 #
 #   make deps figures            from a bare machine to the figures
 #   make figures ENGINE=cem      the same with another engine: exact, restitution, cem
@@ -17,7 +17,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
 CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev \
-  locales clang-tidy cppcheck gcovr valgrind pandoc chromium
+  locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base zsh fish
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
@@ -28,7 +28,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-paper build figures verify paper test bench bench-record stress \
+.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper test bench bench-record stress \
   stress-results check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
@@ -84,6 +84,17 @@ with_bench = $(call with,BENCH,deps-bench)
 build: $(BUILD)/build.ninja  ## compile the program
 	@$(alone) cmake --build $(BUILD) --target impact-damper
 
+# DESTDIR, for who makes packages, is put before PREFIX by CMake.
+PREFIX ?= /usr/local
+export DESTDIR
+ifeq ($(filter /%,$(PREFIX)),)
+$(error PREFIX must be an absolute path, got $(PREFIX))
+endif
+install: $(BUILD)/build.ninja  ## install program, data, man page and completions (PREFIX=/usr/local, DESTDIR=)
+	@$(alone) cmake --build $(BUILD) --target installed || exit; \
+	cmake --install $(BUILD) --prefix "$(PREFIX)" >$(BUILD)/install.log || { cat $(BUILD)/install.log; exit 1; }; \
+	echo "Installed: $(DESTDIR)$(PREFIX)/bin/impact-damper; all files are listed in $(BUILD)/install_manifest.txt"
+
 figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE=exact|restitution|cem)
 	@$(alone) \
 	trap 'exec 9<&-; if command -v flock >/dev/null; then flock . true; fi; \
@@ -91,21 +102,24 @@ figures: $(BUILD)/build.ninja  ## simulate, compute and draw all figures (ENGINE
 	  echo "make $@: interrupted, at most $$left steps are left: the same command goes on from here" >&2; \
 	  exit 130' INT; \
 	touch $(BUILD)/figures.begin; \
-	cmake --build $(BUILD) --target figures-$(ENGINE) \
-	  $(if $(wildcard $(BUILD)/figures-$(ENGINE).stamp),-- --quiet) || exit; \
+	cmake --build $(BUILD) --target figures-$(ENGINE) || exit; \
 	if [ $(BUILD)/figures-$(ENGINE).stamp -nt $(BUILD)/figures.begin ]; then \
 	  echo "Figures drawn: $(FIGURES)"; else echo "Figures are up to date: $(FIGURES)"; fi
 
 verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by claim (ENGINE= as for figures)
-	@$(alone) cmake --build $(BUILD) --target runs-$(ENGINE) -- --quiet || exit; \
+	@$(alone) cmake --build $(BUILD) --target runs-$(ENGINE) || exit; \
 	$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
 paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
-	@$(alone) cmake --build $(BUILD) --target figures-exact -- --quiet || exit; \
+	@$(alone) cmake --build $(BUILD) --target figures-exact || exit; \
 	$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts-exact.json \
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
+	echo "Setting the report"; \
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
+
+report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
+	@cp $(BUILD)/paper/report.html docs/report.html
 
 test:  ## run every test
 	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)

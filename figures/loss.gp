@@ -1,6 +1,9 @@
 # Figures 8-14: curves of the averaged loss factor, the closed forms thinly beside them. The figure's script
-# sets `from` (of the amplitude axis), `ordinate` and its axis, which axes are `logarithmic`, `styles` (the line style
-# of each curve) and `theory` (the curves whose closed forms are drawn).
+# sets `from` (of the amplitude axis), `ordinate` and its axis, and which axes are `logarithmic`; it may set `styles` (the
+# line style of each curve) and `theory` (the curves whose closed forms are drawn), which otherwise are all in the table.
+curves = system(sprintf("grep -c -x '# curve-[0-9]*' '%s' || true", table)) + 0
+if (!exists("styles")) { styles = ""; do for [i=1:curves] { styles = sprintf("%s %d", styles, 1 + (i - 1) % 4) } }
+if (!exists("theory")) { theory = ""; do for [i=1:words(styles)] { theory = sprintf("%s %d", theory, i) } }
 do for [i=1:words(styles)] { eval require(sprintf("curve-%d", i), 10) }
 do for [i in theory] { eval require("one-impact-".i, 10) }
 bounced = ""

@@ -28,9 +28,10 @@ set tmargin at screen 0.875
 # Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.
 require(block, least) = sprintf( \
+  "if (!has('%s')) { printerr 'block %s is not in the table'; exit status 1 };".\
   "do for [c=1:2] { stats table index '%s' using c nooutput;".\
   " if (STATS_records < %d || STATS_invalid > 0) { printerr 'block %s is short or not finite'; exit status 1 } }", \
-  block, least, block)
+  block, block, block, least, block)
 # Whether an optional block is there.
 has(block) = system(sprintf("grep -c -x '# %s' '%s' || true", block, table)) > 0
 

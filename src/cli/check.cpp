@@ -12,6 +12,7 @@
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/manifest.hpp"
 #include "impact_damper/paper/scene_runs.hpp"
+#include "project_files.hpp"
 #include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
@@ -57,7 +58,7 @@ std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
 int check(const CLI::App& app) {
   Arguments arguments(app);
   const std::vector<std::string> files = files_of(app, arguments);
-  const fs::path scenes = arguments.file("--scenes").value_or("data/scenes");
+  const fs::path scenes = arguments.file("--scenes").value_or(project_file("data/scenes"));
   std::vector<std::string_view> kinds;
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
@@ -88,7 +89,7 @@ int check(const CLI::App& app) {
 Command check_command(CLI::App& program) {
   CLI::App* const app =
       program.add_subcommand("check", "Read files strictly and say all that is wrong with them.");
-  app->add_option("KIND", "what they are: scene, run, catalogue, claims or manifest")->type_name("");
+  app->add_option("KIND", "what they are")->type_name("scene|run|catalogue|claims|manifest");
   app->add_option("FILE", "one or several")->type_name("");
   add_scenes_option(*app);
   app->allow_extras();

@@ -4,10 +4,13 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "embedded.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/json_reader.hpp"
 #include "impact_damper/files/provenance.hpp"
 #include "impact_damper/paper/manifest.hpp"
+#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -120,8 +123,25 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
   return text;
 }
 
+// The program and the paper alone, by paper/facts.json as it was when the program was built: no figures.
+Manifest built_in() {
+  const auto& files = embedded_files();
+  const auto facts = std::ranges::find(files, "facts.json", &EmbeddedFile::name);
+  JsonDocument document = JsonDocument::parse("paper/facts.json", std::string(facts->text));
+  ObjectReader root = document.root(), paper = root.required_object("paper");
+  Manifest manifest;
+  manifest.version = provenance().version;
+  root.required("title", manifest.title, some_text);
+  root.required("year", manifest.year);
+  root.required("authors", manifest.authors, some_text, std::size_t{1000});
+  paper.required("title", manifest.paper_title, some_text);
+  paper.required("note", manifest.paper_note, some_text);
+  return manifest;
+}
+
 int cite(Arguments arguments) {
-  const std::string file = arguments.file("--manifest").value_or("data/reference/manifest.json");
+  const std::string file =
+      arguments.file("--manifest").value_or(project_file("data/reference/manifest.json"));
   const std::optional<std::string> typed = arguments.text("--stamp");
   if (arguments.given("--figure") && typed)
     arguments.refuse("--stamp", "must be given without --figure, got both");
@@ -133,7 +153,8 @@ int cite(Arguments arguments) {
                          in_quotes(*typed));
   arguments.finish();
 
-  const Manifest manifest = read_manifest(file);
+  const bool of_a_figure = arguments.given("--figure") || stamp;
+  const Manifest manifest = of_a_figure || arguments.given("--manifest") ? read_manifest(file) : built_in();
   std::vector<std::string_view> numbers;
   for (const CitedFigure& figure : manifest.figures) numbers.push_back(figure.number);
   const std::optional<std::size_t> number = arguments.word("--figure", numbers);
@@ -171,7 +192,7 @@ int cite(Arguments arguments) {
 Command cite_command(CLI::App& program) {
   CLI::App* const app =
       program.add_subcommand("cite", "Say how to cite the program, and what a figure was made from.");
-  app->add_option("--figure", "what this figure was made from, with which commands; 1 to 15, A or B")
+  app->add_option("--figure", "what figure NUMBER of the manifest was made from, with which\ncommands")
       ->type_name("NUMBER");
   app->add_option("--stamp", "the same for the figure that carries this in its lower right corner")
       ->type_name("TEXT");

@@ -18,6 +18,7 @@ struct Command {
 Command check_command(CLI::App& program);
 Command cite_command(CLI::App& program);
 Command figures_command(CLI::App& program);
+Command generate_command(CLI::App& program);
 Command report_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command scenes_command(CLI::App& program);

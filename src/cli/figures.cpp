@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/paper/catalogue.hpp"
+#include "project_files.hpp"
 #include "text_table.hpp"
 
 namespace impact_damper::cli {
@@ -37,7 +38,7 @@ Command figures_command(CLI::App& program) {
       "  impact-damper figures");
   return {app, [app] {
             Arguments arguments(*app);
-            const std::string file = arguments.file("CATALOGUE").value_or("figures/catalogue.json");
+            const std::string file = arguments.file("CATALOGUE").value_or(project_file("figures/catalogue.json"));
             arguments.finish();
             return list_figures(file);
           }};

@@ -96,6 +96,9 @@ int main(int argc, char** argv) {
   program.require_subcommand(0, 1);
   program.footer(
       "impact-damper SUBCOMMAND --help, or help SUBCOMMAND, says more about each.\n\n"
+      "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
+      "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
+      "is.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not admitted, 3 an input file's content "
       "is\n"
       "not admitted, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
@@ -103,7 +106,7 @@ int main(int argc, char** argv) {
   const std::array commands{
       cli::run_command(program),    cli::report_command(program), cli::scenes_command(program),
       cli::verify_command(program), cli::series_command(program), cli::figures_command(program),
-      cli::check_command(program),  cli::cite_command(program),
+      cli::check_command(program),  cli::cite_command(program),   cli::generate_command(program),
   };
 
   const auto head = [&] {

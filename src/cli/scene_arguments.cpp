@@ -191,18 +191,18 @@ void add_engine_options(CLI::App& app) {
   const auto add_flag = [&](const std::string& name, const std::string& help) {
     app.add_flag(name, help)->group("Engine");
   };
-  add("--engine", "NAME",
+  add("--engine", "exact|restitution|cem",
       "exact (default): compliant walls in closed form, no time step;\n"
       "restitution: rigid walls, instantaneous impacts;\n"
       "cem: the component element method, central differences");
-  add("--calibration", "HOW",
+  add("--calibration", "fixed-wall|two-body",
       "exact, cem: fixed-wall (default), the paper's, delivers the\n"
       "restitution to a primary mass held still; two-body to a free one");
   add("--time-step", "H",
       "cem: the fixed step, a number > 0 below the stability limit;\n"
       "default a hundredth of an impact's duration, or of half the\n"
       "primary mass's or the forcing's period where that is shorter");
-  add("--damper", "WHICH",
+  add("--damper", "centred|lagged",
       "cem: the velocity the wall's damper sees, centred (default)\n"
       "or lagged (one step behind)");
   add_flag("--locate", "cem: locate touch and release inside the step");

@@ -8,6 +8,7 @@
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/number_text.hpp"
 #include "impact_damper/files/scene_file.hpp"
+#include "project_files.hpp"
 #include "text_table.hpp"
 
 namespace impact_damper::cli {
@@ -65,7 +66,7 @@ Command scenes_command(CLI::App& program) {
       "  impact-damper scenes my/scenes");
   return {app, [app] {
             Arguments arguments(*app);
-            const std::string folder = arguments.file("FOLDER").value_or("data/scenes");
+            const std::string folder = arguments.file("FOLDER").value_or(project_file("data/scenes"));
             arguments.finish();
             return list_scenes(folder);
           }};

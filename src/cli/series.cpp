@@ -10,6 +10,7 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/scene_runs.hpp"
 #include "interruption.hpp"
+#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -70,11 +71,11 @@ void load(const Figure& figure, const SceneRuns& folders, FigureRuns& runs) {
 int make_tables(Arguments arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
-  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto output = arguments.file("--output");
   const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
   const Threads threads = threads_of(arguments);
-  const std::string catalogue_file = arguments.file("--catalogue").value_or("figures/catalogue.json");
+  const std::string catalogue_file = arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
   const Catalogue catalogue = read_catalogue(catalogue_file);
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
   const bool into_folder = output && fs::is_directory(*output);
@@ -123,7 +124,7 @@ Command series_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
   add_scenes_option(*app);
-  app->add_option("--figure", "only this figure's table, 1 to 15; may be repeated; default all")
+  app->add_option("--figure", "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all")
       ->type_name("NUMBER")
       ->expected(1)
       ->take_all();

@@ -19,6 +19,7 @@
 #include "impact_damper/paper/scene_runs.hpp"
 #include "impact_damper/paper/words.hpp"
 #include "interruption.hpp"
+#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -182,9 +183,9 @@ int verify(Arguments arguments) {
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
   ensemble.threads = threads_of(arguments);
-  const fs::path claims_file = arguments.file("--claims").value_or("data/claims.json"),
-                 runs_folder = arguments.file("--runs").value_or("build/runs/exact");
-  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or("data/scenes")};
+  const fs::path claims_file = arguments.file("--claims").value_or(project_file("data/claims.json")),
+                 runs_folder = arguments.file("--runs").value_or(project_file("build/runs/exact"));
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
   refuse_csv_name(arguments, verdicts_file, "the verdicts as JSON");

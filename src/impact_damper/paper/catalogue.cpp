@@ -194,14 +194,6 @@ Catalogue read_whole(JsonDocument document) {
   for (ObjectReader item : root.required_objects("figures", 1000)) {
     catalogue.figures.push_back(read_figure(item, catalogue));
   }
-  for (std::size_t i = 0; i < catalogue.scenes.size(); ++i) {
-    const std::string& name = catalogue.scenes[i].name;
-    const auto draws = [&](const Figure& figure) {
-      return std::ranges::count(figure.curves, name, &FigureCurve::scene) > 0;
-    };
-    if (!name.empty() && std::ranges::none_of(catalogue.figures, draws))
-      root.refuse("scenes", i, "must be drawn by some figure, got a scene that is not: " + name);
-  }
   document.finish();
   return catalogue;
 }

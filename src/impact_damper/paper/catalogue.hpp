@@ -70,7 +70,7 @@ struct Catalogue {
   std::vector<Figure> figures;
 };
 
-// Reads a catalogue and holds it together: every scene known, drawn by some figure and recording what its
+// Reads a catalogue and holds it together: every scene known and recording what its
 // figures draw, every number given once. Throws IoError or InputError.
 inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
 Catalogue read_catalogue(const std::filesystem::path& file);

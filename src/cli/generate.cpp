@@ -1,0 +1,289 @@
+// `generate`: the man page and the shells' completions, from the options as they are declared, so that
+// neither can say anything else than --help does.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/files/provenance.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+// What is said of one option.
+struct Told {
+  std::vector<std::string> shorts, longs;  // without dashes; neither for a positional
+  std::string positional, type, meaning;
+  bool takes_value = false;
+};
+
+std::vector<Told> options_of(const CLI::App& app) {
+  std::vector<Told> all;
+  for (const CLI::Option* option : app.get_options()) {
+    all.push_back({option->get_snames(), option->get_lnames(),
+                   option->get_positional() ? option->get_name(true) : std::string(), option->get_type_name(),
+                   option->get_description(), option->get_items_expected_max() > 0});
+  }
+  return all;
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::vector<std::string> names_of(const Told& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.shorts) names.push_back("-" + name);
+  for (const std::string& name : option.longs) names.push_back("--" + name);
+  return names;
+}
+
+// The words that a value is chosen from, which its type lists: exact|restitution|cem.
+std::vector<std::string> choices(const Told& option) {
+  std::vector<std::string> words;
+  if (option.type.find('|') == std::string::npos) return words;
+  for (std::size_t begin = 0; begin <= option.type.size();) {
+    const std::size_t end = std::min(option.type.find('|', begin), option.type.size());
+    words.push_back(option.type.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+// One line: up to the first semicolon.
+std::string brief(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return text.substr(0, text.find(';'));
+}
+
+// `text` with `before` set before each of `characters`.
+std::string escaped(const std::string& text, std::string_view characters, const std::string& before) {
+  std::string out;
+  for (const char c : text) {
+    if (characters.find(c) != std::string_view::npos) out += before;
+    out += c;
+  }
+  return out;
+}
+
+// In single quotes, for a shell that knows no escape in them.
+std::string single_quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string roff(const std::string& text) {
+  std::string out;
+  bool begins = true;
+  for (const char c : text) {
+    if (begins && (c == '.' || c == '\'')) out += "\\&";
+    out += c == '\\' ? std::string("\\e") : c == '-' ? std::string("\\-") : std::string(1, c);
+    begins = c == '\n';
+  }
+  return out;
+}
+
+std::string roff_options(const CLI::App& app) {
+  std::string text;
+  for (const Told& option : options_of(app)) {
+    const std::vector<std::string> names = names_of(option);
+    text += ".TP\n.B " + roff(names.empty() ? option.positional : joined(names, ", "));
+    if (option.takes_value && !option.type.empty()) text += " \\fI" + roff(option.type) + "\\fP";
+    text += "\n" + roff(option.meaning) + "\n";
+  }
+  return text;
+}
+
+// As it is printed, line by line.
+std::string roff_footer(const CLI::App& app) { return ".PP\n.nf\n" + roff(app.get_footer()) + "\n.fi\n"; }
+
+std::string man_page(const CLI::App& program) {
+  const std::string name = program.get_name();
+  std::string text = ".TH IMPACT\\-DAMPER 1 \"\" " +
+                     roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
+  text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.get_description()) + "\n.SH SYNOPSIS\n";
+  for (const CLI::App* command : commands_of(program)) {
+    text += ".B " + roff(name + " " + command->get_name()) + "\n";
+    for (const Told& option : options_of(*command))
+      if (!option.positional.empty()) text += "\\fI" + roff(option.positional) + "\\fP\n";
+    text += "[\\fIOPTIONS\\fP]\n.br\n";
+  }
+  text += ".SH OPTIONS\n" + roff_options(program) + roff_footer(program);
+  for (const CLI::App* command : commands_of(program)) {
+    text += ".SH " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n";
+    text += roff_options(*command) + roff_footer(*command);
+  }
+  return text;
+}
+
+// Where the program's words are not wanted, readline completes file names (complete -o default).
+std::string bash_completion(const CLI::App& program) {
+  std::string commands, values, words;
+  for (const CLI::App* command : commands_of(program)) {
+    commands += " " + command->get_name();
+    std::string names, first;
+    for (const Told& option : options_of(*command)) {
+      const std::vector<std::string> each = names_of(option);
+      for (const std::string& name : each) {
+        names += " " + name;
+        if (choices(option).empty()) continue;
+        values += "    " + single_quoted(command->get_name() + " " + name) +
+                  ") words=" + single_quoted(joined(choices(option), " ")) + " ;;\n";
+      }
+      if (each.empty() && first.empty()) first = joined(choices(option), " ");
+    }
+    words += "    " + command->get_name() + ") options=" + single_quoted(names.substr(1)) +
+             (first.empty() ? "" : " first=" + single_quoted(first)) + " ;;\n";
+  }
+  for (const Told& option : options_of(program)) commands += " " + joined(names_of(option), " ");
+  return "# bash completion for impact-damper, by: impact-damper generate bash\n"
+         "_impact_damper() {\n"
+         "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} "
+         "command=${COMP_WORDS[1]}\n"
+         "  local words= options= first=\n"
+         "  if [ \"$word\" = = ]; then\n"
+         "    word=\n"
+         "  elif [ \"$before\" = = ]; then\n"
+         "    before=${COMP_WORDS[COMP_CWORD - 2]}\n"
+         "  fi\n"
+         "  case $command in\n" +
+         words +
+         "  esac\n"
+         "  case \"$command $before\" in\n" +
+         values +
+         "    *)\n"
+         "      if [ \"$COMP_CWORD\" -eq 1 ]; then words=" +
+         single_quoted(commands.substr(1)) +
+         "\n"
+         "      elif [[ $word == -* ]]; then words=$options\n"
+         "      elif [ \"$COMP_CWORD\" -eq 2 ]; then words=$first\n"
+         "      fi ;;\n"
+         "  esac\n"
+         "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+         "}\n"
+         "complete -o default -F _impact_damper impact-damper\n";
+}
+
+std::string zsh_completion(const CLI::App& program) {
+  // _arguments takes brackets and colons for its own; the text stands in single quotes.
+  const auto described = [](const std::string& text) { return escaped(brief(text), "[]:\\", "\\"); };
+  std::string commands, cases;
+  for (const CLI::App* command : commands_of(program)) {
+    commands += "    " +
+                single_quoted(command->get_name() + ":" + escaped(command->get_description(), ":\\", "\\")) +
+                "\n";
+    cases += "    " + command->get_name() + ")\n      _arguments";
+    const auto add = [&cases](const std::string& argument) {
+      cases += " \\\n        ";
+      cases += single_quoted(argument);
+    };
+    for (const Told& option : options_of(*command)) {
+      const std::vector<std::string> words = choices(option);
+      std::string value = option.type == "FOLDER" ? "_files -/" : "_files";
+      if (!words.empty()) value = "(" + joined(words, " ") + ")";
+      const std::string told = "[" + described(option.meaning) + "]";
+      const std::string valued = told + ":" + escaped(option.type, ":\\", "\\") + ":" + value;
+      for (const std::string& name : names_of(option)) {
+        const char* const before_value = name.starts_with("--") ? "=" : "+";
+        add("*" + name + (option.takes_value ? before_value + valued : told));
+      }
+      if (!option.positional.empty() && !words.empty()) add("1:" + option.positional + ":" + value);
+    }
+    add("*:file:_files");
+    cases += " ;;\n";
+  }
+  std::string own;
+  for (const Told& option : options_of(program)) {
+    for (const std::string& name : names_of(option)) {
+      own += ' ';
+      own += single_quoted(name + "[" + described(option.meaning) + "]");
+    }
+  }
+  return "#compdef impact-damper\n# zsh completion for impact-damper, by: impact-damper generate zsh\n"
+         "_impact_damper() {\n"
+         "  local context state state_descr line curcontext=$curcontext\n"
+         "  typeset -A opt_args\n"
+         "  local -a commands=(\n" +
+         commands +
+         "  )\n"
+         "  _arguments -C" +
+         own +
+         " '1: :->command' '*:: :->rest'\n"
+         "  case $state in\n"
+         "    command) _describe command commands; return ;;\n"
+         "    rest) ;;\n"
+         "    *) return ;;\n"
+         "  esac\n"
+         "  case $line[1] in\n" +
+         cases +
+         "  esac\n"
+         "}\n"
+         "if [ \"$funcstack[1]\" = _impact-damper ]; then\n"
+         "  _impact_damper \"$@\"\n"
+         "else\n"
+         "  compdef _impact_damper impact-damper\n"
+         "fi\n";
+}
+
+std::string fish_completion(const CLI::App& program) {
+  const auto fish_quoted = [](const std::string& text) { return "'" + escaped(text, "'\\", "\\") + "'"; };
+  const auto line = [&](const std::string& when, const Told& option) {
+    std::string text = "complete -c impact-damper -n " + fish_quoted(when);
+    for (const std::string& name : option.shorts) text += " -s " + name;
+    for (const std::string& name : option.longs) text += " -l " + name;
+    const std::vector<std::string> words = choices(option);
+    if (!words.empty())
+      text += " -x -a " + fish_quoted(joined(words, " "));
+    else if (option.takes_value)
+      text += " -r";
+    return text + " -d " + fish_quoted(brief(option.meaning)) + "\n";
+  };
+  std::string text = "# fish completion for impact-damper, by: impact-damper generate fish\n";
+  for (const Told& option : options_of(program)) text += line("__fish_use_subcommand", option);
+  for (const CLI::App* command : commands_of(program)) {
+    const std::string name = command->get_name();
+    text += "complete -c impact-damper -n __fish_use_subcommand -f -a " + name + " -d " +
+            fish_quoted(command->get_description()) + "\n";
+    for (const Told& option : options_of(*command))
+      if (option.positional.empty() || !choices(option).empty())
+        text += line("__fish_seen_subcommand_from " + name, option);
+  }
+  return text;
+}
+
+int generate(const CLI::App& program, Arguments arguments) {
+  const std::vector<std::string_view> kinds{"man", "bash", "zsh", "fish"};
+  const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
+  if (!arguments.given("KIND")) arguments.refuse("KIND", "must be given: man, bash, zsh or fish");
+  arguments.finish();
+  write_standard_output(*kind == 0   ? man_page(program)
+                        : *kind == 1 ? bash_completion(program)
+                        : *kind == 2 ? zsh_completion(program)
+                                     : fish_completion(program));
+  return 0;
+}
+
+}  // namespace
+
+Command generate_command(CLI::App& program) {
+  CLI::App* const app =
+      program.add_subcommand("generate", "Print the man page, or a shell's completions, of this program.");
+  app->add_option("KIND", "man, bash, zsh or fish")->type_name("man|bash|zsh|fish");
+  app->footer(
+      "make install puts all four in place.\n\n"
+      "Examples:\n"
+      "  impact-damper generate man | man -l -\n"
+      "  . <(impact-damper generate bash)");
+  return {app, [app, &program] { return generate(program, Arguments(*app)); }};
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,24 @@
+#include "project_files.hpp"
+
+#include <array>
+#include <filesystem>
+#include <system_error>
+
+namespace impact_damper::cli {
+
+namespace fs = std::filesystem;
+
+std::string project_file(const std::string& name) {
+  std::error_code none;
+  if (fs::exists(name, none)) return name;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  if (none) return name;
+  const fs::path folder = program.parent_path();
+  for (const fs::path& place :
+       std::array{folder.parent_path() / "share/impact-damper", folder.parent_path().parent_path()}) {
+    if (fs::exists(place / name, none)) return (place / name).string();
+  }
+  return name;
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""The program as `make install` puts it in place finds its files, from any folder; its man page and completions name
+every option.
+
+    installed.py PREFIX PROGRAM SOURCE FOLDER
+
+PREFIX is where it was installed, under a DESTDIR; PROGRAM the same program in its build folder. The tests run in FOLDER.
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+PREFIX, BUILT, SOURCE, FOLDER = (Path(each).resolve() for each in sys.argv[1:5])
+PROGRAM = PREFIX / "bin/impact-damper"
+SHARE = PREFIX / "share/impact-damper"
+
+
+def run(*command, folder=FOLDER, code=0, **options) -> str:
+    """Standard output; with another exit code than 0 expected, standard error."""
+    done = subprocess.run([str(each) for each in command], cwd=folder, capture_output=True, text=True, **options)
+    if done.returncode != code or code == 0 and done.stderr:
+        sys.exit(f"{command}: exit code {done.returncode}: {done.stderr}{done.stdout}")
+    return done.stderr if code else done.stdout
+
+
+def demand(holds: bool, what):
+    if not holds:
+        sys.exit(f"installed.py: {what}")
+
+
+def same_as_in_the_source_folder(*arguments):
+    demand(run(PROGRAM, *arguments) == run(BUILT, *arguments, folder=SOURCE), f"{arguments} differs")
+
+
+def finds_its_files():
+    for arguments in (["scenes"], ["figures"], ["cite"], ["cite", "--figure", "8"], ["cite", "--figure", "A"]):
+        same_as_in_the_source_folder(*arguments)
+    runs = FOLDER / "runs"
+    runs.mkdir()
+    catalogue = json.loads((SHARE / "figures/catalogue.json").read_text())
+    for scene in catalogue["scenes"]:
+        below = [word for window in scene.get("history_below", []) for word in
+                 ("--history-below", ":".join(str(window[key]) for key in ("amplitude", "length", "count")))]
+        run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]),
+            *below, "-o", runs / f"{scene['scene']}.json")
+    same_as_in_the_source_folder("series", "--runs", runs, "--figure", "7")
+    demand(run(PROGRAM, "check", "run", *sorted(runs.iterdir())).count("\n") == len(catalogue["scenes"]), "check")
+    done = subprocess.run([PROGRAM, "verify", "--runs", runs, "--members", "1"], cwd=FOLDER, capture_output=True, text=True)
+    claims = len(json.loads((SHARE / "data/claims.json").read_text())["claims"])
+    demand(done.returncode in (0, 1) and f"\nengine exact, {claims} claims: " in done.stdout, done.stderr + done.stdout)
+
+
+def the_current_folder_comes_first():
+    own = FOLDER / "own"
+    (own / "data/scenes").mkdir(parents=True)
+    (own / "data/scenes/mine.json").write_text('{"until_time": 5}')
+    lines = run(PROGRAM, "scenes", folder=own).splitlines()
+    demand(len(lines) == 2 and lines[1].startswith("mine "), lines)
+    demand("nu2-e06" in run(PROGRAM, "figures", folder=own), "what the current folder lacks is found with the program")
+
+
+def a_link_and_a_copy():
+    (FOLDER / "link").symlink_to(PROGRAM)
+    demand("nu2-e06" in run(FOLDER / "link", "scenes"), "a link to the program")
+    alone = FOLDER / "alone/bin/impact-damper"
+    alone.parent.mkdir(parents=True)
+    shutil.copy(PROGRAM, alone)
+    demand(run(alone, "figures", code=5) == "figures/catalogue.json: cannot be read: No such file or directory\n", "alone")
+    demand("@software{" in run(alone, "cite"), "cite needs no file")
+    demand("data/reference/manifest.json: cannot be read" in run(alone, "cite", "--figure", "8", code=5), "--figure does")
+
+
+def commands() -> list:
+    text = run(PROGRAM, "--help")
+    return re.findall(r"^  (\w+) ", text[text.index("Subcommands:"):], re.M)
+
+
+def options(command: str) -> set:
+    """By --help: -o,--output FILE is two."""
+    return {name for line in re.findall(r"^  (-\S+)", run(PROGRAM, command, "--help"), re.M) for name in line.split(",")}
+
+
+def pages_name_every_option():
+    demand({"run", "verify", "generate"} <= set(commands()), commands())
+    page = run("groff", "-man", "-Tutf8", "-ww", "-P-bcou", "-Kutf8", PREFIX / "share/man/man1/impact-damper.1")
+    for command in commands():
+        demand(len(options(command)) > 0, command)
+        section = re.search(rf"^{command}\n(.*?)(?=^\w|\Z)", page, re.M | re.S)
+        demand(section is not None, f"no section on {command}")
+        named = set(re.findall(r"(?<![\w-])--?\w[\w-]*", section[1]))
+        demand(options(command) <= named, f"{command}: the man page lacks {options(command) - named}")
+    demand(PROGRAM.name in page[:page.index("SYNOPSIS")], page[:300])
+
+
+def bash_completes(*words) -> set:
+    script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _impact_damper; '
+              '[ ${#COMPREPLY[@]} -eq 0 ] || printf "%s\\n" "${COMPREPLY[@]}"')
+    return set(run("bash", "-c", script, "bash", PREFIX / "share/bash-completion/completions/impact-damper",
+                   "impact-damper", *words).split())
+
+
+def fish_completes(line: str) -> set:
+    script = 'source $argv[1]; complete -C "$argv[2]"'
+    environment = dict(os.environ, HOME=str(FOLDER), XDG_CONFIG_HOME=str(FOLDER / "config"))
+    return {each.split("\t")[0] for each in run("fish", "-N", "-c", script, PREFIX / "share/fish/vendor_completions.d/impact-damper.fish",
+                                                line, env=environment).splitlines()}
+
+
+def zsh_completes(line: str) -> str:
+    """The screen of a terminal in which that was typed, and then the tabulator key."""
+    script = """zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell 'PS1=; fpath=($fpath '"$1"'); autoload -Uz compinit && compinit -u -D; unsetopt beep; bindkey "^I" complete-word; setopt list_ambiguous no_always_last_prompt; LISTMAX=1000; echo rea""dy'
+zpty -r shell out '*ready'
+zpty -w -n shell "$2"$'\\t\\t'
+sleep 1
+while zpty -r -t shell out; do print -rn -- $out; done
+zpty -d shell
+"""
+    environment = dict(os.environ, HOME=str(FOLDER), TERM="dumb", COLUMNS="200", LINES="100")
+    return run("zsh", "-f", "-c", script, "zsh", PREFIX / "share/zsh/site-functions", line, env=environment)
+
+
+def shells_complete_every_option():
+    all_options = {command: options(command) for command in commands()}
+    engines = {"exact", "restitution", "cem"}
+    demand(set(commands()) <= bash_completes(""), bash_completes(""))
+    demand(set(commands()) <= fish_completes("impact-damper "), fish_completes("impact-damper "))
+    for command, names in all_options.items():
+        longs = {name for name in names if name.startswith("--")}
+        demand(bash_completes(command, "-") == names, f"bash: {command}: {bash_completes(command, '-')}")
+        demand(longs <= fish_completes(f"impact-damper {command} --"), f"fish: {command}")
+    demand(bash_completes("run", "--engine", "") == engines, "bash: --engine")
+    demand(bash_completes("run", "--engine", "=", "re") == {"restitution"}, "bash: --engine=re")
+    demand(bash_completes("check", "s") == {"scene"}, "bash: check")
+    demand(bash_completes("run", "--scene", "") == set(), "bash: file names are left to readline")
+    demand(fish_completes("impact-damper run --engine ") == engines, fish_completes("impact-damper run --engine "))
+    screen = zsh_completes("impact-damper run --engine ")
+    demand(all(engine in screen for engine in engines), screen)
+    screen = zsh_completes("impact-damper verify --")
+    demand(all(name in screen for name in all_options["verify"] if name.startswith("--")), screen)
+
+
+shutil.rmtree(FOLDER, ignore_errors=True)
+FOLDER.mkdir(parents=True)
+finds_its_files()
+the_current_folder_comes_first()
+a_link_and_a_copy()
+pages_name_every_option()
+missing = [tool for tool in ("fish", "zsh") if not shutil.which(tool)]
+if missing:
+    print(f"not tried: completions, for want of {missing}: make deps-check")
+    sys.exit(77)
+shells_complete_every_option()

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+""".ci/install waits for another apt, says so in one line, and gives up when it must.
+
+    waits.py SOURCE FOLDER
+
+Runs it with an apt-get, a dpkg-query, an id and a sleep of its own first in PATH: apt-get fails as the real one does
+while another holds the lock, and the time slept is written down instead of spent.
+"""
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+SOURCE, FOLDER = Path(sys.argv[1]), Path(sys.argv[2])
+LOCKED = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 123 (apt-get)"
+WAITING = "Waiting for another apt to end, for at most 300 seconds\n"
+
+
+def stub(name: str, text: str):
+    file = FOLDER / "bin" / name
+    file.write_text("#!/bin/sh\n" + text)
+    file.chmod(0o755)
+
+
+def install(failures: int, message: str) -> tuple:
+    """What .ci/install does if the first `failures` updates fail so: exit code, output, calls of apt-get, seconds slept."""
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    (FOLDER / "bin").mkdir(parents=True)
+    stub("dpkg-query", "exit 1\n")  # nothing is installed
+    stub("id", "echo 0\n")
+    stub("sleep", f'echo "$1" >>{FOLDER}/slept\n')
+    stub("apt-get", f"""echo "$*" >>{FOLDER}/called
+case $* in *update*) [ $(grep -c update {FOLDER}/called) -gt {failures} ] || {{ echo '{message}' >&2; exit 100; }} ;; esac
+""")
+    done = subprocess.run([SOURCE / ".ci/install", "hello"], capture_output=True, text=True,
+                          env=dict(os.environ, PATH=f"{FOLDER}/bin:{os.environ['PATH']}"))
+    slept = FOLDER / "slept"
+    return (done.returncode, done.stdout, done.stderr, (FOLDER / "called").read_text().splitlines(),
+            sum(map(int, slept.read_text().split())) if slept.exists() else 0)
+
+
+def demand(holds: bool, what):
+    if not holds:
+        sys.exit(f"waits.py: {what}")
+
+
+code, out, err, called, slept = install(0, LOCKED)
+demand((code, err, slept) == (0, "", 0) and WAITING not in out and len(called) == 2, (code, out, err, called, slept))
+demand(all("-o DPkg::Lock::Timeout=300" in call for call in called), called)
+
+code, out, err, called, slept = install(3, LOCKED)
+demand((code, err, slept) == (0, "", 30) and out.count(WAITING) == 1, (code, out, err, slept))
+demand(called[-1].endswith("install -q -y --no-install-recommends hello"), called)
+
+code, out, err, called, slept = install(1000, LOCKED)
+demand(code == 1 and LOCKED in err and slept == 300, (code, out, err, slept))
+demand(not any(" install " in call for call in called), called)
+
+code, out, err, called, slept = install(1000, "E: Temporary failure resolving the mirror")
+demand(code == 1 and "Temporary failure" in err and slept == 0 and WAITING not in out, (code, out, err, slept))
