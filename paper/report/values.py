@@ -105,6 +105,14 @@ def rate_of_decay(times: list, amplitudes: list, until: float) -> float:
     return (amplitudes[0] - amplitudes[end]) / (times[end] - times[0])
 
 
+def named_in_words(name: str, claim: dict, words: str) -> dict:
+    """The further numbers of a claim, which its words show by name."""
+    parts = re.split(r"\{(\w*)[^}]*\}", claim.get("words", ""))
+    shown = re.fullmatch("".join(re.escape(part) if i % 2 == 0 else "(.+?)" for i, part in enumerate(parts)), words)
+    numbers = {what: re.match(r"-?[\d.]+", text) for what, text in zip(parts[1::2], shown.groups() if shown else ()) if what}
+    return {f"{name}.{what.replace('_', '-')}": float(number[0]) for what, number in numbers.items() if number}
+
+
 class Values:
     """All values by name. `table_of` gives a figure's table, `claims` and `verdicts` the files' entries by id."""
 
@@ -133,6 +141,7 @@ class Values:
                 raise Mistake(f"{verdicts_file} knows nothing of the claim {name}: make verify")
             self.known |= {name: told["ours"], f"{name}.low": told["low"], f"{name}.high": told["high"],
                            f"{name}.paper": claim["printed"], f"{name}.verdict": told["verdict"]}
+            self.known |= named_in_words(name, claim, told["words"])
         self.known["count.claims"] = len(self.verdicts)
         for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
             self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())

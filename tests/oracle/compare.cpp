@@ -694,8 +694,8 @@ Record everything(double end) {
   return record;
 }
 
-// With half the step every error is to be a quarter, once steps are short enough for the scene: they are
-// shortened twice where that is not so. A column's largest error stands for it.
+// With a quarter of the step every error is to be a sixteenth, once steps are short enough for the scene: they
+// are shortened twice where that is not so. A column's largest error stands for it.
 void compare_by_order(const Scene& scene, const Question& question, const Prediction& prediction, Cem engine,
                       Comparison& result) {
   // As the engine's own default.
@@ -703,18 +703,18 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
   const double shortest =
       std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
   for (const double finer : {1, 4, 16}) {
-    std::map<std::string, std::array<double, 2>>
-        errors[2];  // by column: itself, in units of the predicted one
+    // By what the step is divided by, and by column: the error itself, and in units of the predicted one.
+    std::map<int, std::map<std::string, std::array<double, 2>>> errors;
     result.differences.clear();
     result.numbers = result.impacts = 0;
     result.worst = 0;
-    for (int half = 0; half < 2; ++half) {
-      engine.time_step = std::numbers::pi / 100 * shortest / finer / (half + 1);
+    for (const int by : {1, 4}) {
+      engine.time_step = std::numbers::pi / 100 * shortest / finer / by;
       const Run run = simulate(scene, engine, everything(*scene.until_time));
       Judge judge;
       judge.number = [&](const std::string& what, double value, Quad truth, Quad predicted) {
         ++result.numbers;
-        auto& [most, by_unit] = errors[half][what.substr(0, std::min(what.find('['), what.find(" at ")))];
+        auto& [most, by_unit] = errors[by][what.substr(0, std::min(what.find('['), what.find(" at ")))];
         const Quad error = magnitude(value - truth);
         const Quad unit = predicted + Quad(central_differences.rounding) * magnitude(truth) + Quad(1e-300L);
         most = std::max(most, double(error));
@@ -723,15 +723,16 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
       judge.differ = [&](const std::string& what) { result.differences.push_back(what); };
       result.impacts += judge_run(run, question, prediction, central_differences, judge);
     }
-    for (const auto& [column, at_full] : errors[0]) {
-      const auto& at_half = errors[1][column];
+    for (const auto& [column, at_full] : errors[1]) {
+      const auto& at_quarter = errors[4][column];
       if (at_full[1] > result.worst) result.worst = at_full[1], result.worst_what = column;
-      // Half at least: of two kinks near a sample one may be before it now and behind it then. What is far
-      // below the method's error has leading terms that cancel, and need not shrink.
-      if (at_half[0] <= at_full[0] / 2 || at_half[1] <= 1e-2) continue;
-      result.differences.push_back(column + " is off by " + text(at_full[0], 3) + ", with half the step by " +
-                                   text(at_half[0], 3) + ": " + text(at_half[1], 3) +
-                                   " of what is predicted");
+      // Half at least: where in a step a sample lies changes its error, and of two kinks near a sample one may
+      // be before it now and behind it then. What is far below the method's error has leading terms that
+      // cancel, and need not shrink.
+      if (at_quarter[0] <= at_full[0] / 2 || at_quarter[1] <= 1e-2) continue;
+      result.differences.push_back(column + " is off by " + text(at_full[0], 3) +
+                                   ", with a quarter of the step by " + text(at_quarter[0], 3) + ": " +
+                                   text(at_quarter[1], 3) + " of what is predicted");
     }
     if (result.differences.empty()) return;
   }

@@ -143,6 +143,10 @@ TEST_CASE("cem knows from the first step to which side a force moves a mass at r
   scene.y0 = 0, scene.force_amplitude = 0.002282329681120003, scene.mass_ratio = 100;
   scene.wall_stiffness = 24.87109110725685;
   agrees(scene, Cem{.locate = true});
+  // Where an impact at once outweighs the force.
+  scene.mass_ratio = 0.8639750845521202, scene.wall_stiffness = 232.5304680212508;
+  scene.y0 = 1, scene.w0 = 0.5079995904720795, scene.force_amplitude = -0.023887365656086762;
+  agrees(scene, Cem{.locate = true});
 }
 
 TEST_CASE("extreme mass ratios are refused, or give finite numbers") {
