@@ -9,6 +9,12 @@ if (has("fold")) {
   fold = STATS_max
   from = fold / 1.15 < from ? fold / 1.15 : from
 }
+# After failure the amplitude is often below the axis; a legend for nothing is no help.
+is_seen = 0
+if (has("failed-1")) {
+  stats table index "failed-1" using 1 nooutput
+  is_seen = STATS_max > from
+}
 eval look("curve-1", 2)
 logarithmic = (is_wide(from, to) ? "x" : "").(STATS_min > 0 ? "y" : "")
 if (STATS_min > 0) {
@@ -27,12 +33,6 @@ forms = optional("one-impact-1", '1:2 with lines ls 9 title "closed forms, Î½ â†
 if (fold > 0 && fold < to) {
   set arrow 1 from fold,graph 0 to fold,graph 1 nohead ls 10 dt (6,4)
   set label 1 "impacts fail" at fold,graph 0.03 left offset 0.4,0 font ",11" textcolor rgb grey
-}
-# After failure the amplitude is often below the axis; a legend for nothing is no help.
-is_seen = 0
-if (has("failed-1")) {
-  stats table index "failed-1" using 1 nooutput
-  is_seen = STATS_max > from
 }
 eval 'plot '.optional("band-1", '1:2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
   (!is_seen ? "" : optional("failed-1", '1:2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",')).\

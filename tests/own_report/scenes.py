@@ -40,7 +40,7 @@ SCENES = {
     "slip of the units": (["--scene", "slip.json"], {"header": "is the free travel given in millimetres?"},
                           ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
-    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted", "header": "outside its box", "loads": "in which the run begins"},
+    "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted", "header": "outside its cavity", "loads": "in which the run begins"},
                          ["decay", "loss", "phase", "begin", "prediction"]),
     "released by w0": (["--x0", "0", "--w0", "3", "--until-time", "400"], {"prediction": "releases that differ"},
                        ["decay", "phase", "begin", "prediction"]),

@@ -20,7 +20,7 @@ endfunction()
 # verdicts(CODE): builds, runs the scenes, verifies.
 function(verdicts wanted name)
   run(${CMAKE_COMMAND} --build build --target runs-exact)
-  execute_process(COMMAND build/src/impact-damper verify --members 4 WORKING_DIRECTORY ${FOLDER}
+  execute_process(COMMAND build/src/impact-damper verify --members 8 WORKING_DIRECTORY ${FOLDER}
                   RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
   string(REGEX MATCH "[^\n]*claims:[^\n]*" summary "${out}")
   message("${name}: exit code ${code}; ${summary}")
