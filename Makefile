@@ -119,7 +119,7 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
-	@cp $(BUILD)/paper/report.html docs/report.html
+	@$(alone) cp $(BUILD)/paper/report.html docs/report.html
 
 test:  ## run every test
 	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)

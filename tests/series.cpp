@@ -165,7 +165,6 @@ TEST_CASE("a catalogue that does not hold together is refused at the place that 
   refused(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
   refused(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
   refused(R"("title")", R"("titel")", "titel");
-  refused(R"("scenes": [)", R"("scenes": [{"scene": "idle", "record": ["half_cycles"]}, )", "idle");
 }
 
 TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for the impacts") {

@@ -158,7 +158,7 @@ class Formats(unittest.TestCase):
             for table in figure["tables"][:1]:
                 self.assertIn(table["file"], references(drawing, "object"))
                 making = crate[f"#table-{figure['figure']}"]
-                self.assertEqual(references(making, "result"), [table["file"]])
+                self.assertEqual(references(making, "result"), [table["file"], table["file"].replace(".dat", ".csv")])
                 for scene in figure["scenes"]:
                     self.assertIn(scene["file"], references(making, "object"))
 

@@ -70,7 +70,7 @@ def a_link_and_a_copy():
     alone.parent.mkdir(parents=True)
     shutil.copy(PROGRAM, alone)
     demand(run(alone, "figures", code=5) == "figures/catalogue.json: cannot be read: No such file or directory\n", "alone")
-    demand("@software{" in run(alone, "cite"), "cite needs no file")
+    demand("@misc{" in run(alone, "cite"), "cite needs no file")
     demand("data/reference/manifest.json: cannot be read" in run(alone, "cite", "--figure", "8", code=5), "--figure does")
 
 

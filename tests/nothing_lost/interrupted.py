@@ -126,7 +126,7 @@ def all_wait(tree, check):
     folder = os.open(tree, os.O_RDONLY)
     fcntl.flock(folder, fcntl.LOCK_EX)
     for target in sorted(targets):
-        ready = [word for each in {"bench", "sanitize"} - {target} for word in ("-o", each)]
+        ready = [word for each in {"bench", "sanitize", "paper"} - {target} for word in ("-o", each)]
         with subprocess.Popen(["make", *ready, target], cwd=tree, env=scratch.ENVIRONMENT, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True) as process:
             said = process.stdout.readline()

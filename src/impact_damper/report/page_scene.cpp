@@ -1,5 +1,4 @@
 // What a report's page says of the scene itself.
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -122,7 +121,7 @@ std::string warnings_html(const Findings& findings) {
   const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
   std::vector<std::string> looks;
   for (std::string caution : cautions_of(scene, findings.subject.scales)) {
-    caution[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(caution[0])));
+    if (caution.starts_with("the ")) caution[0] = 'T';
     looks.push_back(caution + (caution.ends_with('?') ? "" : "."));
   }
   if (speech.in_units() && reach > 1000)
