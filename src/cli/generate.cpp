@@ -107,9 +107,8 @@ std::string roff_options(const CLI::App& app) {
 std::string roff_footer(const CLI::App& app) { return ".PP\n.nf\n" + roff(app.get_footer()) + "\n.fi\n"; }
 
 std::string man_page(const CLI::App& program) {
-  const std::string name = program.get_name();
-  std::string text = ".TH IMPACT\\-DAMPER 1 \"\" " +
-                     roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
+  const std::string& name = program.get_name();
+  std::string text = R"(.TH IMPACT\-DAMPER 1 "" )" + roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
   text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.get_description()) + "\n.SH SYNOPSIS\n";
   for (const CLI::App* command : commands_of(program)) {
     text += ".B " + roff(name + " " + command->get_name()) + "\n";
@@ -191,7 +190,8 @@ std::string zsh_completion(const CLI::App& program) {
       std::string value = option.type == "FOLDER" ? "_files -/" : "_files";
       if (!words.empty()) value = "(" + joined(words, " ") + ")";
       const std::string told = "[" + described(option.meaning) + "]";
-      const std::string valued = told + ":" + escaped(option.type, ":\\", "\\") + ":" + value;
+      std::string valued = told;
+      valued += ":" + escaped(option.type, ":\\", "\\") + ":" + value;
       for (const std::string& name : names_of(option)) {
         const char* const before_value = name.starts_with("--") ? "=" : "+";
         add("*" + name + (option.takes_value ? before_value + valued : told));

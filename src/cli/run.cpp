@@ -92,10 +92,10 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
         !(window->first > 0 && window->first < above_it && window->second > 0 &&
           window->second <= 1e12 * unit.time) ||
         !(window->count >= 2 && window->count <= most_samples)) {
-      arguments.refuse("--history-below",
-                       "must be A:LENGTH:N with 0 < A < " + number_text(above_it) + millimetres +
-                           ", 0 < LENGTH <= " + number_text(1e12 * unit.time) + seconds + " and 2 to " +
-                           std::to_string(most_samples) + " samples, got " + in_quotes(text));
+      std::string wanted = "must be A:LENGTH:N with 0 < A < " + number_text(above_it) + millimetres;
+      wanted += ", 0 < LENGTH <= " + number_text(1e12 * unit.time) + seconds;
+      wanted += " and 2 to " + std::to_string(most_samples) + " samples, got " + in_quotes(text);
+      arguments.refuse("--history-below", wanted);
       continue;
     }
     record.history_below.push_back({window->first / unit.length, window->second / unit.time, window->count});

@@ -120,7 +120,7 @@ Engine engine_of(Arguments& arguments) {
 
 void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales) {
   for (const std::string& caution : cautions_of(scene, scales))
-    std::cerr << command + ": warning: " + caution + '\n';
+    std::cerr << command << ": warning: " << caution << '\n';
 }
 
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales) {

@@ -96,6 +96,7 @@ LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, s
                              const LogarithmicFit& fit) {
   const auto [time, amplitude] = peaks_of(half_cycles, first, last);
   std::vector<double> logarithms;
+  logarithms.reserve(amplitude.size());
   for (const double each : amplitude) logarithms.push_back(logarithm(each));
   const double widest = logarithm(fit.factor);
   const auto most = static_cast<std::size_t>(fit.most_half_cycles) / 2;

@@ -89,7 +89,7 @@ Admitted read_admitted(ObjectReader& object) {
     return admitted;
   }
   if (object.has("value") == object.has("range")) {
-    object.refuse("value", "one of it, \"range\" and \"kind\" must be given, got " +
+    object.refuse("value", R"(one of it, "range" and "kind" must be given, got )" +
                                std::string(object.has("value") ? "both" : "none"));
   }
   if (object.has("value")) {
