@@ -146,9 +146,9 @@ TEST_CASE("the unit of a printed number's last digit is that of the last that co
   const std::pair<const char*, double> units[] = {{"0.339", 0.001}, {"5.0", 0.1}, {"31", 1}, {"10", 10},
                                                   {"0.01", 0.01},   {"120", 10},  {"4.", 1}, {"0.10", 0.01},
                                                   {".5", 0.1},      {"105", 1}};
-  for (const auto& [digits, unit] : units) {
-    CAPTURE(digits);
-    CHECK(last_digit(digits).value_or(-1) == unit);
+  for (const auto& each : units) {
+    CAPTURE(each.first);
+    CHECK(last_digit(each.first).value_or(-1) == each.second);
   }
   for (const char* digits : {"", "-1", "1e-8", "0", "0.00", ".", "1.2.3", " 1", "2 pi"}) {
     CAPTURE(digits);

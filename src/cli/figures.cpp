@@ -38,7 +38,8 @@ Command figures_command(CLI::App& program) {
       "  impact-damper figures");
   return {app, [app] {
             Arguments arguments(*app);
-            const std::string file = arguments.file("CATALOGUE").value_or(project_file("figures/catalogue.json"));
+            const std::string file =
+                arguments.file("CATALOGUE").value_or(project_file("figures/catalogue.json"));
             arguments.finish();
             return list_figures(file);
           }};

@@ -108,7 +108,8 @@ std::string roff_footer(const CLI::App& app) { return ".PP\n.nf\n" + roff(app.ge
 
 std::string man_page(const CLI::App& program) {
   const std::string& name = program.get_name();
-  std::string text = R"(.TH IMPACT\-DAMPER 1 "" )" + roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
+  std::string text = R"(.TH IMPACT\-DAMPER 1 "" )" +
+                     roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
   text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.get_description()) + "\n.SH SYNOPSIS\n";
   for (const CLI::App* command : commands_of(program)) {
     text += ".B " + roff(name + " " + command->get_name()) + "\n";

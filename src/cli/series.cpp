@@ -75,7 +75,8 @@ int make_tables(Arguments arguments) {
   const auto output = arguments.file("--output");
   const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
   const Threads threads = threads_of(arguments);
-  const std::string catalogue_file = arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
+  const std::string catalogue_file =
+      arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
   const Catalogue catalogue = read_catalogue(catalogue_file);
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
   const bool into_folder = output && fs::is_directory(*output);
@@ -124,7 +125,8 @@ Command series_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
   add_scenes_option(*app);
-  app->add_option("--figure", "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all")
+  app->add_option("--figure",
+                  "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all")
       ->type_name("NUMBER")
       ->expected(1)
       ->take_all();

@@ -694,8 +694,8 @@ Record everything(double end) {
   return record;
 }
 
-// With a quarter of the step every error is to be a sixteenth, once steps are short enough for the scene: they
-// are shortened twice where that is not so. A column's largest error stands for it.
+// With a quarter of the step every error is to be a sixteenth, once steps are short enough for the scene:
+// they are shortened twice where that is not so. A column's largest error stands for it.
 void compare_by_order(const Scene& scene, const Question& question, const Prediction& prediction, Cem engine,
                       Comparison& result) {
   // As the engine's own default.
@@ -726,8 +726,8 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
     for (const auto& [column, at_full] : errors[1]) {
       const auto& at_quarter = errors[4][column];
       if (at_full[1] > result.worst) result.worst = at_full[1], result.worst_what = column;
-      // Half at least: where in a step a sample lies changes its error, and of two kinks near a sample one may
-      // be before it now and behind it then. What is far below the method's error has leading terms that
+      // Half at least: where in a step a sample lies changes its error, and of two kinks near a sample one
+      // may be before it now and behind it then. What is far below the method's error has leading terms that
       // cancel, and need not shrink.
       if (at_quarter[0] <= at_full[0] / 2 || at_quarter[1] <= 1e-2) continue;
       result.differences.push_back(column + " is off by " + text(at_full[0], 3) +

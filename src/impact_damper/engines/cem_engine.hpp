@@ -45,11 +45,10 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
   begin_segment(Real(0), initial_);
   // The second-order start leaves y''' out, and y on the wall, where rounding would decide what comes next.
   if (at_rest_on_wall && 3 * absolute(bend) < h * absolute(jerk)) now_.dq += h * h * h * jerk / 6;
-  // Nor would it know to which side a force moves a primary mass at rest in the middle: that is x''' h^3/6, too,
-  // unless an impact does.
+  // Nor would it know to which side a force moves a primary mass at rest in the middle: that is x''' h^3/6,
+  // too, unless an impact does.
   const bool impact_at_once = (s.y == 0 && s.w < 0) || (s.y == 1 && s.w > 0);
-  const bool moved_by_force =
-      s.x == 0 && s.v == 0 && acceleration(Real(0), s).x == 0 && !impact_at_once;
+  const bool moved_by_force = s.x == 0 && s.v == 0 && acceleration(Real(0), s).x == 0 && !impact_at_once;
   if (moved_by_force) now_.dx += h * h * h * force_.amplitude * force_.frequency / 6;
 
   side_ = sign(s.x != 0 ? s.x : s.v);

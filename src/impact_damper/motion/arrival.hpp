@@ -112,8 +112,8 @@ Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
     if (size * 33554432 < t && t < most) {
-      // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!: beside u'
-      // for the time, and beside the motion of x, which may be far smaller, for what is gained.
+      // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!: beside
+      // u' for the time, and beside the motion of x, which may be far smaller, for what is gained.
       const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2, left_out = rt_4 * rt_4 * rt;
       const Real tiny = 362880 * std::numeric_limits<Real>::epsilon() / 16;
       if (left_out <= 4 * tiny && fourth * left_out <= tiny * absolute(u1) * (rate * rate * rate))

@@ -132,8 +132,8 @@ class Flight {
     const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk));
     return near < far ? near : far;
   }
-  // Whether the fourth power of a correction is nothing beside x and x', too, which may be far smaller than the
-  // secondary mass's motion.
+  // Whether the fourth power of a correction is nothing beside x and x', too, which may be far smaller than
+  // the secondary mass's motion.
   static bool moves_x_by_series(const Derivatives<Real, 6>& u, const Real& shift, const Real& fourth) {
     const Real shift_2 = shift * shift, second = absolute(u[2]), third = absolute(u[3]);
     return fourth * (shift_2 * shift_2) <= 4 * std::numeric_limits<Real>::epsilon() * (second + third);
