@@ -1,5 +1,5 @@
-# Above what the paper draws. Below the same four curves with 2 zeta/(1 + nu) taken off (docs/mathematics.md, section
-# 6), on the same scale.
+# Above what the paper draws. Below the same four curves with 2 zeta/(1 + nu) taken off (docs/mathematics.md, M11.3),
+# on the same scale.
 from = 0.03
 styles = "1 2 3 4"
 theory = "1"

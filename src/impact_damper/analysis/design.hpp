@@ -1,6 +1,6 @@
 // What somebody asks who builds an impact damper: which clearance, which forces, and what is left of the
 // motion under an exciting force. Dimensionless throughout; the equations are in docs/mathematics.md,
-// section 7.
+// chapter 12.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Tolerances {
   double amplitude = 0.1;     // relative, either way
 };
 
-// The clearance for an amplitude that is to be damped, equation (8). Amplitudes in units of the clearance.
+// The clearance for an amplitude that is to be damped (M12.3). Amplitudes in units of the clearance.
 struct ClearanceRule {
   double fold = 0;  // fold_amplitude(e): below it one impact per half cycle cannot go on
   double margin =
@@ -38,7 +38,7 @@ inline constexpr double least_margin = 1.5;
 ClearanceRule clearance_rule(double restitution, const Tolerances& tolerances = {});
 
 // --- Contact ----------------------------------------------------------------------------------------------
-// A short contact of both masses, otherwise free, that a relative speed w > 0 begins: equations (9) and (10).
+// A short contact of both masses, otherwise free, that a relative speed w > 0 begins: (M12.4) and (M12.5).
 struct ShortContact {
   double force = 0;                // largest force between them, divided by K epsilon
   std::optional<double> duration;  // until the overlap is gone; absent without a rebound (damping ratio >= 1)
@@ -50,12 +50,12 @@ double initial_wall_force(const Scene& scene, Calibration calibration);
 
 // --- Forced motion ----------------------------------------------------------------------------------------
 // Amplitude of mass * x'' + 2 zeta x' + x = f sin(omega t): the empty box for mass 1, the secondary mass
-// locked to it for mass 1 + nu, equation (11). Infinite at the resonance of an undamped oscillator.
+// locked to it for mass 1 + nu (M12.6). Infinite at the resonance of an undamped oscillator.
 double linear_response(double force, double mass, double damping_ratio, double frequency);
 struct WorstResponse {
   double frequency = 0, amplitude = 0;
 };
-// Where linear_response is largest, equation (12): at frequency 0 if the damping is so strong; of infinite
+// Where linear_response is largest (M12.7): at frequency 0 if the damping is so strong; of infinite
 // amplitude without damping.
 WorstResponse worst_linear_response(double force, double mass, double damping_ratio);
 

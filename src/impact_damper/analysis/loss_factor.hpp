@@ -40,7 +40,7 @@ LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorO
 // The loss factor without the parabola's bias, for strong damping too: about each peak a straight line is
 // fitted by least squares to ln A over time, over as many peaks on either side as keep the first and the last
 // within a factor of each other: one at least, so a whole cycle, `most_half_cycles` / 2 at most. Exact on an
-// exponential envelope of any decrement; docs/mathematics.md, equations (6) and (7).
+// exponential envelope of any decrement; (M12.1), and (M12.2) for its bias under impacts.
 struct LogarithmicFit {
   double factor = 2;          // >= 1
   int most_half_cycles = 10;  // even, >= 2
@@ -59,7 +59,7 @@ inline double specific_secondary_loss(double eta, double damping_ratio, double m
 }
 
 // (eta - 2 zeta / (1 + nu)) / nu: the same where the primary mass carries the secondary along
-// (docs/mathematics.md, section 6).
+// (M11.3, from M11.1 and M11.2).
 inline double specific_carried_loss(double eta, double damping_ratio, double mass_ratio) {
   return (eta - 2 * damping_ratio / (1 + mass_ratio)) / mass_ratio;
 }

@@ -1,10 +1,10 @@
 // The exact engine: compliant walls, every motion a closed form, every event solved for.
 //
-// A scene is a chain of free flights (flight.hpp) and contacts (contact.hpp). A flight ends where a wall is
-// met, a contact where the secondary mass is back at the wall's position (a displacement criterion: near the
-// end of a contact the wall's damper pulls). Both ends are guessed and proved (arrival.hpp, rebound.hpp) or,
-// where a proof fails, searched for step by certified step (first_root.hpp): none is missed. There is no time
-// step, and no error but rounding.
+// A scene is a chain of flights (flight.hpp) and contacts (contact.hpp). A flight ends where a wall is met, a
+// contact where the secondary mass is back at the wall's position (a displacement criterion: near the end of
+// a contact the wall's damper pulls). Both ends are predicted and validated (arrival.hpp, rebound.hpp) or,
+// where the validation fails, searched for with proved steps (first_root.hpp): none is missed
+// (docs/mathematics.md, chapter 7). There is no time step, and no error but rounding.
 #pragma once
 
 #include "impact_damper/arithmetic.hpp"

@@ -1,23 +1,18 @@
 // The restitution engine: Brown and North's model. Rigid walls, impacts that take no time.
 //
-// An impact turns the relative velocity w into -e w and keeps (1+nu) v + nu w; it costs
-// nu (1 - e^2) w^2 / (2 (1+nu)). Between impacts the secondary mass flies free (flight.hpp).
+// An impact turns the relative velocity w into -e w and keeps (1+nu) v + nu w. Between impacts the secondary
+// mass flies (flight.hpp).
 //
-// Bounce-down is an infinite sequence of impacts in finite time. Under a constant relative acceleration a
-// towards the wall and a first rebound speed w it is over after
-//     T = 2 w / (a (1 - e)),
-// and where a changes meanwhile, little beside a, by a' in flight and by 2 zeta nu/(1+nu) (1+e) w at an
-// impact that is left with e w, after
-//     T (1 - T (a' / (3 a) + zeta e nu/(1+nu))).
-// The impacts are stepped through one by one until a changes by less than the fraction
-// Restitution::accumulation_tolerance within T; then the engine jumps: the masses join (plastically, as far
-// as momentum goes) and move on as one, stuck from T later on. With the tolerance tol and |a'| <= m, w is
-// then about tol a^2 (1-e) / 2m; at the default tolerance that is some 1e-9, and the displacement that the
-// jump ignores, nu w^2 / 2a, is below rounding. Of a bounce-down that begins with w the engine so steps
-// through about ln(2 m w / (tol a^2 (1-e))) / -ln e impacts; the energy of those jumped over,
-// nu w^2 / (2 (1+nu)), stands in the ledger as bounce_down_loss.
+// Complete chattering, the paper's bounce-down, is an infinite sequence of impacts in a finite time (M6.1).
+// Its impacts are stepped through one by one until the relative acceleration a towards the wall changes by
+// less than the fraction Restitution::accumulation_tolerance within that time; then the engine takes the
+// limit: the masses join, keep their momentum, and stick from the time (M6.2) later on. With the tolerance
+// tol and |a'| <= m, the rebound speed w is then about tol a^2 (1-e) / 2m; at the default tolerance that is
+// some 1e-9, and the displacement that is ignored, nu w^2 / 2a, is below rounding. Chattering that begins
+// with w takes about ln(2 m w / (tol a^2 (1-e))) / -ln e impacts until then; the energy of the impacts left
+// out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
 //
-// Stuck, the masses move by equation (9) until the wall's push on the secondary mass, nu x'', vanishes.
+// Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
 #include "impact_damper/arithmetic.hpp"

@@ -1,7 +1,7 @@
-// What both closed-form engines share: a scene passes as a chain of motions, and what is looked at is read
-// off each of them: zero crossings and peaks of x, history samples, works; and where the scene ends.
+// What both closed-form engines share. A run is a chain of motions; this class reads off each of them the
+// zero crossings and peaks of x, the samples, the work, and where the run ends.
 //
-// Looking never changes the motion: a motion is restarted at its own events only.
+// Observing never changes the motion: a motion is restarted at its own events only.
 #pragma once
 
 #include <optional>
@@ -42,7 +42,7 @@ class Timeline {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(horizon_.end_time) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
-  // When the scene ended: on the dot where a time ended it.
+  // When the run ended: exactly the time asked for if that ended it.
   double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
   // For how long a bound on a motion may be asked for.
   const Real& span() const { return span_; }
@@ -72,7 +72,7 @@ class Timeline {
       if (ends < duration) end = motion.at(ends);
       duration = ends;
     }
-    // As exact as what the observer is told of times: one that asks for the state at an end gets it.
+    // Compared in double precision, as times are recorded: a sample asked for at an event's time is given.
     const double until = timed_out_ ? horizon_.end_time : double(clock_.after(duration));
     while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
@@ -151,8 +151,8 @@ class Timeline {
     bool may_cross = !motion.keeps_side(side_, end, duration);
     Real no_turn_before = from;
     if (!may_turn && !may_cross) return duration;
-    // A zero of x at the end of a motion, to rounding, is the next motion's: an impact there may throw x
-    // back, and by then x and x' tell whether it crosses. (docs/mathematics.md, section 2)
+    // A zero of x within (M7.1) of a motion's end is the next motion's: an impact there may throw x back, and
+    // then the signs of x and x' tell whether it crosses.
     const Real at_speed = absolute(motion.at(Real(0)).x / end.v), scale = at_speed < 1 ? at_speed : Real(1);
     const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (duration + scale);
     for (;;) {

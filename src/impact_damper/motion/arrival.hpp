@@ -1,17 +1,9 @@
-// Where a motion meets a wall, the short way: a guess, a series that lands on the wall, and a proof, after
-// the fact, that no wall was met before.
+// Predicts when a motion meets a wall, and validates afterwards that it met none before.
 //
-// first_root.hpp certifies each step before it takes it, and so takes many. Most arrivals need none of that:
-// the series at the beginning says nearly when, one evaluation there and the series about it say exactly
-// when. What remains is to exclude an earlier arrival, and for that the two ends suffice. Between t = 0 and h
-// the cubic P that shares position and velocity with u at both ends is off by at most
-//     |u - P| <= m s^2 (1-s)^2 h^4 / 24,      s = t/h,      |u''''| <= m
-// (Hermite interpolation). In Bernstein form, of degree 4, P has the coefficients
-//     u0,   u0 + h u0'/4,   (u0 + u1)/2 + h (u0' - u1')/6,   u1 - h u1'/4,   u1
-// and the error's bound only the middle one, m h^4 / 144. A polynomial lies within the hull of its
-// coefficients: if these lie on one side of a wall, so does u, however near its ends are to it.
-//
-// Whatever cannot be proved so is left to first_root.hpp, and nothing is ever assumed.
+// first_root.hpp proves each step before it takes it, and needs many. Most impact times need none of that:
+// the series at the beginning predicts the time; one evaluation there and the series about it (M7.7) give it
+// to rounding; and the two ends exclude an earlier impact (Lemma L2, M7.5, M7.6). docs/mathematics.md, 7.4
+// and 7.5. Where the validation fails, first_root.hpp searches.
 #pragma once
 
 #include <limits>
@@ -42,11 +34,11 @@ struct Arrival {
   State<Real> state;
 };
 
-// When y meets a level nearby: its third-order series turned round. `close` tells whether that leaves no more
-// than a rounding error of the time h that has led here, nor does the fourth order of y or the motion.
+// When y meets a level nearby, by reversion of its series to third order (M7.7). `close`: the terms left out,
+// of the reversion and of the series, are below rounding of the time h that has led here.
 template <class Real>
 struct Nearby {
-  Real shift, newton;  // and by the first order alone
+  Real shift, newton;  // the time until then; the same to first order
   bool close;
 };
 template <class Real>
@@ -61,8 +53,8 @@ Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real
               fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
-// u and u' after the time of a correction that is `close`, whose fourth power no longer counts; d: the
-// derivatives of u, of which the first two may be another's.
+// u and u' a time t later, to third order, for a correction t that is `close`. d: the derivatives of u from
+// the second on.
 template <class Real>
 struct Moved {
   Real u, u1;
@@ -73,12 +65,12 @@ Moved<Real> moved(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, 
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
 
-// When a mass that has left one wall of a gap of 1 meets either, and after `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series. u is the distance from the wall it
-// left; it may begin with its third derivative alone. |u''''| <= fourth, and `rate` times as much each
-// derivative after it. Where the series is as good as the motion the guess is `exact`, and `gained` tells by
-// how much u and u' differ then from the straight line: with the digits that a fast mass's own u and u' have
-// not.
+// Predicts when a mass that has left one wall of a gap of 1 meets either, and `most` at the latest: by the
+// parabola through its beginning, then by Halley's method on the series (docs/mathematics.md, 7.5). u:
+// distance from the wall it left; it may begin with its third derivative alone. `fourth`: bound on |u''''|;
+// each further derivative is at most `rate` times the one before. `exact`: the terms left out of the series
+// are below rounding, and `gained` is then by how much u and u' differ from the straight line u + u' t, with
+// digits that a fast mass's own u and u' do not have.
 template <class Real>
 struct Guess {
   Real time;
@@ -127,8 +119,8 @@ Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real
   return {t < most ? t : most, across, false, {}};
 }
 
-// Whether a distance of at most 1, u0 at one end and u1 at the other, a time h apart, is proved to stay
-// between 0 and 1. slope0, slope1: its derivatives there; |its fourth| <= fourth.
+// Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
+// (Lemma L2). slope0, slope1: its derivatives there; fourth: bound on its fourth derivative.
 template <class Real>
 bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
                    const Real& fourth) {
@@ -145,7 +137,7 @@ bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real&
   return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;
 }
 
-// The same of one that may be of any size, towards 0.
+// The same of one that only has to stay above 0.
 template <class Real>
 bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& slope1, const Real& h,
                 const Real& fourth) {

@@ -1,8 +1,8 @@
-// Contact with a compliant wall: the full coupled system, in closed form.
+// Contact with a compliant wall (M2.2) in closed form.
 //
-// x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow part, both masses
-// moving together, and a fast one, the wall giving way (contact_system.hpp). A state is split into the two,
-// and each moves by its own oscillator's C and S (oscillator.hpp), critically damped or not.
+// x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow mode, both masses
+// moving together, and a fast one, the wall giving way (M5.3). A state is split into the two
+// (contact_system.hpp), and each moves by its own oscillator's C and S (oscillator.hpp).
 #pragma once
 
 #include "impact_damper/motion/contact_system.hpp"
@@ -96,6 +96,8 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
+  // From `from` on, the time within which x has one zero at most: once the ringing is below rounding (Lemma
+  // L5).
   Real one_zero_within(const Real& from) const {
     const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
@@ -173,13 +175,14 @@ class Contact {
            instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
   }
 
-  // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, where that is
-  // about when the slow part does, F. Nothing where that is not proved.
+  // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, if it is near
+  // F, where the slow part u does. Nothing where that is not proved.
   //
-  // The proof. The slow part u is exp(-a t) times the arc of a sine, and so above exp(-a F) times its chord.
-  // What is left of the fast part only decays, and is less than that chord until a time, and what is left
-  // then until a later one, `quiet`. If that is less than a rounding error, F is it. Else the sum falls from
-  // there on, by a bound on u'', and once; and a step of Newton's from F finds where.
+  // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast part below a
+  // bound that decreases (M3.5): so there is no zero before the time `quiet` at which that bound meets the
+  // chord, taken twice. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on u''
+  // proves that the sum falls from `quiet` on, so that it has one zero there, which a Newton step from F
+  // finds.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
@@ -214,14 +217,10 @@ class Contact {
     return fall + shift;
   }
 
-  // The end of a contact that lasts: the fast motion dies away, and the mass leaves at h, when the slow one
-  // lets go.
-  //
-  // The proof. The slow motion's depth is exp(-a t) times the arc of a sine that ends at h, and so above
-  // exp(-a h) times its chord. (1) In short pieces by the bound on the fourth derivative (arrival.hpp), in
-  // shorter ones where the mass all but leaves, until what is left of the fast motion can never more reach as
-  // far as that chord (or helps it, and cannot change sides). (2) Where by h it is less than a rounding
-  // error, this is the end; else (3) the end is corrected, and proved by the bound again.
+  // The end of a sustained contact: the ringing decays, and the mass leaves at h, where the slow mode falls
+  // through zero. The three steps are those of docs/mathematics.md, 7.7: (1) Lemma L2 in pieces, until the
+  // ringing that is left can never reach the chord of Lemma L4; (2) if it is below rounding by then, h is the
+  // end; (3) else h is corrected (M7.7), and the last quarter proved by L2.
   std::optional<typename Rebound<Real>::End> settle() const {
     const ContactSystem<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
@@ -355,7 +354,7 @@ class Contact {
     to.w += drive.w * driven.d1 + drive.q * on_velocity;
   }
 
-  // Taken apart when first asked for: a brisk rebound never asks.
+  // The modal split of the start, made when first asked for: the short-contact map does not need it.
   const ContactParts<Real>& parts() const {
     if (!parts_) {
       parts_.emplace();

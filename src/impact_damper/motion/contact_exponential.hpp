@@ -1,10 +1,7 @@
-// The propagator of a contact whose modes are no good coordinates (contact_system.hpp, `coupled`).
-//
-// The coupled equations are taken as they stand, s' = A s for s = (x, v, q, w) and, under a force, its sine
-// and cosine. exp(A t) is a product of powers exp(2^j A h), tabulated once for a scene and rounded once, and
-// of a Taylor series for what is left of t, below h. It exists whatever the eigenvalues are; and as no motion
-// gains energy, each factor of the product leaves errors no larger than it finds them (docs/mathematics.md,
-// section 5).
+// The propagator of a contact without modes (M5.7): exp(A t) as a product of powers exp(2^j A h), tabulated
+// once for a scene and rounded once, and of a Taylor series for the rest of t, below h. It needs no
+// eigenvalues. No factor increases the energy (M5.8), so none increases the rounding errors of those before
+// it.
 #pragma once
 
 #include <vector>

@@ -1,9 +1,9 @@
-// The contact's characteristic polynomial P(s) (contact_system.hpp) as a product of two real quadratics.
+// The characteristic polynomial of a contact, P = J H - g D^2 (M5.1, M5.2), as a product of two real
+// quadratics (M5.3).
 //
-// P = J H - g D^2: J = s^2 + j1 s + j0 is the two masses joined (the stuck regime), H = s^2 + h1 s + h0 the
-// wall between them, and what couples the two, D = 2 zeta s + 1, g = nu/(1+nu)^2, is weak if the wall is
-// stiff or viscous, or if one mass is light. The factors are sought as what they differ by from J and H:
-// these differences, not their sums with J and H, say how much of the one motion there is in the other.
+// J = s^2 + j1 s + j0 is that of the two masses joined, H = s^2 + h1 s + h0 that of the wall between them;
+// their coupling g D^2 is weak if the wall is stiff or viscous, or if one mass is light. The unknowns are the
+// differences of the factors from J and H, which so have their own relative accuracy.
 #pragma once
 
 #include <limits>

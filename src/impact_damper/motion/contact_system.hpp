@@ -1,29 +1,12 @@
-// The walls of a scene: what every contact with them has in common, once per scene.
+// The walls of a scene: what all contacts (M2.2) with them have in common, made once for a scene.
 //
-// With q the overlap coordinate (y at the left wall, y - 1 at the right; q < 0 and q > 0 in contact),
-// K = omega_m^2 = k/nu and c = 2 omega_m zeta_m, equations (5)-(8) read
-//     x'' + 2 zeta x' + x = nu (c q' + K q) + f,      x'' + q'' + c q' + K q = 0.
-// Their characteristic polynomial P(s), of fourth degree, is factored once per scene into two real quadratics
-// (contact_factors.hpp): Q1 = s^2 + p s + b, slow (both masses moving together), and Q2 = s^2 + p2 s + b2,
-// fast (the wall giving way). A state is split into the part that lives in either, and each part moves by its
-// own oscillator's C and S (oscillator.hpp), critically damped or not.
+// The characteristic polynomial is factored into a slow and a fast quadratic (M5.3, contact_factors.hpp). A
+// state is split into its two modes by (M5.4), applied to q and to the centre of both masses, X (M5.5): these
+// two are weakly coupled, so that nothing cancels. Each mode moves as its own oscillator.
 //
-// The split. Q2(d/dt) removes the fast part of a motion u and leaves (alpha d/dt + beta) u of the slow one,
-// alpha = p2 - p, beta = b2 - b; Q1(d/dt) the other way round, with the sign changed. With the resultant
-// R = beta^2 - alpha beta p + alpha^2 b, the inverse of alpha s + beta is
-//     (beta - alpha p - alpha s)/R modulo Q1,    (beta - alpha p2 - alpha s)/R modulo Q2.
-// Where digits could go: u'' is as large as the fast motion makes it, and what Q2 leaves of it would be its
-// rounding errors. So two coordinates are taken that the equations couple weakly: q, which the joined masses
-// hardly move, and the masses' centre X = x + nu/(1+nu) q, which the wall does not move. With J, H and D of
-// contact_factors.hpp they are J X = nu/(1+nu)^2 D q and H q = D X, and
-//     Q2 q = D X + (Q2 - H) q,    Q1 X = nu/(1+nu)^2 D q + (Q1 - J) X,
-// whose coefficients are all small and known to their own last digit. What remains of q and of X is fast
-// and slow, by subtraction, and x = X - nu/(1+nu) q.
-//
-// Where the two factors are equal there is no split, and where they are nearly so its parts are large and
-// cancel; and a primary mass that its damper holds faster than the wall does is not weakly coupled. Such
-// contacts are followed as they stand (coupled_contact.hpp). In the norm sqrt(x^2 + v^2 + (v+w)^2 + K q^2)
-// orthogonal parts make the split's own norm sqrt(2).
+// Where the factors are equal or nearly so, and where the primary mass is strongly damped, the parts are
+// large and cancel, as the split's norm (M5.6) tells. Such contacts are followed without modes
+// (coupled_contact.hpp).
 #pragma once
 
 #include "impact_damper/motion/contact_exponential.hpp"

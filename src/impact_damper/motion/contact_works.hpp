@@ -1,16 +1,11 @@
-// The works of a contact, however long it lasts.
+// The work done in a contact, however long it lasts (docs/mathematics.md, chapter 8).
 //
-// A wall of little damping rings through thousands of swings in a contact that lasts. No quadrature follows
-// them: the rates x' and q' are taken as ringing (the fast motion, but for what the forcing keeps up) plus
-// smooth (all the rest). Smooth times smooth is left to the quadrature. A ringing's square is integrated as
-// the exponentials it consists of, from its beginning alone, so that it tests where the motion ends. Smooth
-// times ringing goes by parts: if g'' + p g' + b g = F and h rings, h'' + p2 h' + b2 h = 0, then
-//     g h = (g H' - g' H - p g H)' + F H
-// with that ringing H for which H'' - p H' + b H = h. Of H one has (A d/dt + B) H = -h, A = p2 + p,
-// B = b2 - b, hence H = (A h' + (A p2 - B) h)/R, R = B^2 - A B p2 + A^2 b2. F is a sine of the forcing's
-// frequency, and F H goes by parts again, with p = 0, b = omega_f^2, F = 0. Nothing of this is an
-// approximation; digits are lost only where the smooth part swings about as fast as the ringing, and there
-// the quadrature follows both.
+// A wall of little damping rings thousands of times in a sustained contact, too often for a quadrature. The
+// rates x' and q' are taken as ringing (the fast mode without what the force keeps up) plus smooth (all
+// else). Smooth times smooth is left to the quadrature. The square of the ringing is a sum of exponentials,
+// integrated from its beginning alone, so that it tests where the motion ends. Smooth times ringing is
+// integrated by parts (M8.2, M8.3), exactly; digits are lost only where both oscillate about equally fast,
+// and there the quadrature follows both.
 #pragma once
 
 #include "impact_damper/motion/contact.hpp"
@@ -39,7 +34,7 @@ Real square_of_ringing(const Oscillator<Real>& ringing, const Wave<Real>& h, con
   return (h.u * h.u + m * m) / 2 * mean + (h.u * h.u - m * m) / 2 * in_phase + h.u * m * behind;
 }
 
-// H of the head's second formula.
+// R of (M8.3) for the ringing h.
 template <class Real>
 Wave<Real> by_parts(const Oscillator<Real>& ringing, const Wave<Real>& h, const Real& p, const Real& b) {
   const Real p2 = 2 * ringing.a(), b2 = ringing.b(), a = p2 + p, o = b2 - b;

@@ -1,11 +1,5 @@
-// Contact with a compliant wall by the coupled equations as they stand (contact_exponential.hpp): where its
-// modes are no good coordinates.
-//
-// Events are searched for with the energy's bounds. s^(n), the n-th derivative of the motion, obeys the
-// equations of s = (x, v, q, w). With
-//     N_n = sqrt(x_n^2 + v_n^2 + nu (v_n + w_n)^2 + k q_n^2),      |x^(n)| <= N_n,  |x^(n+1)| <= N_n,
-//     |q^(n)| <= N_n / sqrt(k),      |q^(n+1)| <= N_n (1 + 1/sqrt(nu)),
-// N_n never grows but for a force, by |f0| omega_f^n per time. (docs/mathematics.md, section 5)
+// Contact with a compliant wall without modes (contact_exponential.hpp), where the split of a state into
+// modes loses digits. Events are searched for (first_root.hpp) with the bounds (M5.9).
 #pragma once
 
 #include "impact_damper/motion/contact_system.hpp"

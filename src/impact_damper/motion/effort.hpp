@@ -1,5 +1,5 @@
-// What a run in closed form may cost. Where a motion is so stiff, or so long, that no bound on it holds for
-// more than a moment, the search for its next event would go on for years.
+// The step budget of a closed-form run. Where a motion is so stiff, or so long, that its bounds hold only for
+// a very short time, the search for its next event would otherwise not end.
 #pragma once
 
 #include <cstdint>

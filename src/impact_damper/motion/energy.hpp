@@ -1,7 +1,7 @@
-// Energies of the two masses and the walls, and the works that change them.
+// Energies of the two masses and the walls, and the work that changes them: the balance (M8.1).
 //
-// Works are integrals of the motion itself, by Gauss-Legendre quadrature, not differences of energies: so
-// that the ledger's residual is a test of the motion and not an identity.
+// Work is integrated along the motion itself by Gauss-Legendre quadrature, not taken as a difference of
+// energies: so the residual is a test of the motion and not an identity.
 #pragma once
 
 #include <array>

@@ -1,12 +1,9 @@
-// The first root of a function from above, certified: none is ever missed, however grazing.
-//
-// Where g, g', g'' are known at a point and |g'''| <= m from there on,
-//     g(s) >= p(s) = g + g' s + g'' s^2 / 2 - m s^3 / 6,
-// so g cannot vanish before p does. Stepping to the first root of p, again and again, walks towards the
-// first root of g without ever passing it, and converges with third order where g' is not zero there.
+// The first fall of a function through zero, found by a Taylor lower bound (Lemma L1, M7.3): none is missed,
+// however grazing. Each step leads to the first root of the bound's cubic, which no root of the function
+// precedes; the steps converge with third order where the slope is not zero.
 //
 // Where g = main + rest with a bound on |rest| (a slow motion with a fast ringing on top; a straight flight
-// with an oscillation on top), main - bound > 0 is a second proof, which steps over many swings of the rest.
+// with an oscillation on top), main - bound > 0 is a second proof, which steps over many periods of the rest.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// 0 < y < 1: equations (3) and (4). The secondary mass flies straight, z = x + y = z0 + z'0 t.
+// Flight, 0 < y < 1: (M2.1). The secondary mass flies straight, z = x + y = z0 + z'0 t.
 #pragma once
 
 #include "impact_damper/motion/arrival.hpp"
@@ -121,10 +121,9 @@ class Flight {
     }
     return met;
   }
-  // Released at rest the mass leaves with y''' alone: y''' t^3/6 outweighs |y''''| t^4/24 until t = 4
-  // y'''/|y''''|. Half of that is passed over, within which the sign of a y'' that is zero to rounding would
-  // decide; but no more than keeps y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 below a quarter of the
-  // travel.
+  // Where the search for the next wall begins if the mass is released at rest and leaves with y''' alone
+  // (M7.4); but at most so far that y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 stays below a quarter of
+  // the clearance.
   Real leap_by_jerk(const Real& span) const {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
@@ -151,7 +150,7 @@ class Flight {
            stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
                                fourth, halvings - 1);
   }
-  // By guess and proof (arrival.hpp), in a few pieces; nothing where that does not come to an end.
+  // By prediction and validation (arrival.hpp), in three pieces at most; nothing where that does not succeed.
   [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
     const Real rate = swing_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
     Real begin = from;

@@ -1,12 +1,8 @@
-// u'' + 2 a u' + b u = f(t), a >= 0, b > 0: the one equation of which every regime is made.
+// u'' + 2 a u' + b u = f(t), a >= 0, b > 0 (M3.1): the one equation of which every regime is made. Flight is
+// one such oscillator, sticking another, a contact two of them (contact.hpp).
 //
-// Free flight is one such oscillator (a = zeta, b = 1, equation 3), the stuck regime another
-// (a = zeta/(1+nu), b = 1/(1+nu), equation 9), a contact two of them (contact.hpp).
-//
-// With S and C the solutions for S(0) = 0, S'(0) = 1 and C(0) = 1, C'(0) = 0,
-//     u = u0 C + u'0 S + response to f from rest,      S' = C - 2 a S,   C' = -b S.
-// All damping ratios are admitted; each formula keeps its full relative accuracy through the critical
-// case, for short times (C - 1 and S - t come without cancellation) and through resonance.
+// The propagator is (M3.2) with C and S of (M3.3). Each formula keeps its relative accuracy at and near
+// critical damping, for short times (C - 1 and S - t come without cancellation) and through resonance.
 #pragma once
 
 #include <array>
@@ -94,10 +90,9 @@ class Oscillator {
   // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
   const Real& half_period() const { return half_period_; }
 
-  // The first time >= 0 at which a free motion that begins with u and u', not both zero, falls through zero;
-  // only where underdamped. Its phase grows by omega t from that of (omega u, -(u' + a u)), and it falls
-  // where the phase is a multiple of a full turn: taken from this angle, the time keeps its relative accuracy
-  // where it is short, and where omega vanishes.
+  // The first time >= 0 at which a free motion that begins with u and u', not both zero, falls through zero
+  // (M7.2); only where underdamped. It keeps its relative accuracy where it is short, and where omega
+  // vanishes.
   Real first_fall(const Real& u, const Real& u1) const {
     const Real phase = angle_of(Real(omega_ * u), Real(-(u1 + a_ * u)));
     return phase < 0 ? Real(phase * over_omega_ + 2 * half_period_) : Real(phase * over_omega_);
@@ -117,30 +112,28 @@ class Oscillator {
     const Real along = (u1 + a_ * u) * over_omega_, height = square_root(Real(u * u + along * along));
     return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
   }
-  // What a time t leaves of a free motion that begins with u and u': a bound on it from then on. It is
-  // exp(-a t) (u C + (u' + a u) S) with the undamped C and S, and where overdamped S <= t exp(omega t).
+  // Bound on |free motion| that begins with u and u', from the time t on (M3.5).
   Real left(const Real& u, const Real& u1, const Real& t) const {
     const Real along = absolute(u1 + a_ * u), rate = underdamped_ ? a_ : slow_rate_;
     const Real size =
         absolute(u) + (underdamped_ ? Real(along * over_omega_) : Real(along * (t + 1 / slow_rate_)));
     return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
   }
-  // The size of a free motion with u and u', which no damping raises: a bound on u from then on.
+  // The size of a free motion with u and u', which never grows: a bound on |u| from then on (M3.4).
   Real size(const Real& u, const Real& u1) const {
     const Real scaled = u1 * over_root_b_;
     return square_root(Real(u * u + scaled * scaled));
   }
-  // At least so much of a free motion's swing is left after a time t: a bound on exp(-a t), cheaply where
-  // near.
+  // Lower bound on exp(-a t), without an exponential where a t is small.
   Real kept(const Real& t) const {
     const Real lost = a_ * t;
     return lost < Real(0.5) ? Real(1 - lost) : exponential(-lost);
   }
   // Whether its own motion swings before it has died away.
   bool rings() const { return underdamped_ && 2 * omega_ > a_; }
-  // How far from an age t on Gauss's 16 points integrate a product of two of its own motions: over six
-  // radians to 3e-20 of its size, and where it dies rather than rings over as long as it has been dying, to
-  // 1e-17 of what it began with.
+  // Length of a quadrature panel that begins at the time t since the motion's beginning. Gauss's 16 points
+  // integrate a product of two free motions over six radians to 3e-20 of its size; where the motion decays
+  // without oscillating, over as long as it has been decaying, to 1e-17 of what it began with.
   Real panel(const Real& t) const {
     const Real swing = 6 / rate_;
     return !rings() && t > swing ? t : swing;
@@ -188,8 +181,7 @@ class Oscillator {
     const auto [sin, cos] = sin_cos(forcing.frequency * begin);
     const Real fastest = rate_ > forcing.frequency ? rate_ : forcing.frequency;
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
-    // The response z to exp(i omega_f t), turned by the phase at the beginning:
-    // sin(phase + omega_f t) = Im(exp(i phase) exp(i omega_f t)).
+    // (M4.1): the response z to exp(i omega_f t), turned by the phase at the beginning.
     const auto [z, z1] = response_to_rotation(forcing.frequency, t, p);
     return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
             forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
@@ -267,9 +259,8 @@ class Oscillator {
       f_next = f_after;
       d_now = d_next;
       d_next = term;
-      // These four numbers are all that the terms to come are made of. Fewer are not enough: two successive
-      // terms of d vanish where omega_f^2 = b and a/sqrt(b) is sqrt(3)/2, sqrt(1/2), cos 36 or cos 72
-      // degrees.
+      // (M4.3) makes the terms to come of these four numbers. Fewer are not enough: two successive terms of d
+      // vanish where omega_f^2 = b and a/sqrt(b) is sqrt(3)/2, sqrt(1/2), cos 36 or cos 72 degrees.
       const Real force_to_come = (absolute(f_now) + absolute(f_next)) * (over[n + 2] * over[n + 3]);
       if (absolute(d_now) + absolute(d_next) + force_to_come <=
           std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
@@ -300,9 +291,9 @@ class Oscillator {
             Complex(b_ * p.s - frequency * sin, frequency * (cos_minus_c + 2 * a_ * p.s)) / h};
   }
 
-  // Underdamped, eigenvalues lambda = -a +- i omega: z = (E(lambda) - E(conj lambda)) / (2 i omega) with
-  // E(lambda) = (exp(i omega_f t) - exp(lambda t)) / (i omega_f - lambda), which tends to t exp(lambda t) in
-  // resonance and is evaluated so that nothing cancels on the way there.
+  // Underdamped, eigenvalues lambda = -a +- i omega: z = (E(lambda) - E(conj lambda)) / (2 i omega) with E of
+  // (M4.2), which tends to t exp(lambda t) in resonance and is evaluated so that nothing cancels on the way
+  // there.
   ComplexResponse respond_by_difference(const Real& frequency, const Real& t) const {
     const auto forced = sin_cos(frequency * t);
     const Real decay = exponential(-a_ * t), loss = -exponential_minus_1(-a_ * t);
@@ -407,9 +398,8 @@ class Instant {
   const Real& operator[](std::size_t n) const { return d_[n]; }
   const std::array<Real, N>& derivatives() const { return d_; }
 
-  // |u^(n)| stays within this for a time `span`, without forcing for ever. Every derivative obeys the same
-  // equation, whose energy u'^2 + b u^2 no damping raises; a force raises its square root by |force| per
-  // time. Far from resonance the steady state plus the energy of what is not steady is the smaller bound.
+  // Bound on |u^(n)| for a time `span`, without a force for ever (M3.4 and what follows it): the smaller of
+  // the energy with what the force can add, and the steady state with the energy of what is not steady.
   Real bound(std::size_t n, const Real& span) const {
     const Real free = oscillator_.size(d_[n], d_[n + 1]);
     if (!forcing_) return free;

@@ -1,16 +1,12 @@
-// A brisk rebound: a contact that begins on the wall and lasts little more or less than half a swing of the
-// fast motion, T. Most impacts are one, and for these the whole contact is a linear map.
+// The short-contact map (M7.8): a contact that begins on the wall and lasts about T, half a period of the
+// fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene.
 //
-// From the wall, q = 0, the state at T is linear in (x, x', y') at the touch, and so is each derivative
-// there; both are numbers of the scene. A contact then costs the sums
-//     q(T + s) = sum_n s^n (Q_n . (x, x', y'))
-// and that for x, and solving the first for s, which must be so short that a term more would be a rounding
-// error. A rounding error that is the same in every impact adds up: so what is tabulated for x is the change
-// of the masses' centre, which is small, and for y' what differs from -E y'.
+// The series in s, the time since T, is as long as its first term left out needs to be below rounding. A
+// rounding error that is the same in every impact adds up; so what is tabulated for x is the change of the
+// centre of both masses, which is small, and for y' what differs from -E y', E = exp(-a T).
 //
-// The proof that q has not been back at zero before T + s is that of arrival.hpp, for exp(a t) q, a the fast
-// motion's decay: the fast part of that is a plain sine, so that its fourth derivative does not outgrow what
-// the damper leaves of the rebound.
+// That q has not been back at zero before is proved by Lemma L2 for exp(a t) q, a the decay rate of the fast
+// mode (docs/mathematics.md, 7.6).
 #pragma once
 
 #include <array>
@@ -115,7 +111,8 @@ class Rebound {
 
   explicit operator bool() const { return accurate_ > 0; }
 
-  // The end of a contact that begins with x, v and w, inwards; nothing if it is not that brisk.
+  // The end of a contact that begins with x, v and w, inwards; nothing if it is too long for the series, or
+  // not proved.
   struct End {
     Real time, x, v, w;
   };
@@ -229,7 +226,7 @@ class Rebound {
   Real swing_{0}, left_{0};    // T and E = exp(-a T)
   Real decay_{0}, growth_{0};  // a and exp(a T)
   Real unweighted_{0};         // (b / omega^2)^2
-  Real accurate_{0};           // a correction of s whose third power is nothing
+  Real accurate_{0};           // the largest correction of s whose third power is below rounding
   Reach few_, more_, many_, most_;
   Real share_{0}, zeta_{0};
   Table centre_{}, q_{};

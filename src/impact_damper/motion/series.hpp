@@ -1,4 +1,4 @@
-// Sums by powers of the time, with which a motion is followed for a short while without a sine.
+// Power series in time, which follow a motion for a short time without a sine.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Both masses as one, the secondary at rest on a wall: equation (9), and y'' = 0 for equation (10).
+// Sticking: both masses move as one, the secondary at rest on a wall (M2.3); y'' = 0 in place of the paper's
+// (10).
 #pragma once
 
 #include "impact_damper/motion/swing.hpp"

@@ -1,8 +1,8 @@
-// x of a single oscillator under the forcing, a closed form from its beginning: what moves in free flight
-// (flight.hpp) and where both masses move as one (stuck.hpp).
+// x of one oscillator under the force, in closed form from its beginning (M3.2): in flight (flight.hpp), and
+// where both masses move as one (stuck.hpp).
 //
-// Every motion answers, for a time t since its beginning: the state, what it meets, and where a derivative of
-// x falls through zero.
+// Every motion answers, for a time t since its beginning: the state, which wall it meets and when, and where
+// a derivative of x falls through zero.
 #pragma once
 
 #include "impact_damper/motion/arrival.hpp"
@@ -26,8 +26,8 @@ struct System {
 
   Real nu, e, zeta, k;
   Force forcing;
-  Oscillator<Real> free;   // equation (3)
-  Oscillator<Real> stuck;  // equation (9), whose printed forcing lacks the factor 1/(1+nu)
+  Oscillator<Real> free;   // (M2.1), the paper's (3)
+  Oscillator<Real> stuck;  // (M2.3), the paper's (9) with the factor 1/(1+nu) that its force lacks
 };
 
 // Calls `then` with the scene's numbers, whose type tells whether there is a forcing.
@@ -51,17 +51,16 @@ std::optional<Real> search_fall(OutlookAt&& outlook_at, const Real& from, const 
   return root ? std::optional(root->time) : std::nullopt;
 }
 
-// Where a function begins with its third derivative alone, u''' t^3/6 outweighs |u''''| t^4/24 until t = 4
-// u'''/|u''''|. Half of that is passed over in a search, within which the sign of a u'' that is zero to
-// rounding would decide. No more than `span`, for which the bound `fourth` holds.
+// Where to begin a search if a function begins with its third derivative alone (M7.4): before that the sign
+// of a u'' that is zero to rounding would decide. At most `span`, for which the bound `fourth` holds.
 template <class Real>
 Real leap_by_third(const Real& third, const Real& fourth, const Real& span) {
   const Real leap = 2 * absolute(third) / fourth;
   return leap < span ? leap : span;
 }
 
-// Whether a function with the ends u0, u1 of one sign has no zero between them: |its second derivative| is at
-// most `second`, so it keeps within second t^2/8 of its chord.
+// Whether a function with the ends u0, u1 of one sign is proved to have no zero between them (Lemma L3).
+// `second`: a bound on |its second derivative|.
 template <class Real>
 bool keeps_sign(const Real& u0, const Real& u1, const Real& second, const Real& t) {
   const Real off = second * t * t / 8;
@@ -119,7 +118,8 @@ class Swing {
   using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
 
-  // What rounding may leave of x'' at the beginning where its terms cancel.
+  // What rounding may leave of x'' at the beginning where its terms cancel: below it x'' is taken for zero
+  // (before M7.4).
   Real rounding_of_acceleration() const {
     return 4 * std::numeric_limits<Real>::epsilon() *
            (oscillator_.b() * absolute(x0_) + 2 * oscillator_.a() * absolute(v0_) +

@@ -10,9 +10,8 @@
 
 namespace impact_damper {
 
-// zeta_m for which a secondary mass bouncing on a wall that stands still keeps the fraction e of its
-// speed: e = exp(-pi zeta_m / sqrt(1 - zeta_m^2)), hence zeta_m = L / sqrt(pi^2 + L^2), L = -ln e.
-// e in [0, 1]: 0 gives 1 (no rebound), 1 gives 0.
+// zeta_m for which a secondary mass bouncing on a wall that stands still keeps the fraction e of its speed
+// (M2.4). e in [0, 1]: 0 gives 1 (no rebound), 1 gives 0.
 template <class Real>
 Real zeta_m_closed_form(const Real& restitution) {
   if (restitution <= 0) return 1;
