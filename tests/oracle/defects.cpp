@@ -135,6 +135,15 @@ TEST_CASE("a peak right after the begin of a contact keeps its digits") {
   agrees(scene, Exact{});
 }
 
+TEST_CASE("what a force does early in a contact keeps its digits") {
+  Scene scene = scene_until(1);
+  scene.mass_ratio = 0.11927822881077497, scene.restitution = 0.8165574348600294;
+  scene.damping_ratio = 0.9999849950532019, scene.wall_stiffness = 0.8947187854820589;
+  scene.x0 = 0, scene.y0 = -1.8643620120393543e-08;
+  scene.force_amplitude = 0.08479664183223828, scene.force_frequency = 3.9645981703335313;
+  agrees(scene, Exact{});
+}
+
 TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
   Scene scene = scene_until(5);
   scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;

@@ -338,8 +338,13 @@ class Contact {
     ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
+      // (M5.10): what both parts have in common in x and q is left out where it would cancel.
       const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
-      add_driven(by, oscillator, drive, driven, t);
+      if (driven.integral) {
+        add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
+      } else {
+        add_driven(by, oscillator, drive, driven, t);
+      }
     }
     return by;
   }
@@ -348,6 +353,11 @@ class Contact {
     const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
     const Real on_displacement = driven.d1 + 2 * oscillator.a() * driven.d;  // response to C instead of S
     const Real on_velocity = f - oscillator.b() * driven.d;                  // its derivative
+    add_driven(to, drive, driven, on_displacement, on_velocity);
+  }
+  static void add_driven(ContactState<Real>& to, const ContactState<Real>& drive,
+                         const DrivenResponse<Real>& driven, const Real& on_displacement,
+                         const Real& on_velocity) {
     to.x += drive.v * driven.d + drive.x * on_displacement;
     to.v += drive.v * driven.d1 + drive.x * on_velocity;
     to.q += drive.w * driven.d + drive.q * on_displacement;

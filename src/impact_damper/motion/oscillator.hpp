@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "impact_damper/motion/complex.hpp"
 #include "impact_damper/motion/elementary.hpp"
@@ -59,10 +60,11 @@ struct NoForcing {
   }
 };
 
-// Displacement and velocity, from rest, of an oscillator under f.
+// Displacement and velocity, from rest, of an oscillator under f; for a short time also the integral of d.
 template <class Real>
 struct DrivenResponse {
   Real d{0}, d1{0};
+  std::optional<Real> integral{};
 };
 
 template <class Real>
@@ -248,12 +250,13 @@ class Oscillator {
     // d_n, f_n: terms of order t^n of the response and of the force times t^2.
     const auto& over = reciprocals<Real>;
     Real f_now = forcing.amplitude * t * t * sin, f_next = forcing.amplitude * t * t * phase * cos;
-    Real d_now = 0, d_next = 0, d = 0, d1 = 0;
+    Real d_now = 0, d_next = 0, d = 0, d1 = 0, integral = 0;
     for (int n = 0; n + 3 < 64; ++n) {
       const Real weight = over[n + 1] * over[n + 2];
       const Real term = (f_now - bt * d_now) * weight - at * over[n + 2] * d_next;
       d += term;
       d1 += (n + 2) * term;
+      integral += over[n + 3] * term;
       const Real f_after = -phase * phase * f_now * weight;
       f_now = f_next;
       f_next = f_after;
@@ -266,7 +269,7 @@ class Oscillator {
           std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
         break;
     }
-    return {d, d1 / t};
+    return {d, d1 / t, t * integral};
   }
 
   // The imaginary part of the response to exp(i omega_f t), from rest, is what a force that has just been
