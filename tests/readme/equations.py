@@ -11,7 +11,7 @@ from collections import Counter
 from pathlib import Path
 
 EQUATION = r"\bM\d+\.\d+\b"
-LEMMA = r"\bLemmas? (L\d+)\b"
+LEMMA = r"\bLemmas?\s+(?://\s*)?(L\d+)\b"
 
 
 def main() -> int:
