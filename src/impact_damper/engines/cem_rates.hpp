@@ -27,6 +27,8 @@
 //     q_p = -(x'' + c w_p) / omega_m^2,   w_p = -x''' / omega_m^2,   x'', x''' of both masses as one.
 // When the ringing is (omega_m h)^2 of q_p, the scheme's own relative error, steps of half the stability
 // limit are as good: what is left of it dies away in these too. Small steps return before the mass is free.
+// Joined to the primary mass (Cem::stuck_speed) it takes steps of H until they part.
+// Joined to it (Cem::stuck_speed) the mass takes steps of H until they part.
 #pragma once
 
 #include <algorithm>
@@ -83,7 +85,12 @@ class Certificate {
 template <class Real, class Observer>
 std::int64_t CemEngine<Real, Observer>::choose_pace() {
   // A segment's first step tells what its motion is, but a contact's begins in small steps.
-  if (step_ == 0) return wall_ && pace_.h == small_.h ? rates_->steps_of_contact : 1;
+  if (step_ == 0) return wall_ && !stuck_ && pace_.h == small_.h ? rates_->steps_of_contact : 1;
+  if (stuck_) {  // no wall is met, and x'' is seen at every step
+    constexpr std::int64_t many = 16;
+    change_pace(rates_->large, motion_at(pace_.h));
+    return many;
+  }
   return wall_ ? choose_pace_in_contact() : choose_pace_in_flight();
 }
 

@@ -19,7 +19,7 @@
 
 namespace impact_damper {
 
-enum class Regime { flight, contact };
+enum class Regime { flight, contact, stuck };
 
 // A regime's equations as the numbers in them.
 template <class Real>
@@ -79,11 +79,22 @@ CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, co
   };
 }
 
+// Equation (9) in the same form, (1 + nu) x'' + 2 zeta x' + x = f, and q = 0 instead of (10).
+template <class Real>
+CemStep<Real> cem_step_stuck(const Real& nu, const Real& zeta, const Real& h) {
+  const Real mass = 1 + nu, outer = h * zeta, h_2 = h * h;
+  CemStep<Real> step{};
+  step.dx_dx = (mass - outer) / (mass + outer);
+  step.dx_x = -h_2 / (mass + outer);
+  step.dx_f = h_2 / (mass + outer);
+  return step;
+}
+
 // A step and what it makes of the equations.
 template <class Real>
 struct Pace {
   Real h{};
-  CemStep<Real> flight{}, contact{};
+  CemStep<Real> flight{}, contact{}, stuck{};
 };
 
 // The fastest of the undamped modes in contact. With K = k/nu,
