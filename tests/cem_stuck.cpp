@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/simulate.hpp"
@@ -68,8 +69,9 @@ const Scene pressed{.mass_ratio = 0.5,
 }  // namespace
 
 TEST_CASE("both masses move by equation (9) and part where x'' changes its sign, with second order") {
-  Joined joined{pressed.mass_ratio, pressed.damping_ratio, pressed.force_amplitude, pressed.force_frequency,
-                0,                  pressed.x0};
+  Joined joined{
+      pressed.mass_ratio, pressed.damping_ratio, pressed.force_amplitude, pressed.force_frequency, 0,
+      pressed.x0};
   for (int i = 0; i < 100; ++i) joined.step(0.005L);
   const double x_at_half = double(joined.x), v_at_half = double(joined.v);
   joined.part();
@@ -166,13 +168,12 @@ TEST_CASE("with every impact slow it converges to the restitution engine at e = 
         REQUIRE(run.contacts->end.size() == rigid.contacts->end.size());
         REQUIRE(run.impacts->time.size() == rigid.impacts->time.size());
         for (std::size_t n = 0; n < rigid.half_cycles->amplitude.size(); ++n)
-          amplitude[i] = std::max(
-              amplitude[i], std::abs(run.half_cycles->amplitude[n] - rigid.half_cycles->amplitude[n]));
+          amplitude[i] = std::max(amplitude[i],
+                                  std::abs(run.half_cycles->amplitude[n] - rigid.half_cycles->amplitude[n]));
         for (std::size_t n = 0; n < rigid.contacts->end.size(); ++n)
           part[i] = std::max(part[i], std::abs(run.contacts->end[n] - rigid.contacts->end[n]));
         for (std::size_t n = 0; n < rigid.impacts->time.size(); ++n)
-          loss[i] =
-              std::max(loss[i], std::abs(run.energy->impact_loss[n] - rigid.energy->impact_loss[n]));
+          loss[i] = std::max(loss[i], std::abs(run.energy->impact_loss[n] - rigid.energy->impact_loss[n]));
       }
       CHECK(amplitude[2] < 1e-5);
       check_second_order(amplitude);
@@ -240,6 +241,32 @@ TEST_CASE("with two rates the joined masses take large steps, to the same motion
   for (std::size_t n = 0; n < one.half_cycles->amplitude.size(); ++n)
     CHECK(std::abs(one.half_cycles->amplitude[n] - two.half_cycles->amplitude[n]) < 2e-4);
   CHECK(std::abs(two.energy->residual) < 1e-4);
+}
+
+TEST_CASE(
+    "a contact under a push lasts from W a / omega_c down, W = 2.21 at e = 0.6, in which the default lies") {
+  // x'' = 1 to 1e-9 while a contact of a stiff wall lasts: an impact at once, in closed form.
+  Scene scene{.wall_stiffness = 1e10, .x0 = -1, .until_time = 0.01};
+  const double contact = nominal_contact_time(scene), per_push = contact / std::numbers::pi;
+  const auto lasts = [&](double speed) {
+    scene.w0 = -speed * per_push;
+    const Run run = simulate(scene, Exact{}, everything());
+    return run.contacts->end.at(0) - run.contacts->begin.at(0) > 2 * contact;
+  };
+  CHECK(lasts(2.20));
+  CHECK(!lasts(2.22));
+  const double at_paper = 2.21 * nominal_contact_time({}) / std::numbers::pi;
+  CHECK(usual_stuck_speed > 1 * at_paper);
+  CHECK(usual_stuck_speed < 6 * at_paper);
+}
+
+TEST_CASE("a speed that impacts have at small amplitudes too keeps the decay from reaching A = 0.1") {
+  const Scene scene{.until_time = 4000, .until_amplitude = 0.1};
+  const auto stop = [&](double speed) {
+    return simulate(scene, Cem{.locate = true, .large_step = 0.02, .stuck_speed = speed}, {}).stop_reason;
+  };
+  CHECK(stop(0.4) == StopReason::amplitude);
+  CHECK(stop(0.5) == StopReason::time);
 }
 
 TEST_CASE("a speed that is no positive number is rejected") {

@@ -133,8 +133,8 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
           : choose(std::integral_constant<Regime, Regime::flight>());
 }
 
-// Steps until the wall is crossed (x'' where both masses are one), x changes its sign or x' its own, or `most` are done (fewer where a force
-// or an energy balance is renewed).
+// Steps until the wall is crossed (x'' where both masses are one), x changes its sign or x' its own, or
+// `most` are done (fewer where a force or an energy balance is renewed).
 template <class Real, class Observer>
 template <Regime regime, bool forced, bool ledger>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
