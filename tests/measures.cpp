@@ -133,6 +133,9 @@ TEST_CASE("the limits and the slips are what theory says they are") {
         doctest::Approx(80).epsilon(1e-3));
   CHECK(std::abs(value("impact_energy_with_wall_percent", {{"mass_ratio", 0.25}})) < 1e-10);
   CHECK(value("stuck_forcing", {{"mass_ratio", 0.25}}) == doctest::Approx(0.8).epsilon(1e-5));
+  for (const double nu : {0.25, 0.5, 2.0})
+    CHECK(value("stuck_damping", {{"mass_ratio", nu}, {"damping_ratio", 0.1}}) ==
+          doctest::Approx(1 / std::sqrt(1 + nu)).epsilon(1e-5));
 }
 
 TEST_CASE("a mass that sticks moves by what the wall gives way under it") {

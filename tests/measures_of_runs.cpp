@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/files/file_output.hpp"
 #include "impact_damper/files/run_file.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -417,4 +419,51 @@ TEST_CASE("a smaller step is better by the sum of its amplitudes' errors") {
   CHECK(measured("step_refinement", {{"steps_per_contact", 20}, {"factor", 5}},
                  {simulate(scene, Exact{}, {true, true, true})}) ==
         doctest::Approx(error(contact / 20) / error(contact / 100)).epsilon(1e-9));
+}
+
+TEST_CASE("what the paper's stuck regime changes is read off runs with it and without") {
+  Scene scene;
+  scene.mass_ratio = 0.05;
+  scene.until_amplitude = 1;
+  const Run file = simulate(scene, Exact{}, {true, true, true});
+  const double speed = 0.4;
+  const auto run = [&](double amplitude, std::optional<double> stuck_speed, std::int64_t steps) {
+    Scene its = scene;
+    its.until_amplitude = amplitude;
+    Cem engine{.locate = true, .large_step = 0.02, .stuck_speed = stuck_speed};
+    engine.max_steps = steps;
+    return simulate(its, engine, {true, true, true});
+  };
+  constexpr std::int64_t any = 300'000'000;
+  const auto time = [&](std::optional<double> stuck_speed) {
+    return run(0.3, stuck_speed, any).half_cycles->peak_time.back();
+  };
+  const double saved = 100 * (1 - time(speed) / time({}));
+  CHECK(std::abs(saved) > 0.1);
+  CHECK(measured("stuck_regime_time_percent", {{"stuck_speed", speed}, {"amplitude", 0.3}}, {file}) ==
+        doctest::Approx(saved).epsilon(1e-9));
+
+  const auto end = end_of_bounce_down(run(2, speed, any));
+  REQUIRE(end);
+  CHECK(*end != end_of_bounce_down(run(2, {}, any)));
+  CHECK(measured("stuck_regime_bounce_down_end", {{"stuck_speed", speed}, {"amplitude", 2}}, {file}) == *end);
+
+  const double from = 1, to = 5;
+  const auto curve = [&](std::optional<double> stuck_speed) {
+    return loss_curve(run(from / 2, stuck_speed, any), LossOrdinate::amplitude_times, from, to);
+  };
+  const double spread = spread_percent({curve(speed), curve({})}, from, to);
+  CHECK(spread > 0.1);
+  CHECK(measured("stuck_regime_curve_percent", {{"stuck_speed", speed}, {"from", from}, {"to", to}},
+                 {file}) == doctest::Approx(spread).epsilon(1e-9));
+
+  // The share of steps is right if with as many the run comes to its end, and with fewer it does not.
+  const double share =
+      measured("stuck_regime_steps_percent", {{"stuck_speed", speed}, {"amplitude", 5}}, {file});
+  CHECK(share > 10);
+  std::int64_t without = 1;
+  while (run(5, {}, without).stop_reason == StopReason::step_budget) without += without / 100 + 1;
+  const auto with = static_cast<double>(without) * (1 - share / 100);
+  CHECK(run(5, speed, std::int64_t(1.001 * with)).stop_reason == StopReason::amplitude);
+  CHECK(run(5, speed, std::int64_t(0.985 * with)).stop_reason == StopReason::step_budget);
 }

@@ -33,6 +33,7 @@ Engine cem_of_two_rates() {
   engine.time_step = 1e-4;
   engine.locate = true;
   engine.large_step = 0.1;
+  engine.stuck_speed = 0.02;
   engine.budget.max_time = 1e6;
   return engine;
 }

@@ -103,6 +103,7 @@ Cem cem_of(const Scene& scene, bool round, reference::Random& random) {
   // A round step with round scenes: samples and ends then coincide with steps, but for rounding.
   options.time_step = round ? std::pow(10, std::floor(std::log10(h))) : h;
   if (random.chance(0.5) && large > 2 * h) options.large_step = large;
+  if (random.chance(0.5)) options.stuck_speed = random.uniform(0.01, 1);
   return options;
 }
 

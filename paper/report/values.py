@@ -109,7 +109,7 @@ def named_in_words(name: str, claim: dict, words: str) -> dict:
     """The further numbers of a claim, which its words show by name."""
     parts = re.split(r"\{(\w*)[^}]*\}", claim.get("words", ""))
     shown = re.fullmatch("".join(re.escape(part) if i % 2 == 0 else "(.+?)" for i, part in enumerate(parts)), words)
-    numbers = {what: re.match(r"-?[\d.]+", text) for what, text in zip(parts[1::2], shown.groups() if shown else ()) if what}
+    numbers = {what: re.match(r"-?[\d.]+(?:e[-+]\d+)?", text) for what, text in zip(parts[1::2], shown.groups() if shown else ()) if what}
     return {f"{name}.{what.replace('_', '-')}": float(number[0]) for what, number in numbers.items() if number}
 
 

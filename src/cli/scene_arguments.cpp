@@ -42,6 +42,8 @@ void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
       {"--damper", {Cem::name}},
       {"--locate", {Cem::name}},
       {"--large-step", {Cem::name}},
+      {"--stuck", {Cem::name}},
+      {"--stuck-speed", {Cem::name}},
       {"--unstable", {Cem::name}},
       {"--calibration", {Exact::name, Cem::name}},
       {"--accumulation-tolerance", {Restitution::name}},
@@ -111,6 +113,11 @@ Engine engine_of(Arguments& arguments) {
   engine.damper = arguments.choice("--damper", {Damper::centred, Damper::lagged}, Damper::centred);
   engine.locate = arguments.flag("--locate");
   engine.large_step = arguments.number("--large-step", above(0));
+  const bool stuck_as_in_paper = arguments.word("--stuck", {"contact", "paper"}) == std::size_t{1};
+  engine.stuck_speed = arguments.number("--stuck-speed", above(0));
+  if (arguments.given("--stuck-speed") && !stuck_as_in_paper)
+    arguments.refuse("--stuck-speed", "is an option of --stuck paper");
+  if (stuck_as_in_paper && !engine.stuck_speed) engine.stuck_speed = usual_stuck_speed;
   engine.unstable = arguments.flag("--unstable");
   engine.calibration = calibration;
   if (most_steps) engine.max_steps = *most_steps;
@@ -210,6 +217,14 @@ void add_engine_options(CLI::App& app) {
       "cem: steps of up to H, for instance 0.05, while no wall can be\n"
       "met, the time step near contact only; a number > the time step\n"
       "and < 2, with forcing at most half its period. Best with --locate");
+  add("--stuck", "contact|paper",
+      "cem: a mass that sticks is in a contact that lasts (contact,\n"
+      "default), or both masses are one as in the paper, by equation (9)\n"
+      "with the force divided by 1 + nu, until x'' changes its sign");
+  add("--stuck-speed", "U",
+      "cem with --stuck paper: an impact slower than this, with the\n"
+      "wall pushing, joins the masses; a number > 0, default " +
+          number_text(usual_stuck_speed));
   add_flag("--unstable", "cem: run even with a step beyond the stability limit");
   add("--accumulation-tolerance", "X",
       "restitution: bounce-down jumps to its end once the relative\n"

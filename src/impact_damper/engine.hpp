@@ -67,6 +67,9 @@ struct Cem {
   // H, > h, < 2 and with forcing <= pi/omega_f: while no wall can be met steps of whole multiples of h, up to
   // this long (cem_rates.hpp). Absent: all steps are h.
   std::optional<double> large_step;
+  // The paper's stuck regime, u > 0 and finite: an impact slower than u that presses the secondary mass to the
+  // wall joins both masses, until x'' changes its sign. Absent: sticking is a contact that lasts.
+  std::optional<double> stuck_speed;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
   std::int64_t max_steps = 300'000'000;  // > 0; a budget like the others, for steps too small for the scene
@@ -74,6 +77,11 @@ struct Cem {
 
   bool operator==(const Cem&) const = default;
 };
+
+// u where the paper's regime is chosen without one. From a relative acceleration a towards the wall an impact
+// slower than about 2 a / omega_c does not separate (docs/mathematics.md, 9.1): 0.014 for a = 5, k = 1e4,
+// nu = 0.02, near which the paper's bounce-down ends.
+inline constexpr double usual_stuck_speed = 0.01;
 
 using Engine = std::variant<Exact, Restitution, Cem>;
 

@@ -89,6 +89,7 @@ void each_option(Cem& engine, Visit visit) {
   visit("damper", engine.damper);
   visit("locate", engine.locate);
   visit("large_step", engine.large_step);
+  visit("stuck_speed", engine.stuck_speed);
   visit("unstable", engine.unstable);
   visit("calibration", engine.calibration);
 }

@@ -45,6 +45,9 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
              rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
              " damper); take a smaller step, or run it all the same with --unstable"});
   }
+  if (options.stuck_speed && !(*options.stuck_speed > 0 && std::isfinite(*options.stuck_speed))) {
+    problems.push_back({"stuck_speed", "must be > 0 and finite, got " + number_text(*options.stuck_speed)});
+  }
   if (options.large_step) {
     const double large = *options.large_step;
     const double half_period = scene.force_amplitude != 0 ? std::numbers::pi / scene.force_frequency : 2;

@@ -1,12 +1,15 @@
 // The component element method: the paper's way of running a scene, equations (3)-(8) by central
-// differences with a fixed step h (cem_scheme.hpp), after a second-order start from the initial state.
+// differences with a fixed step h (cem_scheme.hpp), after a second-order start from the initial state. With
+// `stuck_speed` the paper's (9) as well, corrected (M9.5): an impact slower
+// than that, with the wall pushing, joins both masses with their momentum kept, until x'' changes its sign.
 //
 // Contact. As then, the sign of the overlap at a step decides which equations make the next one, so touch
 // and release come up to h late. With a damper in the wall, whose force jumps at touch, this makes the
 // delivered restitution, and all that follows from it, accurate to first order in h only. With `locate`
 // touch and release are put where the parabola through the three steps around them meets the wall: the
 // method steps exactly onto the event and starts anew from there, and is of second order (first with the
-// lagged damper). Two crossings of a wall within one step are not seen.
+// lagged damper). Two crossings of a wall within one step are not seen. Where the masses join or part the
+// motion begins anew, so these two events are located in any case, the second by a straight line through x''.
 //
 // With `large_step` the steps are small only near contact (cem_rates.hpp).
 //
@@ -93,6 +96,7 @@ class CemEngine {
   };
 
   void begin_segment(const Real& time, const State<Real>& state);
+  void lead_from_rest(const Real& bend, const Real& jerk);
   // The number of the step of this segment in which `time` lies; the first for earlier times.
   std::int64_t step_of(const Real& time) const { return whole_steps(double((time - origin_) / pace_.h)); }
   bool side_or_trend_unknown() const;
@@ -103,8 +107,12 @@ class CemEngine {
   void look_at_last_step();
   void spend_look();
   std::optional<Real> wall_crossing() const;
-  void change_regime(const Real& at);
+  std::optional<Real> parting() const;
+  bool joins(const Real& at) const;
+  // `restart` at that time, with both masses one where they join.
+  void change_regime(const Real& at, bool restart, bool joining);
   void enter(Wall wall, const Real& time, const State<Real>& s);
+  State<Real> join(const State<Real>& s);
   void leave(const Real& time);
   // `span`: up to where the last step counts.
   void cross_zero(const Real& at, const Real& span);
@@ -156,13 +164,29 @@ class CemEngine {
     return steps < 1e15 ? Real(std::int64_t(steps)) * small_.h : step;
   }
   Pace<Real> pace_of(const Real& h) const {
-    return {h, cem_step(flight_, damper_, h), cem_step(contact_, damper_, h)};
+    return {h, cem_step(flight_, damper_, h), cem_step(contact_, damper_, h),
+            cem_step_stuck(flight_.nu, flight_.zeta, h)};
   }
   Real stiffness() const { return wall_ ? 1 / (1 + flight_.nu) : Real(1); }
 
+  Real push() const { return wall_ == Wall::left ? Real(1) : Real(-1); }  // of the wall on the mass
   Real origin_of_q() const { return wall_ == Wall::right ? Real(1) : Real(0); }
   auto acceleration(const Real& time, const State<Real>& s) const {
+    if (stuck_) return joined_acceleration(time, s);
     return equations().acceleration(s.x, s.v, s.y - origin_of_q(), s.w, forcing(time));
+  }
+  typename RegimeEquations<Real>::Acceleration joined_acceleration(const Real& time,
+                                                                   const State<Real>& s) const {
+    return {(forcing(time) - 2 * flight_.zeta * s.v - s.x) / (1 + flight_.nu), Real(0)};
+  }
+  State<Real> joined(State<Real> s) const {
+    s.v += flight_.nu / (1 + flight_.nu) * s.w;
+    s.w = 0;
+    return s;
+  }
+  // h^2 x'' at a step of the stuck regime.
+  Real bend_of_stuck(const CemStep<Real>& a, const Moment& at, const Real& f) const {
+    return (a.dx_dx - 1) * at.dx + a.dx_x * at.x + a.dx_f * f;
   }
   static Real sign(const Real& value) { return Real((value > 0) - (value < 0)); }
   const RegimeEquations<Real>& equations() const { return wall_ ? contact_ : flight_; }
@@ -185,6 +209,7 @@ class CemEngine {
   const Real end_time_;    // its
   const Damper damper_;
   const bool locate_;
+  const std::optional<double> stuck_speed_;
   Observer& observer_;
 
   const System<Real> system_;
@@ -206,6 +231,7 @@ class CemEngine {
   std::optional<Wall> wall_;        // in contact with it; then q is counted from it, else from the left one
   Real contact_begin_ = 0;
   bool impact_began_contact_ = false;
+  bool stuck_ = false;  // in contact, both masses one
 
   Real side_ = 0;   // sign of x in this half cycle, 0 before x has moved
   Real trend_ = 0;  // sign of x' since the last turn

@@ -15,6 +15,7 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       end_time_(horizon_.end_time),
       damper_(options.damper),
       locate_(options.locate),
+      stuck_speed_(options.stuck_speed),
       observer_(observer),
       system_(scene),
       force_(system_.forcing),
@@ -42,9 +43,9 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
   const Real moves = at_rest_on_wall ? bend + h / 3 * jerk : Real(0);
   if (s.y < 0 || (s.y == 0 && moves < 0)) wall_ = Wall::left;
   if (s.y > 1 || (s.y == 1 && moves > 0)) wall_ = Wall::right;
+  stuck_ = stuck_speed_ && wall_ && at_rest_on_wall;
   begin_segment(Real(0), initial_);
-  // The second-order start leaves y''' out, and y on the wall, where rounding would decide what comes next.
-  if (at_rest_on_wall && 3 * absolute(bend) < h * absolute(jerk)) now_.dq += h * h * h * jerk / 6;
+  if (at_rest_on_wall && !stuck_) lead_from_rest(bend, jerk);
   // Nor would it know to which side a force moves a primary mass at rest in the middle: that is x''' h^3/6,
   // too, unless an impact does.
   const bool impact_at_once = (s.y == 0 && s.w < 0) || (s.y == 1 && s.w > 0);
@@ -93,6 +94,14 @@ void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real
   if (ledger_) add_powers(-pace_.h / 2, time, s);
 }
 
+// At rest on a wall: the second-order start leaves y''' out, and y on the wall, where the error of a y'' that
+// is zero would decide what comes next.
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::lead_from_rest(const Real& bend, const Real& jerk) {
+  const Real h = pace_.h;
+  if (3 * absolute(bend) < h * absolute(jerk)) now_.dq += h * h * h * jerk / 6;
+}
+
 // Where x or x' has been zero until now its first movement has to be seen, to know the sides: unless nothing
 // can move x before the next impact.
 template <class Real, class Observer>
@@ -119,17 +128,20 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
       ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
     }
   };
-  wall_ ? choose(std::integral_constant<Regime, Regime::contact>())
-        : choose(std::integral_constant<Regime, Regime::flight>());
+  stuck_  ? choose(std::integral_constant<Regime, Regime::stuck>())
+  : wall_ ? choose(std::integral_constant<Regime, Regime::contact>())
+          : choose(std::integral_constant<Regime, Regime::flight>());
 }
 
-// Steps until the wall is crossed, x changes its sign or x' its own, or `most` are done (fewer where a force
-// or an energy balance is renewed).
+// Steps until the wall is crossed (x'' where both masses are one), x changes its sign or x' its own, or
+// `most` are done (fewer where a force or an energy balance is renewed).
 template <class Real, class Observer>
 template <Regime regime, bool forced, bool ledger>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
-  const CemStep<Real> a = regime == Regime::contact ? pace_.contact : pace_.flight;
-  const Real side = side_, trend = trend_, overlap = wall_ == Wall::left ? Real(-1) : Real(1);
+  const CemStep<Real> a = regime == Regime::contact  ? pace_.contact
+                          : regime == Regime::flight ? pace_.flight
+                                                     : pace_.stuck;
+  const Real side = side_, trend = trend_, overlap = -push();
   const bool centred = damper_ == Damper::centred;
   Moment now = now_, before = now_;
 
@@ -158,10 +170,10 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   std::int64_t n = 0;
   do {
     before = now;
-    if constexpr (regime == Regime::flight) {
+    if constexpr (regime != Regime::contact) {
       now.dx = a.dx_dx * before.dx + a.dx_x * before.x;
       if constexpr (forced) now.dx += a.dx_f * f;
-      now.dq = before.dq - (now.dx - before.dx);
+      if constexpr (regime == Regime::flight) now.dq = before.dq - (now.dx - before.dx);
     } else {
       now.dx = (a.dx_dx * before.dx + a.dx_x * before.x) + (a.dx_dq * before.dq + a.dx_q * before.q);
       now.dq = (a.dq_dq * before.dq + a.dq_q * before.q) + (a.dq_dx * before.dx + a.dq_x * before.x);
@@ -185,6 +197,8 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
     ++n;
     if constexpr (regime == Regime::flight) {
       uneventful = (now.q >= 0) & (now.q <= 1);
+    } else if constexpr (regime == Regime::stuck) {
+      uneventful = -overlap * bend_of_stuck(a, now, f) >= 0;
     } else {
       uneventful = overlap * now.q > 0;
     }
@@ -209,11 +223,12 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   const bool last = step_ >= step_of(end_time_);
   const auto too_late = [&](const Real& at) { return begin + at > end_time_; };
 
-  std::optional<Real> change = wall_crossing();
+  std::optional<Real> change = stuck_ ? parting() : wall_crossing();
   const bool crosses = side_ * now_.x < 0, turns = trend_ * now_.dx < 0;
   if (change || crosses || turns) spend_look();
   if (change && too_late(*change)) change.reset();
-  const bool restart = change && locate_;
+  const bool joining = change && joins(*change);
+  const bool restart = change && (locate_ || joining || stuck_);
   const Real span = restart ? *change : last ? std::max(end_time_ - begin, Real(0)) : pace_.h;
   std::optional<Real> zero;
   if (crosses) zero = x_arc().times(side_).fall(pace_.h);
@@ -232,7 +247,7 @@ void CemEngine<Real, Observer>::look_at_last_step() {
   if (zero_first) cross_zero(*zero, span);
   if (change && !end_) {
     give_samples(begin + *change);
-    change_regime(*change);
+    change_regime(*change, restart, joining);
   }
   if (zero && !zero_first && !end_) cross_zero(*zero, span);
   if (end_ || restart) return;
@@ -258,8 +273,27 @@ std::optional<Real> CemEngine<Real, Observer>::wall_crossing() const {
   return {};
 }
 
+// Where in the last step x'' of both masses changed its sign, and with it the wall's push.
 template <class Real, class Observer>
-void CemEngine<Real, Observer>::change_regime(const Real& at) {
+std::optional<Real> CemEngine<Real, Observer>::parting() const {
+  const Real from = push() * (now_.dx - before_.dx);
+  const Real to = push() * bend_of_stuck(pace_.stuck, now_, force_at_steps_.f);
+  if (!(to < 0)) return {};
+  return from > 0 ? pace_.h * from / (from - to) : Real(0);
+}
+
+// Whether the touch at that time is the beginning of the stuck regime (M9.9).
+template <class Real, class Observer>
+bool CemEngine<Real, Observer>::joins(const Real& at) const {
+  if (!stuck_speed_ || wall_) return false;
+  const State<Real> s = refined(state_at(at), at);
+  const Real towards = now_.q < 0 ? Real(1) : Real(-1);
+  return absolute(s.w) < Real(*stuck_speed_) &&
+         towards * joined_acceleration(last_step_begin() + at, joined(s)).x > 0;
+}
+
+template <class Real, class Observer>
+void CemEngine<Real, Observer>::change_regime(const Real& at, bool restart, bool joining) {
   const Real time = last_step_begin() + at;
   if (ledger_) add_sums();
   State<Real> s = state_at(at);
@@ -268,20 +302,27 @@ void CemEngine<Real, Observer>::change_regime(const Real& at) {
   const bool met = !wall_ || (!locate_ && !(y >= 0 && y <= 1));
   const Wall wall = y > Real(0.5) ? Wall::right : Wall::left;
   if (met && impacts_ >= budget_.max_impacts) return finish(StopReason::impact_budget, at);
-  if (locate_ && steps_left_ == 0) return finish(StopReason::step_budget, at);
+  if (restart && steps_left_ == 0) return finish(StopReason::step_budget, at);
 
-  if (locate_) {
-    s = refined(s, at);
+  const bool parted = stuck_;
+  if (restart) {
+    s = parted && rates_ ? motion_at(at) : refined(s, at);
     s.y = (wall_ ? *wall_ : wall) == Wall::right ? 1 : 0;
     if (ledger_) close_powers(at);
   }
   const Real old_origin = origin_of_q();
   if (wall_) leave(time);
   if (met) enter(wall, time, s);
+  if (joining) s = join(s);
+  if (parted && rates_) {
+    pace_ = small_;
+    s = of_scheme(s, time, pace_.h);
+  }
   steps_at_pace_ = 0;
-  if (locate_) {
+  if (restart) {
     trend_ = sign(s.v);
     begin_segment(time, s);
+    if (parted) lead_from_rest(acceleration(time, s).q, s.v - forcing_rate(time));
   } else {
     before_.q += old_origin - origin_of_q();
     now_.q += old_origin - origin_of_q();
@@ -297,6 +338,15 @@ void CemEngine<Real, Observer>::enter(Wall wall, const Real& time, const State<R
   observer_.impact(double(time), wall, double(s.w), double(s.x));
 }
 
+// Both masses with their momentum (M9.10); the energy (M9.11) is lost in the contact that begins.
+template <class Real, class Observer>
+State<Real> CemEngine<Real, Observer>::join(const State<Real>& s) {
+  const Real nu = flight_.nu;
+  if (ledger_) wall_work_ += nu / (1 + nu) * s.w * s.w / 2;
+  stuck_ = true;
+  return joined(s);
+}
+
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::leave(const Real& time) {
   if (observer_.wants_contacts()) observer_.contact(double(contact_begin_), double(time), *wall_);
@@ -310,6 +360,7 @@ void CemEngine<Real, Observer>::leave(const Real& time) {
     wall_work_ = 0;
   }
   wall_.reset();
+  stuck_ = false;
 }
 
 template <class Real, class Observer>

@@ -27,6 +27,8 @@
 //     q_p = -(x'' + c w_p) / omega_m^2,   w_p = -x''' / omega_m^2,   x'', x''' of both masses as one.
 // When the ringing is (omega_m h)^2 of q_p, the scheme's own relative error, steps of half the stability
 // limit are as good: what is left of it dies away in these too. Small steps return before the mass is free.
+// Joined to the primary mass (Cem::stuck_speed) it takes steps of H until they part.
+// Joined to it (Cem::stuck_speed) the mass takes steps of H until they part.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +44,7 @@ namespace impact_damper {
 // from now on, and
 //     |x''| <= B = sqrt(1 + 4 zeta^2) S + |f0|,     |x'''| <= J = S + 2 zeta B + |f0| omega_f.
 // With b = min(x'' + J s/3, B), but not below 0, y + y' t - b t^2/2 is below y(t) for all t in [0, s] and is
-// concave: if it is positive at s, the left wall is not met before. Likewise 1 - y and the right wall.
+// concave (M9.4): if it is positive at s, the left wall is not met before. Likewise 1 - y and the right wall.
 //
 // The differences keep to the same bounds. With n steps h = s/n they have, J s^3/6 being the sum's limit,
 //     y_n >= y + s (y' - |v_n - V|) - x'' s^2/2 - J s (s^2 - h^2)/6,   |v_n - V| <= J h^2/6,
@@ -83,7 +85,12 @@ class Certificate {
 template <class Real, class Observer>
 std::int64_t CemEngine<Real, Observer>::choose_pace() {
   // A segment's first step tells what its motion is, but a contact's begins in small steps.
-  if (step_ == 0) return wall_ && pace_.h == small_.h ? rates_->steps_of_contact : 1;
+  if (step_ == 0) return wall_ && !stuck_ && pace_.h == small_.h ? rates_->steps_of_contact : 1;
+  if (stuck_) {  // no wall is met, and x'' is seen at every step
+    constexpr std::int64_t many = 16;
+    change_pace(rates_->large, motion_at(pace_.h));
+    return many;
+  }
   return wall_ ? choose_pace_in_contact() : choose_pace_in_flight();
 }
 

@@ -6,7 +6,7 @@
 // and c = k = 0 in flight. u'' -> (u_{n+1} - 2 u_n + u_{n-1}) / h^2, u' -> (u_{n+1} - u_{n-1}) / 2h. Written
 // for the increments d_n = u_n - u_{n-1} instead of the positions (a rounding error then costs eps t / h,
 // not eps t / h^2):
-//     (M + h C/2) d_{n+1} = (M - h C/2) d_n + h^2 ((f_n, 0) - K u_n).
+//     (M + h C/2) d_{n+1} = (M - h C/2) d_n + h^2 ((f_n, 0) - K u_n).        (M9.1)
 // `lagged` takes the wall damper's velocity from d_n / h: its c moves from the left side to the right and
 // counts twice there. The damper of the primary mass is centred always: that costs nothing, and a limit
 // h < 1/zeta would have nothing to do with the wall.
@@ -19,7 +19,7 @@
 
 namespace impact_damper {
 
-enum class Regime { flight, contact };
+enum class Regime { flight, contact, stuck };
 
 // A regime's equations as the numbers in them.
 template <class Real>
@@ -79,25 +79,31 @@ CemStep<Real> cem_step(const RegimeEquations<Real>& equations, Damper damper, co
   };
 }
 
+// The step of both masses joined (M9.5) in the same form (M9.8).
+template <class Real>
+CemStep<Real> cem_step_stuck(const Real& nu, const Real& zeta, const Real& h) {
+  const Real mass = 1 + nu, outer = h * zeta, h_2 = h * h;
+  CemStep<Real> step{};
+  step.dx_dx = (mass - outer) / (mass + outer);
+  step.dx_x = -h_2 / (mass + outer);
+  step.dx_f = h_2 / (mass + outer);
+  return step;
+}
+
 // A step and what it makes of the equations.
 template <class Real>
 struct Pace {
   Real h{};
-  CemStep<Real> flight{}, contact{};
+  CemStep<Real> flight{}, contact{}, stuck{};
 };
 
-// The fastest of the undamped modes in contact. With K = k/nu,
-//     omega^2 = (1 + K (1 + nu) + sqrt((1 + K (1 + nu))^2 - 4 K)) / 2 > max(1, K).
+// The frequency of the fastest undamped mode in contact (M9.3); larger than 1 and sqrt(k/nu).
 double fastest_contact_frequency(const Scene& scene);
 
 // The largest step at which no mode grows, in flight or in contact.
 //
-// A mode u_n = lambda^n u of the symmetric form of the equations (absolute coordinates x, z; M, C, K
-// positive semidefinite) satisfies, with m, c, k the three quadratic forms of u and c split into the
-// centred c' and the lagged c'',
-//     m (lambda - 1)^2 + h c' (lambda^2 - 1)/2 + h c'' (lambda - 1) + h^2 k lambda = 0,
-// and by Jury's conditions |lambda| <= 1 if 4 m - 2 h c'' - h^2 k >= 0. So no mode grows as long as
-// 4 M - 2 h C'' - h^2 K is positive semidefinite; where it ceases to be, its determinant, which is the
+// By Jury's conditions for (M9.2) no mode grows as long as 4 M - 2 h C'' - h^2 K is positive semidefinite,
+// with C'' the lagged part of the damping; where it ceases to be, its determinant, which is the
 // characteristic polynomial at lambda = -1, changes sign and one real lambda passes -1: the limit is sharp.
 //     centred: C'' = 0, h = 2 / omega with omega the fastest contact frequency, whatever the damping.
 //     lagged:  the determinant's first root; for a free primary mass it is

@@ -72,6 +72,8 @@ Cem read_options(ObjectReader& object, Cem engine) {
   object.required("locate", engine.locate);
   if (double step = 0; object.has("large_step") && object.optional("large_step", step, above(0)))
     engine.large_step = step;
+  if (double speed = 0; object.has("stuck_speed") && object.optional("stuck_speed", speed, above(0)))
+    engine.stuck_speed = speed;
   object.required("unstable", engine.unstable);
   engine.calibration = read_calibration(object);
   return engine;

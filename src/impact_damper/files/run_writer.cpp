@@ -122,6 +122,7 @@ void write_options(Writer& out, const Cem& engine) {
   out.field("damper", name_of(engine.damper));
   out.field("locate", engine.locate);
   if (engine.large_step) out.field("large_step", engine.large_step);
+  if (engine.stuck_speed) out.field("stuck_speed", engine.stuck_speed);
   out.field("unstable", engine.unstable);
   out.field("calibration", name_of(engine.calibration));
 }

@@ -30,6 +30,7 @@ const std::vector<MeasureNumber>& measure_numbers() {
       {"restitution", within(0, 1), 0, "coefficient of restitution e"},
       {"steps_per_contact", within(1, 1000), 0, "time steps in a nominal contact"},
       {"stiffness", above_up_to(0, 1e15), 0, "wall to primary spring stiffness k of the other walls"},
+      {"stuck_speed", above_up_to(0, 1e6), 0, "relative speed of impact below which the masses join"},
       {"to", amplitudes, 0, "largest amplitude looked at, by the free travel"},
       {"until_time", above_up_to(0, 1e3), 0, "end of a scene of the measure's own, by 1/Omega_n"},
       {"x0", above_up_to(0, 1e6), 0, "release of a scene of the measure's own, by the free travel"},

@@ -56,6 +56,7 @@ std::vector<Measure> loss_measures();    // loss factor curves
 std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
 std::vector<Measure> model_measures();   // engine against engine, wall and time step
 std::vector<Measure> audit_measures();   // the paper's slips
+std::vector<Measure> stuck_measures();   // the paper's stuck regime
 
 // For each member of the one scene of `call`, or for the members of all of them side by side.
 template <class Find>

@@ -112,6 +112,32 @@ Spread stuck_forcing(Runs&, const MeasureCall& call) {
   return once(products / squares);
 }
 
+// zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck motion by
+// least squares: a mass pressed to the wall at rest moves with it, in a contact that lasts.
+Spread stuck_damping(Runs&, const MeasureCall& call) {
+  Scene scene;
+  scene.mass_ratio = number(call, "mass_ratio");
+  scene.damping_ratio = number(call, "damping_ratio");
+  scene.restitution = 0;
+  scene.wall_stiffness = 1e6;
+  scene.x0 = -6;
+  scene.until_time = 1;
+  Record record;
+  record.contacts = true;
+  record.history = {{0, 1, 1001}};
+  const Run run = simulate(scene, Exact{}, record);
+  const History& h = *run.history;
+  const double omega_s = 1 / std::sqrt(1 + scene.mass_ratio);
+  double products = 0, squares = 0;
+  for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
+    const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
+    const double damper = 2 * scene.damping_ratio * omega_s * h.v[i];
+    products -= damper * (acceleration + omega_s * omega_s * h.x[i]);
+    squares += damper * damper;
+  });
+  return once(products / squares);
+}
+
 // How far the stuck mass moves from its wall, by how far y'' = -x'' would carry it.
 Spread stuck_drift(Runs&, const MeasureCall& call) {
   const Run run = stuck_run(call);
@@ -172,6 +198,12 @@ std::vector<Measure> audit_measures() {
        {"mass_ratio"},
        stuck_forcing,
        "coefficient of the force in the stuck motion, x'' + x/(1 + nu) = coefficient f0 sin(omega_f t)"},
+      {"stuck_damping",
+       0,
+       0,
+       {"mass_ratio", "damping_ratio"},
+       stuck_damping,
+       "zeta_s by zeta in the stuck motion, x'' + 2 omega_s zeta_s x' + omega_s^2 x = 0"},
       {"stuck_drift",
        0,
        0,

@@ -70,6 +70,7 @@ struct EngineOptions {
     return "cem" + (cem.time_step ? " time_step=" + number_text(*cem.time_step) : "") +
            " damper=" + std::string(name_of(cem.damper)) + " locate=" + (cem.locate ? "true" : "false") +
            (cem.large_step ? " large_step=" + number_text(*cem.large_step) : "") +
+           (cem.stuck_speed ? " stuck_speed=" + number_text(*cem.stuck_speed) : "") +
            " calibration=" + std::string(name_of(cem.calibration));
   }
 };
