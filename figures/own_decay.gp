@@ -1,4 +1,4 @@
-# The peak amplitude over time, and how far minutely different releases part from it.
+# The peak amplitude over time, and how far perturbed initial conditions part from it.
 load folder."/own.gp"
 eval require("curve", 3)
 eval look("curve", 1)

@@ -84,16 +84,16 @@ Figure loss_figure(LossOrdinate ordinate) {
   return figure;
 }
 
-std::string refusal(const Figure& figure, const FigureRuns& runs) {
+std::string rejection(const Figure& figure, const FigureRuns& runs) {
   try {
     figure_table(figure, runs);
   } catch (const InputError& error) {
     return error.what();
   }
-  return "not refused";
+  return "not rejected";
 }
 
-std::string catalogue_refusal(const std::string& text) {
+std::string catalogue_rejection(const std::string& text) {
   const fs::path file = fs::temp_directory_path() / "impact-damper-test-catalogue.json";
   std::ofstream(file) << text;
   try {
@@ -103,7 +103,7 @@ std::string catalogue_refusal(const std::string& text) {
     return error.what();
   }
   fs::remove(file);
-  return "not refused";
+  return "not rejected";
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -147,24 +147,24 @@ TEST_CASE("a figure's files are named after its number") {
   CHECK(file_stem(figure) == "figA");
 }
 
-TEST_CASE("a catalogue that does not hold together is refused at the place that is wrong") {
-  CHECK(catalogue_refusal(small_catalogue) == "not refused");
-  const auto refused = [](const std::string& from, const std::string& to, const std::string& at) {
-    const std::string message = catalogue_refusal(replaced(small_catalogue, from, to));
+TEST_CASE("a catalogue that does not hold together is rejected at the place that is wrong") {
+  CHECK(catalogue_rejection(small_catalogue) == "not rejected");
+  const auto rejected = [](const std::string& from, const std::string& to, const std::string& at) {
+    const std::string message = catalogue_rejection(replaced(small_catalogue, from, to));
     CAPTURE(message);
     CHECK(message.find(at) != std::string::npos);
   };
-  refused("catalogue/1", "catalogue/2", "/schema");
-  refused(R"([{"scene": "a", "half)", R"([{"scene": "b", "half)", "/figures/0/curves");
-  refused(R"(["half_cycles"])", R"(["impacts"])", "/figures/0/curves");
-  refused(R"(["half_cycles"])", R"(["half_cycles", "history"])", "/scenes/0/history_below");
-  refused(R"(["half_cycles"])", R"(["half_cycle"])", "/scenes/0/record");
-  refused("12}", "13}", "/figures/0/curves/0/half_cycles");
-  refused("12}", "20}", "/figures/0/curves/0/half_cycles");
-  refused(R"("eta")", R"("theta")", "/figures/0/ordinate");
-  refused(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
-  refused(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
-  refused(R"("title")", R"("titel")", "titel");
+  rejected("catalogue/1", "catalogue/2", "/schema");
+  rejected(R"([{"scene": "a", "half)", R"([{"scene": "b", "half)", "/figures/0/curves");
+  rejected(R"(["half_cycles"])", R"(["impacts"])", "/figures/0/curves");
+  rejected(R"(["half_cycles"])", R"(["half_cycles", "history"])", "/scenes/0/history_below");
+  rejected(R"(["half_cycles"])", R"(["half_cycle"])", "/scenes/0/record");
+  rejected("12}", "13}", "/figures/0/curves/0/half_cycles");
+  rejected("12}", "20}", "/figures/0/curves/0/half_cycles");
+  rejected(R"("eta")", R"("theta")", "/figures/0/ordinate");
+  rejected(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
+  rejected(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
+  rejected(R"("title")", R"("titel")", "titel");
 }
 
 TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for the impacts") {
@@ -346,10 +346,10 @@ TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
   CHECK(widest > 1e-4);  // the decay passes through a chaotic range: the members differ
 }
 
-TEST_CASE("a run that lacks what a figure draws is refused with the figure's and the file's name") {
+TEST_CASE("a run that lacks what a figure draws is rejected with the figure's and the file's name") {
   const auto expect = [](const Figure& figure, const Run& run, const std::string& why) {
     const std::string name = figure.curves[0].scene;
-    const std::string message = refusal(figure, {{name, {"runs/" + name + ".json", run}}});
+    const std::string message = rejection(figure, {{name, {"runs/" + name + ".json", run}}});
     CAPTURE(message);
     CHECK(message.starts_with("figure " + figure.number + ": runs/" + name + ".json: "));
     CHECK(message.find(why) != std::string::npos);
@@ -398,10 +398,10 @@ TEST_CASE("curves of one figure must differ in what it varies and in nothing els
   CHECK(block(table, "curve-2").columns[1].heading == "ν = 4 %");
   CHECK(table.header[1] == "Parameters: e = 0.6, ζ = 1 %");
   runs["two"].run.scene.restitution = 0.5;
-  CHECK(refusal(figure, runs).find("same restitution") != std::string::npos);
+  CHECK(rejection(figure, runs).find("same restitution") != std::string::npos);
   runs["two"].run.scene.restitution = 0.6;
   runs["two"].run.engine = Restitution{};
-  CHECK(refusal(figure, runs).find("another engine") != std::string::npos);
+  CHECK(rejection(figure, runs).find("another engine") != std::string::npos);
 }
 
 TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts lines at gaps") {

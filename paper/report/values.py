@@ -169,7 +169,7 @@ class Values:
             self.known[f"bench.{name}"] = target["measured"]
         self.known["bench.processor"] = self.bench["machine"]["processor"]
         self.known["bench.commit"] = self.bench["provenance"]["commit"]
-        self.known["bench.yardstick"] = self.bench["yardstick"]["nanoseconds"]["median"]
+        self.known["bench.reference-operation"] = self.bench["reference_operation"]["nanoseconds"]["median"]
         self.known |= studies(source, build / "src/impact-damper")
         decays = blocks_of(build / "series/exact/fig07.dat")
         for i, curve in enumerate(self.figures["7"]["curves"], 1):

@@ -38,8 +38,8 @@ struct Verified {
 // Four significant digits, for people; the verdict file has all of them.
 std::string brief(double value) { return rounded_text(value, 4); }
 
-std::string admitted_text(const Claim& claim) {
-  const auto& [printed, below, above, reason] = claim.admitted;
+std::string allowed_text(const Claim& claim) {
+  const auto& [printed, below, above, reason] = claim.allowed;
   const auto& [least, most] = printed;
   if (least && most && *least == *most) return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
   if (least && most) return brief(*least - below) + " to " + brief(*most + above);
@@ -54,9 +54,9 @@ std::size_t width(const std::string& text) {
 
 std::string table_text(const std::vector<Verified>& all) {
   std::vector<std::vector<std::string>> rows{
-      {"claim", "paper", "admitted", "ours (median, extremes of the ensemble)", "verdict"}};
+      {"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
-    rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), each.words,
+    rows.push_back({each.claim->id, each.claim->printed, allowed_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
                         (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
   std::vector<std::size_t> widths(rows.front().size());
@@ -94,13 +94,13 @@ std::string cell(std::string text) {  // of a Markdown table
 
 std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
   std::string text =
-      "| id | section | claim | paper | ours | admitted | because | verdict "
+      "| id | section | claim | paper | ours | allowed | because | verdict "
       "|\n|---|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
-            cell(claim.printed) + " | " + cell(each.words) + " | " + admitted_text(claim) + " | " +
-            cell(claim.admitted.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
+            cell(claim.printed) + " | " + cell(each.words) + " | " + allowed_text(claim) + " | " +
+            cell(claim.allowed.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
   }
   text += "\n" + summary_text(all);
   for (const Verified& each : all) {
@@ -188,10 +188,10 @@ int verify(Arguments arguments) {
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
-  refuse_csv_name(arguments, verdicts_file, "the verdicts as JSON");
+  reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
   if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
-    arguments.refuse("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
+    arguments.reject("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
   arguments.finish();
 
   const std::vector<Claim> claims = read_claims(claims_file);
@@ -199,8 +199,8 @@ int verify(Arguments arguments) {
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
     for (const std::string& scene : scenes_of(claim)) inputs.push_back(folders.file_of(scene));
-  arguments.refuse_overwriting("--output", verdicts_file, inputs);
-  arguments.refuse_overwriting("--markdown", markdown_file, inputs);
+  arguments.reject_overwriting("--output", verdicts_file, inputs);
+  arguments.reject_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
   for (const auto& file : {verdicts_file, markdown_file})
     if (file) require_writable(*file);
@@ -254,12 +254,12 @@ Command verify_command(CLI::App& program) {
   app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
   add_threads_option(*app);
   app->footer(
-      "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
-      "and extremes over an ensemble of minutely different releases), and the verdict on the median:\n"
+      "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
+      "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
       "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
       "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
       "is\n"
-      "of another scene or engine than the others is refused.\n\n"
+      "of another scene or engine than the others is rejected.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");

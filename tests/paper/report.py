@@ -48,9 +48,9 @@ class TheText(unittest.TestCase):
         for fault in ("a loss of 0.339", "$\\nu = 0.02$", "$$A = 12$$", "31 percent", "in 3 runs", "the 10th",
                       "::: equation a\nA = 0.5\n:::\n", "$10^{-9} + 10$"):
             self.assertNotEqual(typed(fault), [], fault)
-        for admitted in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}", "$10^{-9}$",
+        for allowed in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}", "$10^{-9}$",
                          "::: figure 8\nA\n:::\n", "::: equation a\n2\\zeta\n:::\n", "[reference 9](#reference-9)"):
-            self.assertEqual(typed(admitted), [], admitted)
+            self.assertEqual(typed(allowed), [], allowed)
 
 
 class TheReport(unittest.TestCase):
@@ -112,7 +112,7 @@ class TheReport(unittest.TestCase):
             feet = sorted(float(foot) for foot in re.findall(r'yMax="([\d.]+)"', words))
             self.assertGreater(feet[-2], 0.6 * height, f"page {page}: its lower third is empty")
 
-    def test_an_unknown_name_is_refused_and_nothing_is_written(self):
+    def test_an_unknown_name_is_rejected_and_nothing_is_written(self):
         copy = FOLDER / "source"
         shutil.rmtree(copy, ignore_errors=True)
         for part in ("paper", "data", "figures", "bench/results"):
@@ -120,7 +120,7 @@ class TheReport(unittest.TestCase):
         shutil.copy(SOURCE / "CMakeLists.txt", copy)
         text = copy / "paper/report/text.md"
         text.write_text(text.read_text(encoding="utf-8").replace("{{product-mid-range}}", "{{product-midrange}}"))
-        out = FOLDER / "refused"
+        out = FOLDER / "rejected"
         shutil.rmtree(out, ignore_errors=True)
         done = subprocess.run([copy / "paper/report/make.py", BUILD, "--html", "--verdicts", VERDICTS, "--out", out],
                               capture_output=True, text=True)

@@ -5,7 +5,7 @@
 //
 // With S and C the solutions for S(0) = 0, S'(0) = 1 and C(0) = 1, C'(0) = 0,
 //     u = u0 C + u'0 S + response to f from rest,      S' = C - 2 a S,   C' = -b S.
-// All damping ratios are admitted; each formula keeps its full relative accuracy through the critical
+// All damping ratios are allowed; each formula keeps its full relative accuracy through the critical
 // case, for short times (C - 1 and S - t come without cancellation) and through resonance.
 #pragma once
 

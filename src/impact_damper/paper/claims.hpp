@@ -51,7 +51,7 @@ struct MeasureCall {
 struct Claim {
   std::string id, section, statement, printed;
   Source source = Source::paper;
-  Admitted admitted;
+  Allowed allowed;
   MeasureCall measure;
   std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the words show
   std::string words = "{}";                              // our result, a template of words.hpp
@@ -68,13 +68,13 @@ struct Claim {
 // The verdict recorded for runs of that engine.
 Verdict recorded_for(const Claim& claim, std::string_view engine);
 
-// Throws IoError if the file cannot be read, InputError naming everything that is not admitted: unknown
+// Throws IoError if the file cannot be read, InputError naming everything that is not valid: unknown
 // measures and measure parameters and duplicate ids among it.
 inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 
-// The verdict that `ours`, the median of an ensemble, gives: if it lies in the admitted interval widened by
+// The verdict that `ours`, the median of an ensemble, gives: if it lies in the allowed interval widened by
 // the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
 // lies in the corrected interval; else not reproduced. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
