@@ -56,6 +56,24 @@ TEST_CASE("a claim is read as it is written") {
   CHECK(claims[0].recorded == Verdict::corrected);
 }
 
+TEST_CASE("a statement that is open is read beside the claims and is none of them") {
+  const std::string open =
+      R"(], "open": [{"id": "b", "section": "5", "statement": "s", "printed": "p", "explanation": "x"}]})";
+  const ClaimsFile file = parse_claims_file("f", claims_text("]}", open));
+  CHECK(file.claims.size() == 1);
+  REQUIRE(file.open.size() == 1);
+  CHECK(file.open[0].id == "b");
+  CHECK(file.open[0].section == "5");
+  CHECK(file.open[0].statement == "s");
+  CHECK(file.open[0].printed == "p");
+  CHECK(file.open[0].explanation == "x");
+  CHECK(parse_claims("f", claims_text("]}", open)).size() == 1);
+  CHECK(parse_claims_file("f", claims_text()).open.empty());
+  const std::string twice =
+      R"(], "open": [{"id": "a", "section": "5", "statement": "s", "printed": "p", "explanation": "x"}]})";
+  CHECK(complaint("]}", twice).find("f: /open/0/id: must be given once") != std::string::npos);
+}
+
 TEST_CASE("what is not valid in a claim is named with its place") {
   CHECK(complaint("\"reason\": \"r\", ", "").find("f: /claims/0/reason") != std::string::npos);
   CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must be a text of one line and 1 to 4000") !=

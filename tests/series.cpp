@@ -701,6 +701,36 @@ TEST_CASE("the table of a decay has its peaks and their times") {
   }
 }
 
+TEST_CASE("the law of a decay has each curve's slope, and the line their mean") {
+  Figure figure;
+  figure.number = "7";
+  figure.table = TableKind::decay;
+  figure.down_to = 2.02;
+  figure.varied = Varied::mass_ratio;
+  figure.curves = {{"light", {}}, {"heavy", {}}};
+  // A = 6 - 0.05 i at t = i pi: the slope is the same from any peak to any other. The heavy mass begins
+  // later.
+  Run light = linear_decay(100, 100), heavy = light;
+  light.scene.mass_ratio = 0.01;
+  heavy.scene.mass_ratio = 0.04;
+  for (double& time : heavy.half_cycles->peak_time) time += 2;
+  // Its last peaks, below 2.02, are off the line and must not count.
+  for (std::size_t i = 81; i < 100; ++i) heavy.half_cycles->amplitude[i] /= 2;
+  const FigureRuns runs{{"light", {"light.json", light}}, {"heavy", {"heavy.json", heavy}}};
+  const Table table = figure_table(figure, runs);
+  const double slope = 0.05 / pi, least = slope / 0.04, most = slope / 0.01;
+  same(column(block(table, "law"), 1), {0.01, 0.04});
+  same(column(block(table, "law"), 2), {most, least});
+  const double mean = (least + most) / 2, begin = 0.04 * 2 / 2;
+  same(column(block(table, "line"), 1), {begin, begin + 6 / mean});
+  same(column(block(table, "line"), 2), {6, 0});
+  CHECK(block(table, "line").columns[1].heading == "dA/dt = −0.99 ν");
+  figure.down_to = 6;  // the first peak: there is no chord
+  CHECK_FALSE(has_block(figure_table(figure, runs), "law"));
+  figure.down_to.reset();
+  CHECK_FALSE(has_block(figure_table(figure, runs), "line"));
+}
+
 TEST_CASE(
     "an ensemble's band is the least and the greatest of its members' curves at amplitudes equally spaced") {
   const Run run = simulate({.x0 = 3, .until_amplitude = 2}, Exact{}, {});

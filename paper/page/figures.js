@@ -74,6 +74,12 @@ function nearest_on(chain, to) {
   return best;
 }
 
+// A table in CSV, whole: in the page a row has its first two cells only where they differ from those of the row before.
+function whole(table) {
+  let names = "";
+  return table.replace(/^(,|(?:"(?:[^"]|"")*"|[^",]*),(?:"(?:[^"]|"")*"|[^",]*))(?=,)/gm, found => names = found === "," ? names : found);
+}
+
 // Below a figure that says its file's name: the drawing as it was made, and the table that stands in the page, to keep.
 function offer(figure) {
   if (!figure.dataset.file) return;
@@ -90,7 +96,7 @@ function offer(figure) {
   drawing.setAttribute("height", height);
   link(figure.dataset.file, "image/svg+xml", new XMLSerializer().serializeToString(drawing));
   const table = figure.querySelector("script[data-file]");
-  if (table) link(table.dataset.file, table.type, table.textContent.replace(/^\n/, ""));
+  if (table) link(table.dataset.file, table.type, whole(table.textContent.replace(/^\n/, "")));
   figure.querySelector("figcaption").append(links);
 }
 

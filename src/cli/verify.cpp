@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 struct Verified {
   const Claim* claim;
   Spread ours;
+  NamedSpreads also;  // the further numbers that the words show
   std::string words;  // the same in the statement's terms
   Verdict verdict;
   Verdict recorded = Verdict::reproduced;
@@ -46,19 +47,24 @@ std::string allowed_text(const Claim& claim) {
   return least ? ">= " + brief(*least - below) : "<= " + brief(*most + above);
 }
 
+// What stands in the columns of a statement that is open.
+constexpr const char *not_measured = "not measured", *open_word = "open";
+
 // Characters, not bytes: claims are written in UTF-8.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::string table_text(const std::vector<Verified>& all) {
+std::string table_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::vector<std::vector<std::string>> rows{
       {"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
     rows.push_back({each.claim->id, each.claim->printed, allowed_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
                         (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
+  for (const OpenStatement& each : open)
+    rows.push_back({each.id, each.printed, not_measured, not_measured, open_word});
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
@@ -73,7 +79,13 @@ std::string table_text(const std::vector<Verified>& all) {
   return text;
 }
 
-std::string summary_text(const std::vector<Verified>& all) {
+std::string open_text(const std::vector<OpenStatement>& open) {
+  if (open.empty()) return "";
+  return "; besides, " + std::to_string(open.size()) +
+         (open.size() == 1 ? " statement of the paper is open" : " statements of the paper are open");
+}
+
+std::string summary_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::size_t count[4] = {}, changed = 0, our_own = 0;
   for (const Verified& each : all) {
     ++count[static_cast<std::size_t>(each.verdict)];
@@ -84,7 +96,8 @@ std::string summary_text(const std::vector<Verified>& all) {
          std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected, " +
          std::to_string(count[3]) + " derived; " +
          (our_own > 0 ? std::to_string(our_own) + " of them are ours, not the paper's; " : "") +
-         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + "\n";
+         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + open_text(open) +
+         "\n";
 }
 
 std::string cell(std::string text) {  // of a Markdown table
@@ -92,7 +105,8 @@ std::string cell(std::string text) {  // of a Markdown table
   return text;
 }
 
-std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
+std::string markdown_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open,
+                          const std::string& engine) {
   std::string text =
       "| id | section | claim | paper | ours | allowed | because | verdict "
       "|\n|---|---|---|---|---|---|---|---|\n";
@@ -102,7 +116,11 @@ std::string markdown_text(const std::vector<Verified>& all, const std::string& e
             cell(claim.printed) + " | " + cell(each.words) + " | " + allowed_text(claim) + " | " +
             cell(claim.allowed.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
   }
-  text += "\n" + summary_text(all);
+  for (const OpenStatement& each : open)
+    text += "| " + each.id + " | " + cell(each.section) + " | " + cell(each.statement) + " | " +
+            cell(each.printed) + " | " + not_measured + " | " + not_measured + " | " +
+            cell(each.explanation) + " | " + open_word + " |\n";
+  text += "\n" + summary_text(all, open);
   for (const Verified& each : all) {
     const auto otherwise = each.claim->with_engine.find(engine);
     if (otherwise != each.claim->with_engine.end())
@@ -125,22 +143,44 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string verdicts_text(const std::vector<Verified>& all) {
-  const auto json_number = [](double value) {
+// "ours": 1, "low": 0.9, "high": 1.1
+std::string spread_json(const Spread& spread) {
+  const auto number = [](double value) {
     return std::isfinite(value) ? number_text(value) : std::string("null");
   };
+  return "\"ours\": " + number(spread.median) + ", \"low\": " + number(spread.low) +
+         ", \"high\": " + number(spread.high);
+}
+
+std::string also_json(const NamedSpreads& also) {
+  if (also.empty()) return "";
+  std::string text = ", \"also\": {";
+  const char* separator = "";
+  for (const auto& [name, spread] : also) {
+    text += separator + quoted(name) + ": {" + spread_json(spread) + '}';
+    separator = ", ";
+  }
+  return text + '}';
+}
+
+std::string verdicts_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::string text = "{\"schema\": \"impact-damper/verdicts/1\",\n \"verdicts\": [";
   const char* separator = "\n";
   for (const Verified& each : all) {
     text += separator;
-    text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
-            ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
+    text += "  {\"claim\": " + quoted(each.claim->id) + ", " + spread_json(each.ours) + also_json(each.also) +
             ", \"words\": " + quoted(each.words) +
             ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
             ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
-  return text + "\n ]}\n";
+  text += "\n ]";
+  separator = ",\n \"open\": [";
+  for (const OpenStatement& each : open) {
+    text += separator + quoted(each.id);
+    separator = ", ";
+  }
+  return text + (open.empty() ? "}\n" : "]}\n");
 }
 
 std::set<std::string> scenes_of(const Claim& claim) {
@@ -194,7 +234,8 @@ int verify(Arguments arguments) {
     arguments.reject("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
   arguments.finish();
 
-  const std::vector<Claim> claims = read_claims(claims_file);
+  const ClaimsFile read = read_claims_file(claims_file);
+  const std::vector<Claim>& claims = read.claims;
   if (catalogue) check_catalogue(*catalogue, claims);
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
@@ -220,20 +261,22 @@ int verify(Arguments arguments) {
       told = now;
     }
     try {
-      NamedSpreads spreads{{"", measure(runs, claim.measure)}};
-      for (const auto& [name, call] : claim.also) spreads[name] = measure(runs, call);
-      const Spread ours = spreads.at("");
-      all.push_back({&claim, ours, in_words(claim.words, spreads), judge(claim, ours.median)});
+      NamedSpreads also;
+      for (const auto& [name, call] : claim.also) also[name] = measure(runs, call);
+      NamedSpreads spreads = also;
+      const Spread ours = spreads[""] = measure(runs, claim.measure);
+      all.push_back(
+          {&claim, ours, std::move(also), in_words(claim.words, spreads), judge(claim, ours.median)});
     } catch (const std::invalid_argument& problem) {
       throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
     }
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
-  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
-  if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
-  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
-                        summary_text(all));
+  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all, read.open));
+  if (markdown_file) write_file(*markdown_file, markdown_text(all, read.open, engine));
+  write_standard_output(table_text(all, read.open) + "\n" +
+                        (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 

@@ -60,12 +60,16 @@ class TheReport(unittest.TestCase):
         changed = next(each for each in verdicts["verdicts"] if each["claim"] == "product-mid-range")
         said = f"{changed['ours']:.4g}"
         changed["ours"], changed["verdict"] = 0.4321, "reproduced"
+        beside = next(each for each in verdicts["verdicts"] if each["claim"] == "collapse-zeta")["also"]["worst"]
+        worst, beside["ours"] = f"{beside['ours']:.2g}", 77.0
         other = FOLDER / "verdicts.json"
         other.write_text(json.dumps(verdicts))
         after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
         sentence = r'the\s+result\s+here\s+is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
         self.assertEqual(re.search(sentence, before)[1], said)
         self.assertEqual(re.search(sentence, after)[1], "0.4321")
+        further = r'title="collapse-zeta.worst">([\d.]+)</span>'
+        self.assertEqual((re.search(further, before)[1], re.search(further, after)[1]), (worst, "77"))
         count = r'title="count.not-reproduced">(\d+)<'
         self.assertEqual(int(re.search(count, after)[1]), int(re.search(count, before)[1]) - 1)
         row = r'<tr id="claim-product-mid-range">.*?</tr>'
@@ -85,6 +89,16 @@ class TheReport(unittest.TestCase):
         [told] = set(re.findall(r'title="rate.rule">([\d.]+)<', page))
         self.assertEqual(told, "0.17")
 
+    def test_what_is_open_is_listed_and_is_no_claim(self):
+        page = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
+        stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))
+        for each in stated["open"]:
+            row = re.search(rf'<tr id="claim-{each["id"]}">.*?</tr>', page, re.S)[0]
+            self.assertIn(">not measured<", row)
+            self.assertIn('class="open">open<', row)
+        self.assertEqual(re.search(r'title="count.claims">(\d+)<', page)[1], str(len(stated["claims"])))
+        self.assertEqual(page.count('<tr id="claim-'), len(stated["claims"]) + len(stated["open"]))
+
     def test_what_claims_say_is_set(self):
         sys.path.insert(0, str(SOURCE / "paper/report"))
         from blocks import markdown
@@ -93,7 +107,8 @@ class TheReport(unittest.TestCase):
                              ("k = 1e+06", r"$k = 10^{6}$"), ("2 zeta and e = 0.6", r"$2\zeta$ and $e = 0.6$"),
                              ("5e-8 <b> * x_1", r"$5\times 10^{-8}$ \<b\> \* x\_1")):
             self.assertEqual(markdown(said), wanted)
-        for claim in json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))["claims"]:
+        stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))
+        for claim in stated["claims"] + stated["open"]:
             words = re.sub(r"\$[^$]*\$", "", markdown(claim["statement"]))
             self.assertNotRegex(words, r"\b(nu|eta|zeta|sqrt)\b|\^|_", claim["id"])
 

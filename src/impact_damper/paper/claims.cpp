@@ -156,20 +156,37 @@ Claim read_claim(ObjectReader& object) {
   return claim;
 }
 
-std::vector<Claim> read_document(JsonDocument document) {
+OpenStatement read_open_statement(ObjectReader& object) {
+  OpenStatement statement;
+  object.required("id", statement.id, a_name);
+  object.required("section", statement.section, some_text);
+  object.required("statement", statement.statement, some_text);
+  object.required("printed", statement.printed, some_text);
+  object.required("explanation", statement.explanation, some_text);
+  return statement;
+}
+
+ClaimsFile read_document(JsonDocument document) {
   ObjectReader root = document.root();
   root.word("schema", {schema});
   root.require("schema");
-  std::vector<Claim> claims;
+  ClaimsFile file;
   std::set<std::string> ids;
-  for (ObjectReader object : root.required_objects("claims", 10000)) {
-    claims.push_back(read_claim(object));
-    const std::string& id = claims.back().id;
+  const auto once = [&](ObjectReader& object, const std::string& id) {
     if (!id.empty() && !ids.insert(id).second)
       object.reject("id", "must be given once, got the string " + in_quotes(id));
+  };
+  constexpr std::size_t most = 10000;
+  for (ObjectReader object : root.required_objects("claims", most)) {
+    file.claims.push_back(read_claim(object));
+    once(object, file.claims.back().id);
+  }
+  for (ObjectReader object : root.optional_objects("open", most)) {
+    file.open.push_back(read_open_statement(object));
+    once(object, file.open.back().id);
   }
   document.finish();
-  return claims;
+  return file;
 }
 
 }  // namespace
@@ -198,11 +215,15 @@ std::string_view name_of(Source source) {
   return {};
 }
 
-std::vector<Claim> read_claims(const std::filesystem::path& file) {
+ClaimsFile read_claims_file(const std::filesystem::path& file) {
   return read_document(JsonDocument::read(file, claims_kind));
 }
-std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
+ClaimsFile parse_claims_file(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));
+}
+std::vector<Claim> read_claims(const std::filesystem::path& file) { return read_claims_file(file).claims; }
+std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
+  return parse_claims_file(name, text).claims;
 }
 
 Verdict recorded_for(const Claim& claim, std::string_view engine) {
