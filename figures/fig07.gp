@@ -1,4 +1,5 @@
-# Above what the paper draws. Below the same decays over nu t, where all of them fall along one straight line.
+# Above what the paper draws. Below the same decays over nu t, where they nearly coincide, and the straight line of a
+# constant product A eta / nu.
 do for [i=1:3] { eval require(sprintf("curve-%d", i), 10) }
 eval require("law", 3)
 eval require("line", 2)
@@ -21,9 +22,9 @@ set tmargin at screen 0.460
 set bmargin at screen 0.090
 set xlabel "dimensionless time times mass ratio, ν t"
 set xrange [0:40]
-# Times are multiplied by the mass ratio of the curve, row i of the block "law".
+# Times are multiplied by the mass ratio of the curve, row i of the block "law" below its headings.
 array nu[3]
-do for [i=1:3] { stats table index "law" using 1 every ::(i - 1)::(i - 1) nooutput; nu[i] = STATS_max }
+do for [i=1:3] { stats table index "law" using 1 every ::i::i nooutput; nu[i] = STATS_max }
 plot for [i=1:3] table index sprintf("curve-%d", i) using (nu[i] * $1):2 \
   with lines ls (word("2 1 3", i) + 0) title columnheader(2), \
   table index "line" using 1:2 with lines ls 9 title columnheader(2)

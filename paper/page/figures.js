@@ -74,10 +74,19 @@ function nearest_on(chain, to) {
   return best;
 }
 
-// A table in CSV, whole: in the page a row has its first two cells only where they differ from those of the row before.
+// A table in CSV, whole: in the page a row lacks its block and its curve where they are those of the row before, and its
+// x where it is that of the same row of the block's first curve. A gap has no number at all.
 function whole(table) {
-  let names = "";
-  return table.replace(/^(,|(?:"(?:[^"]|"")*"|[^",]*),(?:"(?:[^"]|"")*"|[^",]*))(?=,)/gm, found => names = found === "," ? names : found);
+  const row = /^("(?:[^"]|"")*"|[^",\n]*),("(?:[^"]|"")*"|[^",\n]*),([^,\n]*),(.*)$/gm;
+  let block = "", curve = "", first = [], at = 0;
+  return table.replace(row, (_, its_block, its_curve, x, rest) => {
+    if (its_block && its_block !== block) first = [];
+    if (its_block) [block, curve, at] = [its_block, its_curve, 0];
+    if (at === first.length) first.push(x);
+    const its_x = x || (rest === ",," ? "" : first[at]);
+    ++at;
+    return [block, curve, its_x, rest].join(",");
+  });
 }
 
 // Below a figure that says its file's name: the drawing as it was made, and the table that stands in the page, to keep.

@@ -26,6 +26,8 @@ FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
     (r"y'' = -x''", r"$y'' = -x''$"),
     (r"d ln \(w/A\) / d ln A", r"$d\\ln(w/A)/d\\ln A$"),
     (r"d ln (eta|w) / d ln (A|nu)", lambda m: rf"$d\ln {GREEK.get(m[1], m[1])}/d\ln {GREEK.get(m[2], m[2])}$"),
+    (r"A \(eta - 2 zeta/\(1 \+ nu\)\)/nu", r"$A(\\eta - 2\\zeta/(1 + \\nu))/\\nu$"),
+    (r"2 zeta/\(1 \+ nu\)", r"$2\\zeta/(1 + \\nu)$"),
     (r"2 dx/x", r"$2\\Delta x/x$"),
     (r"A eta_s/nu", r"$A\\eta_s/\\nu$"),
     (r"A eta/nu", r"$A\\eta/\\nu$"),
@@ -84,14 +86,20 @@ def table_of(values: Values, number: str):
 
 
 def shortened(table: str) -> str:
-    """A table in CSV without the block and the curve of a row that are those of the row before; page/figures.js puts them
-    back. They are half of its bytes."""
-    lines, before = [], None
+    """A table in CSV without what a row shares with others, half of its bytes: its block and its curve if they are those of
+    the row before, its x if it is that of the same row of the block's first curve. page/figures.js puts them back."""
+    lines, before, first, at = [], [None, None], [], 0
     for line in table.splitlines():
         *names, x, y, low, high = next(csv.reader([line]))
+        if names[0] != before[0]:
+            first = []
+        at = at + 1 if names == before else 0
         out = io.StringIO()
         csv.writer(out, lineterminator="").writerow(["", ""] if names == before else names)
-        lines.append(",".join([out.getvalue(), x, y, low, high]))
+        is_known = at < len(first) and first[at] == x
+        if at == len(first):
+            first.append(x)
+        lines.append(",".join([out.getvalue(), "" if is_known else x, y, low, high]))
         before = names
     return "\n".join(lines) + "\n"
 
@@ -115,9 +123,13 @@ def made_from(values: Values, number: str) -> str:
 
 
 def picture_html(svg: str, name: str, words: str) -> str:
-    """An SVG to stand inline: no head, scaled by the page, described, its ids its own."""
+    """An SVG to stand inline: no head, scaled by the page, described, its ids its own; colours and coordinates without
+    spaces and zeros that say nothing."""
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<svg\s+width=\"\d+\" height=\"\d+\"", f'<svg role="img" aria-label="{escape(words)}"', svg, count=1)
+    svg = re.sub(r"rgb\(\s*(\d+),\s*(\d+),\s*(\d+)\)", lambda m: "#%02x%02x%02x" % tuple(map(int, m.groups())), svg)
+    svg = re.sub(r"(\b(?:d|points|transform)\s*=\s*)(['\"])([^'\"]*)\2", lambda m: m[1] + m[2] + re.sub(
+        r"(\.\d*?)0+(?!\d)", lambda n: n[1].rstrip("."), re.sub(r"\s+", " ", m[3])) + m[2], svg)
     return re.sub(r"(id=['\"]|href='#|url\(#)(?!" + name + "-)", rf"\g<1>{name}-", svg)
 
 

@@ -171,7 +171,7 @@ class Report(unittest.TestCase):
 
     def test_curves_are_switched(self):
         self.page.open(PAGE, WIDTHS["desk"])
-        shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='rgb(213,  94,   0)']")]
+        shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='#d55e00']")]
           .map(each => getComputedStyle(each).visibility)"""
         self.assertEqual(set(self.page.does(shown)), {"visible"})
         button = '[...document.querySelectorAll("#figure-8 .switches button")].find(b => b.textContent === "ν = 4 %")'
