@@ -76,11 +76,12 @@ void measure_curves(const Limits& limits, Findings& found) {
       found.counts.push_back({scene.name, "restitution", count(scene.scene, Restitution{})});
     }
   }
-  std::vector<double> yardsticks;
+  std::vector<double> reference_operations;
   for (const Curve& curve : found.curves) {
-    for (const Point& point : curve.points) yardsticks.push_back(point.timing.yardstick.median);
+    for (const Point& point : curve.points)
+      reference_operations.push_back(point.timing.reference_operation.median);
   }
-  found.yardstick = spread_of(yardsticks);
+  found.reference_operation = spread_of(reference_operations);
 }
 
 // The rows of what must come out, for the terminal.

@@ -1,4 +1,4 @@
-# What an impact costs against number of impacts, stiffness and restitution; below it the ledger's residual.
+# What an impact costs against number of impacts, stiffness and restitution; below it the residual of the energy balance.
 # `table` as sweep_table writes it.
 do for [block in "exact-impacts exact-stiffness exact-restitution restitution-impacts restitution-restitution"] { \
   eval require(block, 2) }
@@ -22,7 +22,7 @@ do for [row in "cost residual"] {
     if (row eq "cost") { set yrange [1:1000]; set format y "%g"; set format x ""; unset xlabel
     } else { set yrange [1e-16:1e-10]; set format y "10^{%T}"
       set xlabel against eq "impacts" ? "number of impacts, e = 1" : against eq "stiffness" ? "wall stiffness k" : "restitution e" }
-    set ylabel against ne "impacts" ? "" : row eq "cost" ? "yardsticks by impact" : "ledger's residual"
+    set ylabel against ne "impacts" ? "" : row eq "cost" ? "reference operations per impact" : "residual of the energy balance"
     command = sprintf("plot table index 'exact-%s' using 1:%d with linespoints ls 1 title 'exact'", against, column_)
     if (against ne "stiffness") {
       command = command.sprintf(", table index 'restitution-%s' using 1:%d with linespoints ls 3 title 'restitution'", against, column_)

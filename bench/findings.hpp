@@ -26,7 +26,7 @@ struct Findings {
     std::string name, about;
   };
   std::vector<Entrant> entrants;  // each name once
-  Spread yardstick;               // seconds
+  Spread reference_operation;     // seconds
   std::vector<BenchScene> scenes;
   std::vector<Reference> references;
   std::vector<Curve> curves;

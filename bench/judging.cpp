@@ -21,7 +21,7 @@ namespace {
 
 const Scene tiny{.x0 = 4.5, .until_time = 20};
 
-// A curve of made-up points: setting, error, yardsticks.
+// A curve of made-up points: setting, error, reference operations.
 struct Made {
   double setting;
   std::optional<double> error;
@@ -31,7 +31,7 @@ Curve curve_of(const std::string& scene, const std::string& contender, const std
   Curve curve{.scene = scene, .contender = contender};
   for (const Made& made : points) {
     Point point{.setting = made.setting, .impacts = 100, .error = made.error};
-    point.timing.yardsticks = {made.time, made.time, made.time};
+    point.timing.reference_operations = {made.time, made.time, made.time};
     curve.points.push_back(point);
   }
   return curve;
@@ -61,12 +61,12 @@ TEST_CASE("nothing is extrapolated: not below the smallest error, not before the
   CHECK(!time_at(curve_of("S1", "peer", {{1, std::nullopt, 5}}), 1));
 }
 
-TEST_CASE("a finer setting that is worse by luck does not undo a coarser one") {
+TEST_CASE("a finer setting that is worse by chance does not undo a coarser one") {
   const Curve curve = curve_of("S1", "peer", {{1, 1e-2, 1}, {0.1, 1e-6, 10}, {0.01, 1e-5, 100}});
   CHECK(*time_at(curve, 1e-6) == Approx(10));
 }
 
-TEST_CASE("a time for good is from where on the error stays below, whatever a coarse setting met by luck") {
+TEST_CASE("a time for good is from where on the error stays below, whatever a coarse setting met by chance") {
   const Curve curve =
       curve_of("S3", "peer", {{1, 1e-2, 1}, {0.1, 1e-4, 10}, {0.01, 1e-2, 100}, {1e-3, 1e-4, 1e4}});
   CHECK(*time_at(curve, 1e-3) == Approx(std::sqrt(10)));
@@ -119,7 +119,7 @@ TEST_CASE("another restitution shows in the loss curve far beyond the scatter, o
   const Scene decay{.x0 = 6, .until_amplitude = 0.03};
   const EnsembleCurve ensemble = ensemble_curve(decay, Exact{});
   CHECK(ensemble.lower > 0);
-  CHECK(ensemble.luck() < 0.003);
+  CHECK(ensemble.scatter_limit() < 0.003);
   const auto error_of = [&](double e) {
     Scene other = decay;
     other.restitution = e;
@@ -130,8 +130,8 @@ TEST_CASE("another restitution shows in the loss curve far beyond the scatter, o
     }
     return curve_error(ensemble, mean_curve(curves));
   };
-  CHECK(error_of(0.6) < ensemble.luck());
-  CHECK(error_of(0.595) > 2 * ensemble.luck());
+  CHECK(error_of(0.6) < ensemble.scatter_limit());
+  CHECK(error_of(0.595) > 2 * ensemble.scatter_limit());
 }
 
 TEST_CASE("rows are kept as the recorder keeps them") {
@@ -242,10 +242,11 @@ TEST_CASE("the best of two peers is what an engine is held against") {
   CHECK(!odeint.reaches(*odeint.aim));
 }
 
-TEST_CASE("two rates are held against the paper's fixed step at the smallest error that is no luck") {
+TEST_CASE(
+    "two rates are held against the paper's fixed step at the smallest error above the sampling scatter") {
   Findings found;
   found.references.push_back(
-      {.scene = "S5", .loss_curve = EnsembleCurve{.mean = {}, .upper = 1e-3}});  // luck: 2e-3
+      {.scene = "S5", .loss_curve = EnsembleCurve{.mean = {}, .upper = 1e-3}});  // scatter: 2e-3
   found.curves.push_back(curve_of("S5", "cem", {{1, 1e-2, 100}, {0.1, 1e-3, 1000}}));
   found.curves.push_back(curve_of("S5", "cem located", {{1, 1e-3, 300}}));
   found.curves.push_back(curve_of("S5", "cem two rates", {{1, 1e-2, 1}, {0.1, 2e-3, 40}}));

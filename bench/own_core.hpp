@@ -2,8 +2,9 @@
 //
 // A processor may be half a core, whose other half is another guest's. The two share caches, the decoder and
 // the memory of branches: long code that branches much takes a fifth to a third longer beside a busy
-// neighbour, and a chain of operations that wait for each other, as the yardstick is, hardly notices. What
-// does notice is a short sort: the third time over, a core of one's own knows each of its branches.
+// neighbour, and a chain of operations that wait for each other, as the reference operation is, hardly
+// notices. What does notice is a short sort: the third time over, a core of one's own knows each of its
+// branches.
 #pragma once
 
 #include <vector>

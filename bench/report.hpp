@@ -10,9 +10,10 @@ namespace impact_damper::bench {
 
 std::string report_json(const Findings& findings);
 
-// One block for each curve, "S1-exact": error, median and quartiles of the run time in yardsticks, setting.
+// One block for each curve, "S1-exact": error, median and quartiles of the run time in reference operations,
+// setting.
 std::string time_error_table(const Findings& findings);
-// One block for each sweep, "exact-impacts": at, yardsticks per impact, residual.
+// One block for each sweep, "exact-impacts": at, reference operations per impact, residual.
 std::string sweep_table(const Findings& findings);
 
 std::string report_page(const Findings& findings);

@@ -18,7 +18,7 @@ Json json_of(const Spread& spread, double scale = 1) {
 
 void add(Json& json, const Timing& timing) {
   json["nanoseconds"] = json_of(timing.seconds, 1e9);
-  json["yardsticks"] = json_of(timing.yardsticks);
+  json["reference_operations"] = json_of(timing.reference_operations);
   json["repeats"] = timing.repeats;
   json["undisturbed_repeats"] = timing.undisturbed;
   json["runs_per_repeat"] = timing.runs;
@@ -86,7 +86,7 @@ Json json_of(const Sweep& sweep) {
     Json row{{"at", point.at},
              {"impacts", point.impacts},
              {"half_cycles", point.half_cycles},
-             {"yardsticks_per_impact", point.cost()},
+             {"reference_operations_per_impact", point.cost()},
              {"ledger_residual", point.residual}};
     add(row, point.timing);
     json["points"].push_back(row);
@@ -126,9 +126,9 @@ std::string report_json(const Findings& found) {
               {"system", made.system}}},
             {"clock", "CPU time of the process; for threads the clock on the wall"},
             {"seconds_in_all", found.seconds},
-            {"yardstick",
+            {"reference_operation",
              {{"what", "one of a chain of dependent sincos calls of the C library"},
-              {"nanoseconds", json_of(found.yardstick, 1e9)}}},
+              {"nanoseconds", json_of(found.reference_operation, 1e9)}}},
             {"missing_peers", found.missing_peers}};
   for (const Target& target : targets_of(found)) json["targets"].push_back(json_of(target));
   for (const Findings::Entrant& entrant : found.entrants) json["contenders"][entrant.name] = entrant.about;

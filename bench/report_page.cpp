@@ -63,18 +63,20 @@ void add_targets(std::string& page, const Findings& found) {
 std::string time_cell(const Findings& found, const Curve& curve, double error) {
   const auto time = time_at(curve, error);
   if (!time) return "—";
-  return rounded(*time * found.yardstick.median * 1e3) + " ms (" + printed("%.0f", *time) + ")";
+  return rounded(*time * found.reference_operation.median * 1e3) + " ms (" + printed("%.0f", *time) + ")";
 }
 
 void add_times(std::string& page, const Findings& found) {
   page +=
       "\n## Run time for an error\n\n"
       "![Run time against error, scene by scene](time_error.svg)\n\n"
-      "Milliseconds, in brackets yardsticks; —: the error is not reached. Interpolated between settings on "
+      "Milliseconds, in brackets reference operations; —: the error is not reached. Interpolated between "
+      "settings on "
       "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
       "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor, the "
       "mean of 128 releases, by the mean of 896 of the engine in closed form, less 1.\n\n"
-      "That engine's own groups of 128 have such an error too: luck. Twice the upper quartile of it is the "
+      "That engine's own groups of 128 have such an error too: sampling scatter. Twice the upper quartile of "
+      "it is the "
       "smallest error taken for a method's own, and where two settings are below it finer ones are left out. "
       "At that error two rates are held against the fixed step of the paper, which does not locate events.\n";
   for (const BenchScene& scene : found.scenes) {
@@ -92,7 +94,7 @@ void add_times(std::string& page, const Findings& found) {
         table.row({curve.contender, "—", "—", "no run that can be compared", "", "", ""});
         continue;
       }
-      const Spread& time = best->timing.yardsticks;
+      const Spread& time = best->timing.reference_operations;
       table.row({curve.contender, time_cell(found, curve, errors[0]), time_cell(found, curve, errors[1]),
                  rounded(*best->error),
                  rounded(best->timing.seconds.median * 1e3) + " ms (" +
@@ -150,7 +152,8 @@ void add_sweeps(std::string& page, const Findings& found) {
   if (found.sweeps.empty()) return;
   page +=
       "\n## What an impact costs\n\n![Cost of an impact against number of impacts, stiffness and "
-      "restitution](cost.svg)\n\nYardsticks by impact, in brackets the ledger's residual.\n\n";
+      "restitution](cost.svg)\n\nReference operations per impact, in brackets the residual of the energy "
+      "balance.\n\n";
   for (const char* against : {"impacts", "stiffness", "restitution"}) {
     std::vector<const Sweep*> columns;
     for (const Sweep& sweep : found.sweeps) {
@@ -182,7 +185,7 @@ void add_rest(std::string& page, const Findings& found) {
     page += "## The figures' scenes and tables\n\n" + std::to_string(set.scenes) + " scenes, " +
             std::to_string(set.tables) + " tables, " + printed("%.1f", double(set.bytes) / 1e6) +
             " MB of text: " + rounded(set.timing.seconds.median * 1e3) + " ms (" +
-            printed("%.0f", set.timing.yardsticks.median) + "). Where it goes:\n\n";
+            printed("%.0f", set.timing.reference_operations.median) + "). Where it goes:\n\n";
     PageTable parts(page, {"", "share"});
     for (const FigureSet::Part& part : set.parts) {
       parts.row({part.name, printed("%.0f %%", 100 * part.share)});
@@ -254,9 +257,10 @@ std::string report_page(const Findings& found) {
   page += "| | |\n|---|---|\n| processor | " + found.processor + " |\n| compiler | " +
           std::string(made.compiler) + ", " + std::string(made.build_type) +
           (made.flags.empty() ? "" : ", " + std::string(made.flags)) + " |\n| commit | " +
-          std::string(made.commit) + " |\n| yardstick | one of a chain of dependent `sincos` calls: " +
-          printed("%.1f ns (quartiles %.1f to %.1f)", found.yardstick.median * 1e9,
-                  found.yardstick.lower * 1e9, found.yardstick.upper * 1e9) +
+          std::string(made.commit) +
+          " |\n| reference operation | one of a chain of dependent `sincos` calls: " +
+          printed("%.1f ns (quartiles %.1f to %.1f)", found.reference_operation.median * 1e9,
+                  found.reference_operation.lower * 1e9, found.reference_operation.upper * 1e9) +
           " |\n| times | CPU time, median of 7 repeats or more, of 3 where a run takes over 0.4 s; for "
           "threads the clock on the wall |\n| disturbed | " +
           disturbances(found) + " |\n| in all | " + printed("%.0f s", found.seconds) + " |\n\n";

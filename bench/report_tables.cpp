@@ -7,10 +7,10 @@
 namespace impact_damper::bench {
 namespace {
 
-// A line for the title of a figure: on what machine, and what a yardstick is there.
+// A line for the title of a figure: on what machine, and what a reference operation is there.
 std::string parameters(const Findings& found) {
-  return found.processor + "; a yardstick, one of a chain of sincos calls, is " +
-         number_text(std::round(found.yardstick.median * 1e10) / 10) + " ns";
+  return found.processor + "; a reference operation, one of a chain of sincos calls, is " +
+         number_text(std::round(found.reference_operation.median * 1e10) / 10) + " ns";
 }
 
 std::string block_name(std::string name) {
@@ -30,7 +30,7 @@ std::string time_error_table(const Findings& found) {
       "# Run time beside error, drawn by bench/time_error.gp.\n"
       "# error: largest difference of a half-cycle amplitude from the reference, by epsilon; S5: of the loss "
       "factor's curve from the ensemble's, relative, root mean square\n"
-      "# time, lower, upper: median and quartiles of a run, in yardsticks\n"
+      "# time, lower, upper: median and quartiles of a run, in reference operations\n"
       "# setting: tolerance or time step; 0 where there is none\n"
       "# Parameters: " +
       parameters(found) + "\n";
@@ -38,7 +38,7 @@ std::string time_error_table(const Findings& found) {
     std::string rows;
     for (const Point& point : curve.points) {
       if (!point.error) continue;
-      const Spread& time = point.timing.yardsticks;
+      const Spread& time = point.timing.reference_operations;
       add_row(rows, {*point.error, time.median, time.lower, time.upper, point.setting});
     }
     if (rows.empty()) continue;
@@ -57,7 +57,8 @@ std::string time_error_table(const Findings& found) {
 std::string sweep_table(const Findings& found) {
   std::string text =
       "# What an impact costs, drawn by bench/cost.gp.\n"
-      "# cost, lower, upper: median and quartiles, in yardsticks; residual: of the ledger, relative, at "
+      "# cost, lower, upper: median and quartiles, in reference operations; residual: of the energy balance, "
+      "relative, at "
       "least "
       "2^-53\n"
       "# Parameters: " +
@@ -67,7 +68,7 @@ std::string sweep_table(const Findings& found) {
             "\nat cost lower upper residual impacts\n";
     for (const SweepPoint& point : sweep.points) {
       const double n = double(point.impacts);
-      const Spread& time = point.timing.yardsticks;
+      const Spread& time = point.timing.reference_operations;
       add_row(text, {point.at, time.median / n, time.lower / n, time.upper / n,
                      std::max(point.residual, 0x1p-53), n});
     }

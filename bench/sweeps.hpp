@@ -1,5 +1,5 @@
 // What an impact costs, everything included, against the number of impacts, the wall's stiffness and the
-// restitution; the ledger's residual beside it.
+// restitution; the residual of the energy balance beside it.
 #pragma once
 
 #include <functional>
@@ -14,9 +14,9 @@ struct SweepPoint {
   double at = 0;  // number of impacts asked for, k or e
   std::int64_t impacts = 0, half_cycles = 0;
   Timing timing;        // of the whole run, half cycles observed and not kept
-  double residual = 0;  // of the ledger of the same run once more, relative
+  double residual = 0;  // of the energy balance of the same run once more, relative
 
-  double cost() const { return timing.yardsticks.median / double(impacts); }
+  double cost() const { return timing.reference_operations.median / double(impacts); }
 };
 
 struct Sweep {

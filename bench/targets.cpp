@@ -41,7 +41,7 @@ void measure_cost(const Findings& found, const std::string& engine, Target& targ
   const Curve* curve = found.curve("S5", engine);
   if (!curve || curve->points.empty()) return;
   const Point& point = curve->finest();
-  target.measured = point.timing.yardsticks.median / double(point.impacts);
+  target.measured = point.timing.reference_operations.median / double(point.impacts);
   target.note =
       std::to_string(point.impacts) + " impacts in " + digits(point.timing.seconds.median * 1e3) + " ms";
 }
@@ -64,22 +64,22 @@ void measure_against(const Findings& found, const std::string& scene, const std:
   }
   if (!exact || exact->points.empty()) return;
   if (fastest) {
-    target.measured = *fastest / exact->finest().timing.yardsticks.median;
+    target.measured = *fastest / exact->finest().timing.reference_operations.median;
   } else if (target.note.empty()) {
     target.note = "not measured: this build has no such peer";
   }
 }
 
 // How much longer the fixed step of the paper, events not located, takes on S5 than the faster of the two
-// with two rates, both for the smallest error that is no luck. Beside it the same with events located, and
-// the fixed step that is the default, whose own error is below that.
+// with two rates, both for the smallest error above the sampling scatter. Beside it the same with events
+// located, and the fixed step that is the default, whose own error is below that.
 void measure_two_rates(const Findings& found, Target& target) {
   const auto is_s5 = [](const Reference& r) {
     return r.scene == "S5" && r.walls == Walls::compliant && r.loss_curve;
   };
   const auto reference = std::ranges::find_if(found.references, is_s5);
   if (reference == found.references.end()) return;
-  const double error = reference->loss_curve->luck();
+  const double error = reference->loss_curve->scatter_limit();
   const auto time_of = [&](const std::string& name) {
     const Curve* curve = found.curve("S5", name);
     return curve ? time_at(*curve, error) : std::nullopt;
@@ -103,7 +103,7 @@ void measure_two_rates(const Findings& found, Target& target) {
   for (const Point& point : fixed->points) {
     if (point.setting != *resolved(scene->scene, Cem{}).time_step || !point.error) continue;
     target.note += "; against cem at its default step (error " + digits(*point.error) + ") " +
-                   digits(point.timing.yardsticks.median / *fast, "%.1f") + " x";
+                   digits(point.timing.reference_operations.median / *fast, "%.1f") + " x";
   }
 }
 
@@ -126,12 +126,12 @@ void measure_order(const Findings& found, Target& target) {
 }
 
 // Where the steps fall by an impact decides the error of central differences near 1e-3, so that a coarse step
-// may meet it by luck: what counts is the step from which on it is met for good.
+// may meet it by chance: what counts is the step from which on it is met for good.
 void measure_central_differences(const Findings& found, Target& target) {
   constexpr double error = 1e-3;
   const Curve *exact = found.curve("S3", "exact"), *peer = found.curve("S3", "central differences");
   if (!exact || exact->points.empty() || !peer) return;
-  const double own = exact->finest().timing.yardsticks.median;
+  const double own = exact->finest().timing.reference_operations.median;
   const auto first = time_at(*peer, error), for_good = time_for_good(*peer, error);
   if (for_good) {
     target.measured = *for_good / own;
@@ -151,7 +151,7 @@ void measure_flatness(const Findings& found, const std::string& engine, const st
     if (sweep.engine != engine || sweep.against != against) continue;
     const auto [least, most] = std::ranges::minmax_element(sweep.points, {}, &SweepPoint::cost);
     target.measured = most->cost() / least->cost();
-    target.note = digits(least->cost(), "%.1f") + " yardsticks at " + digits(least->at) + " to " +
+    target.note = digits(least->cost(), "%.1f") + " reference operations at " + digits(least->at) + " to " +
                   digits(most->cost(), "%.1f") + " at " + digits(most->at);
   }
 }
@@ -182,9 +182,9 @@ std::vector<Target> targets_of(const Findings& found) {
 
   add(at_most("exact: error on S1", 1e-11, 1e-12), [&](Target& t) { measure_error(found, "S1", t); });
   add(at_most("exact: error on S3", 1e-12, 1e-13), [&](Target& t) { measure_error(found, "S3", t); });
-  add(at_most("exact: time per impact on S5, everything included, in yardsticks", 15, 7),
+  add(at_most("exact: time per impact on S5, everything included, in reference operations", 15, 7),
       [&](Target& t) { measure_cost(found, "exact", t); });
-  add(at_most("restitution: time per impact on S5, in yardsticks", 8, 4),
+  add(at_most("restitution: time per impact on S5, in reference operations", 8, 4),
       [&](Target& t) { measure_cost(found, "restitution", t); });
 
   const std::vector<std::string> odeint{"odeint fehlberg78", "odeint dopri5"};
@@ -204,7 +204,7 @@ std::vector<Target> targets_of(const Findings& found) {
   add(at_most("all figure scenes and all tables, in process, one core", 20, 6, "ms"), [&](Target& t) {
     if (!found.figures) return;
     t.measured = found.figures->timing.seconds.median * 1e3;
-    t.note = digits(found.figures->timing.yardsticks.median, "%.0f") + " yardsticks";
+    t.note = digits(found.figures->timing.reference_operations.median, "%.0f") + " reference operations";
   });
   for (const Allocations& counted : found.allocations) {
     add(at_most(counted.engine + ": allocations in a decay beyond the recorded columns", 0, {}),

@@ -75,7 +75,7 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
               .ours = ours,
               .setting = contender.setting};
   told.curve(scene.name + " " + contender.name);
-  int within_luck = 0;
+  int within_scatter = 0;
   for (const double setting : contender.settings(scene.scene)) {
     if (!curve.points.empty()) {
       const double longest = scene.chaotic ? limits.longest_chaotic_run : limits.longest_run;
@@ -84,8 +84,8 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
         break;
       }
     }
-    if (within_luck == 2) {
-      curve.cut = "two errors within luck";
+    if (within_scatter == 2) {
+      curve.cut = "two errors within the sampling scatter";
       break;
     }
     Point point{.setting = setting};
@@ -101,7 +101,8 @@ Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ou
       continue;
     }
     curve.points.push_back(point);
-    if (scene.chaotic && point.error && *point.error <= reference.loss_curve->luck()) ++within_luck;
+    if (scene.chaotic && point.error && *point.error <= reference.loss_curve->scatter_limit())
+      ++within_scatter;
     told.point(curve, point);
   }
   return curve;
@@ -111,11 +112,11 @@ namespace {
 
 // On the straight line from one point to the next, in both logarithms.
 double time_between(const Point* missing, const Point& meeting, double error) {
-  const double time = meeting.timing.yardsticks.median;
+  const double time = meeting.timing.reference_operations.median;
   // An error of zero has no logarithm; nothing is coarser than the first.
   if (!missing || !(*meeting.error > 0)) return time;
   const double part = std::log(*missing->error / error) / std::log(*missing->error / *meeting.error);
-  const double coarser = missing->timing.yardsticks.median;
+  const double coarser = missing->timing.reference_operations.median;
   return coarser * std::pow(time / coarser, part);
 }
 

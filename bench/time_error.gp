@@ -40,7 +40,7 @@ do for [scene in "S1 S2 S3 S4 S5"] {
   if (scene eq "S5") { set xtics 1e-3,10,1 } else { set xtics 1e-16,1e4,1 }
   set title scene.": ".(scene eq "S1" ? "x_0 = 4.5 to t = 100" : scene eq "S2" ? "the same, rigid walls" : \
     scene eq "S3" ? "x_0 = 6 to t = 400: bounce-down" : scene eq "S4" ? "forced and damped" : "the whole decay, 6 to 0.03") font ",13"
-  set ylabel (scene eq "S1" || scene eq "S4") ? "run time in yardsticks" : ""
+  set ylabel (scene eq "S1" || scene eq "S4") ? "run time in reference operations" : ""
   set xlabel scene eq "S5" ? "error of the loss factor's curve" : "error of a half-cycle amplitude"
   if (scene eq "S5") {
     set object 1 rectangle from low, graph 0 to high, graph 1 fc rgb pale fs solid noborder behind

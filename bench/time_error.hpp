@@ -58,15 +58,15 @@ struct Told {
 Curve measure_curve(const BenchScene& scene, const Contender& contender, bool ours,
                     const Reference& reference, const Limits& limits, const Told& told);
 
-// Yardsticks that a curve takes for an error: on the straight line, in logarithms of both, from the last
-// setting that misses `error` to the first that meets it. Absent if none does.
+// Reference operations that a curve takes for an error: on the straight line, in logarithms of both, from the
+// last setting that misses `error` to the first that meets it. Absent if none does.
 std::optional<double> time_at(const Curve& curve, double error);
 // The same from the last setting that misses it: from there on the error stays below. Later than time_at
-// where a setting meets an error by luck.
+// where a setting meets an error by chance.
 std::optional<double> time_for_good(const Curve& curve, double error);
 // The slope of log error over log setting, by least squares over the points with an error below `below`, and
 // its standard deviation as their residuals have it. Absent with fewer than four: a line through two or three
-// has its slope by luck.
+// has its slope by chance.
 struct Order {
   double slope = 0, uncertainty = 0;
   int points = 0;

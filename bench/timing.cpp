@@ -32,7 +32,7 @@ Spread spread_of(std::vector<double> sample) {
   return {sample[(n - 1) / 4], sample[(n - 1) / 2], sample[n - 1 - (n - 1) / 4]};
 }
 
-double yardstick() {
+double reference_operation() {
   constexpr int calls = 100'000;
   [[maybe_unused]] static volatile double sink;
   return cpu_seconds([] {
@@ -66,10 +66,10 @@ Timing measure(const std::function<void()>& run, int repeats, std::optional<doub
 
   static OwnCore core;
   struct Sample {
-    std::vector<double> times, ratios, yardsticks;
+    std::vector<double> times, ratios, reference_operations;
     int size() const { return int(times.size()); }
   } all, undisturbed;
-  double before = yardstick(), added = 0;
+  double before = reference_operation(), added = 0;
   bool own_before = core.now();
   while (all.size() < repeats || (undisturbed.size() < repeats && added < 3 && seconds_to_add > 0)) {
     const double time = cpu_seconds([&] {
@@ -77,11 +77,11 @@ Timing measure(const std::function<void()>& run, int repeats, std::optional<doub
                         }) /
                         runs;
     const bool own_after = core.now();
-    const double after = yardstick();
+    const double after = reference_operation();
     const auto take = [&](Sample& sample) {
       sample.times.push_back(time);
       sample.ratios.push_back(time / ((before + after) / 2));
-      sample.yardsticks.push_back(after);
+      sample.reference_operations.push_back(after);
     };
     take(all);
     if (own_before && own_after) take(undisturbed);
@@ -93,7 +93,7 @@ Timing measure(const std::function<void()>& run, int repeats, std::optional<doub
     own_before = own_after;
   }
   const Sample& taken = undisturbed.size() < repeats ? all : undisturbed;
-  return {spread_of(taken.times), spread_of(taken.ratios), spread_of(taken.yardsticks),
+  return {spread_of(taken.times), spread_of(taken.ratios), spread_of(taken.reference_operations),
           taken.size(),           undisturbed.size(),      runs};
 }
 

@@ -1,4 +1,4 @@
-// Run times in process: repeated, with their spread, and beside a yardstick measured in between.
+// Run times in process: repeated, with their spread, and beside a reference operation measured in between.
 #pragma once
 
 #include <functional>
@@ -14,12 +14,12 @@ struct Spread {
 Spread spread_of(std::vector<double> sample);
 
 // CPU seconds of one call of the C library's sincos, in a chain in which each call waits for the one before.
-double yardstick();
+double reference_operation();
 
 struct Timing {
-  Spread seconds;                    // CPU time of one run
-  Spread yardsticks;                 // each repeat by the mean of the yardsticks before and after it
-  Spread yardstick;                  // seconds
+  Spread seconds;               // CPU time of one run
+  Spread reference_operations;  // each repeat by the mean of the reference operations before and after it
+  Spread reference_operation;   // seconds
   int repeats = 0, undisturbed = 0;  // in all, and those on a core of one's own (own_core.hpp)
   int runs = 0;                      // in each repeat
 };

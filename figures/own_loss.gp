@@ -24,17 +24,16 @@ if (STATS_min > 0) {
 } else {
   set yrange [STATS_min - 0.1 * STATS_max:1.5 * STATS_max]
 }
-set xlabel "peak amplitude A"
 set ylabel "loss factor η, per radian" offset 0.5,0
-eval axis("x", "length", from, to, is_wide(from, to))
+eval axis("x", "length", "peak amplitude", "A", from, to, is_wide(from, to))
 optional(block, clause) = !has(block) ? "" : sprintf("table index '%s' using ", block).clause
-forms = optional("one-impact-1", '1:2 with lines ls 9 title "closed forms, ν → 0",').\
-  optional("bounce-down-1", '1:2 with lines ls 9 notitle,')
+forms = optional("one-impact-1", '($1*unit_x):2 with lines ls 9 title "closed forms, ν → 0",').\
+  optional("bounce-down-1", '($1*unit_x):2 with lines ls 9 notitle,')
 if (fold > 0 && fold < to) {
-  set arrow 1 from fold,graph 0 to fold,graph 1 nohead ls 10 dt (6,4)
-  set label 1 "impacts fail" at fold,graph 0.03 left offset 0.4,0 font ",11" textcolor rgb grey
+  set arrow 1 from fold * unit_x,graph 0 to fold * unit_x,graph 1 nohead ls 10 dt (6,4)
+  set label 1 "impacts fail" at fold * unit_x,graph 0.03 left offset 0.4,0 font ",11" textcolor rgb grey
 }
-eval 'plot '.optional("band-1", '1:2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
-  (!is_seen ? "" : optional("failed-1", '1:2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",')).\
-  'table index "curve-1" using 1:2 with lines ls 1 title columnheader(2)'
-eval axes("A", "η", logarithmic)
+eval 'plot '.optional("band-1", '($1*unit_x):2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
+  (!is_seen ? "" : optional("failed-1", '($1*unit_x):2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",')).\
+  'table index "curve-1" using ($1*unit_x):2 with lines ls 1 title columnheader(2)'
+eval axes(name_x, "η", logarithmic)

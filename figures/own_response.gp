@@ -12,12 +12,11 @@ do for [b in "locked empty"] {
   high = STATS_max > high && STATS_max < 3 * high ? STATS_max : high
 }
 stats table index "given" using 1 nooutput
-set arrow 1 from STATS_max,graph 0 to STATS_max,graph 1 nohead ls 10
-set xlabel "frequency ω of the force"
-set ylabel "steady amplitude A"
-eval axis("x", "frequency", from, to, 0)
-eval axis("y", "length", low / 1.2, high * 2, 1)
-plot table index "empty" using 1:2 with lines ls 2 title columnheader(2), \
-     table index "locked" using 1:2 with lines ls 3 title columnheader(2), \
-     table index "curve" using 1:2 with linespoints ls 1 title columnheader(2)
-eval axes("ω", "A", "y")
+given = STATS_max
+eval axis("x", "frequency", "frequency of the force", "ω", from, to, 0)
+eval axis("y", "length", "steady amplitude", "A", low / 1.2, high * 2, 1)
+set arrow 1 from given * unit_x,graph 0 to given * unit_x,graph 1 nohead ls 10
+plot table index "empty" using ($1*unit_x):($2*unit_y) with lines ls 2 title columnheader(2), \
+     table index "locked" using ($1*unit_x):($2*unit_y) with lines ls 3 title columnheader(2), \
+     table index "curve" using ($1*unit_x):($2*unit_y) with linespoints ls 1 title columnheader(2)
+eval axes(name_x, name_y, "y")

@@ -25,13 +25,13 @@ Run short_run(const Engine& engine) {
   return simulate(scene, engine, {});
 }
 
-std::string refusal(const Engine& engine) {
+std::string rejection(const Engine& engine) {
   try {
     short_run(engine);
   } catch (const NumericalError& error) {
     return error.what();
   }
-  return "not refused";
+  return "not rejected";
 }
 
 const Engine engines[] = {Exact{}, Restitution{}, Cem{}};
@@ -46,10 +46,10 @@ TEST_CASE("no engine runs with another rounding mode, and each does again once i
   for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
     for (const Engine& engine : engines) {
       std::fesetround(mode);
-      const std::string text = refusal(engine);
+      const std::string text = rejection(engine);
       std::fesetround(FE_TONEAREST);
       CHECK(text.find("the rounding mode is not to nearest") != std::string::npos);
-      CHECK(refusal(engine) == "not refused");
+      CHECK(rejection(engine) == "not rejected");
     }
   }
 }
@@ -60,7 +60,7 @@ TEST_CASE("no engine runs where results or operands that are denormal count as z
   for (const unsigned bits : {0x8000u, 0x0040u, 0x8040u}) {  // FTZ, DAZ
     for (const Engine& engine : engines) {
       _mm_setcsr(before | bits);
-      const std::string text = refusal(engine);
+      const std::string text = rejection(engine);
       _mm_setcsr(before);
       CHECK(text.find("denormal numbers are flushed to zero") != std::string::npos);
     }

@@ -200,7 +200,7 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
   }
 }
 
-TEST_CASE("a step beyond the stability limit is refused with the step, the limit and the way out") {
+TEST_CASE("a step beyond the stability limit is rejected with the step, the limit and the way out") {
   Scene scene;
   scene.until_time = 1;
   for (Damper damper : {Damper::centred, Damper::lagged}) {
@@ -212,9 +212,9 @@ TEST_CASE("a step beyond the stability limit is refused with the step, the limit
   }
   try {
     simulated(scene, {.time_step = 0.003}, {});
-    FAIL("not refused");
-  } catch (const std::invalid_argument& refusal) {
-    const std::string message = refusal.what();
+    FAIL("not rejected");
+  } catch (const std::invalid_argument& rejection) {
+    const std::string message = rejection.what();
     for (const char* part :
          {"time_step", "0.003", "0.00280055", "714.143", "centred", "contact", "--unstable"}) {
       CAPTURE(message);

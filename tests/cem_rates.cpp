@@ -388,13 +388,13 @@ TEST_CASE("a scene at rest stays there in steps of any length") {
 }
 
 TEST_CASE(
-    "a large step is refused if it is not larger, beyond the limit in flight, or too coarse for the force") {
+    "a large step is rejected if it is not larger, beyond the limit in flight, or too coarse for the force") {
   const Scene scene{.until_time = 1}, driven{.force_amplitude = 1, .force_frequency = 10, .until_time = 1};
   const auto message = [](const Scene& of, const Cem& options) -> std::string {
     try {
       simulate(of, options, {});
-    } catch (const std::invalid_argument& refusal) {
-      return refusal.what();
+    } catch (const std::invalid_argument& rejection) {
+      return rejection.what();
     }
     return {};
   };

@@ -36,9 +36,9 @@ std::string complaint(const std::string& from, const std::string& to) {
   return "";
 }
 
-Claim claim_of(Interval admitted, double tolerance, std::optional<Interval> corrected = std::nullopt) {
+Claim claim_of(Interval allowed, double tolerance, std::optional<Interval> corrected = std::nullopt) {
   Claim claim;
-  claim.admitted = {.printed = admitted, .below = tolerance, .above = tolerance, .reason = "r"};
+  claim.allowed = {.printed = allowed, .below = tolerance, .above = tolerance, .reason = "r"};
   claim.corrected = corrected;
   return claim;
 }
@@ -49,14 +49,32 @@ TEST_CASE("a claim is read as it is written") {
   const std::vector<Claim> claims = parse_claims("f", claims_text());
   REQUIRE(claims.size() == 1);
   CHECK(claims[0].id == "a");
-  CHECK(claims[0].admitted.printed.least == 6.28);
-  CHECK(claims[0].admitted.printed.most == 6.28);
+  CHECK(claims[0].allowed.printed.least == 6.28);
+  CHECK(claims[0].allowed.printed.most == 6.28);
   CHECK(claims[0].measure.name == "step_limit");
   CHECK(claims[0].corrected->most == 2.1);
   CHECK(claims[0].recorded == Verdict::corrected);
 }
 
-TEST_CASE("what is not admitted in a claim is named with its place") {
+TEST_CASE("a statement that is open is read beside the claims and is none of them") {
+  const std::string open =
+      R"(], "open": [{"id": "b", "section": "5", "statement": "s", "printed": "p", "explanation": "x"}]})";
+  const ClaimsFile file = parse_claims_file("f", claims_text("]}", open));
+  CHECK(file.claims.size() == 1);
+  REQUIRE(file.open.size() == 1);
+  CHECK(file.open[0].id == "b");
+  CHECK(file.open[0].section == "5");
+  CHECK(file.open[0].statement == "s");
+  CHECK(file.open[0].printed == "p");
+  CHECK(file.open[0].explanation == "x");
+  CHECK(parse_claims("f", claims_text("]}", open)).size() == 1);
+  CHECK(parse_claims_file("f", claims_text()).open.empty());
+  const std::string twice =
+      R"(], "open": [{"id": "a", "section": "5", "statement": "s", "printed": "p", "explanation": "x"}]})";
+  CHECK(complaint("]}", twice).find("f: /open/0/id: must be given once") != std::string::npos);
+}
+
+TEST_CASE("what is not valid in a claim is named with its place") {
   CHECK(complaint("\"reason\": \"r\", ", "").find("f: /claims/0/reason") != std::string::npos);
   CHECK(complaint("\"r\"", "\"\"").find("f: /claims/0/reason: must be a text of one line and 1 to 4000") !=
         std::string::npos);
@@ -158,40 +176,40 @@ TEST_CASE("the unit of a printed number's last digit is that of the last that co
 
 namespace {
 
-Admitted admitted(const std::string& name, const std::vector<std::string>& digits = {}) {
+Allowed allowed(const std::string& name, const std::vector<std::string>& digits = {}) {
   for (const PrintedKind& kind : printed_kinds())
-    if (kind.name == name) return admitted_by(kind, digits);
+    if (kind.name == name) return allowed_by(kind, digits);
   throw std::logic_error("no such kind");
 }
 
 }  // namespace
 
 TEST_CASE("what is printed decides the tolerance, by one rule") {
-  const auto least = [](const Admitted& a) { return *a.printed.least - a.below; };
-  const auto most = [](const Admitted& a) { return *a.printed.most + a.above; };
-  CHECK(least(admitted("number", {"0.339"})) == doctest::Approx(0.3385));
-  CHECK(most(admitted("number", {"0.339"})) == doctest::Approx(0.3395));
-  CHECK(most(admitted("number", {"31"})) == doctest::Approx(31.5));
-  CHECK(least(admitted("approximate", {"0.15"})) == doctest::Approx(0.14));
-  CHECK(most(admitted("approximate", {"5.0"})) == doctest::Approx(5.1));
-  CHECK(least(admitted("approximate", {"0.1"})) == doctest::Approx(0.05));  // not 0
-  CHECK(most(admitted("approximate", {"0.1"})) == doctest::Approx(0.15));
-  CHECK(least(admitted("range", {"0.05", "0.1"})) == doctest::Approx(0.04));
-  CHECK(most(admitted("range", {"0.05", "0.1"})) == doctest::Approx(0.15));
-  CHECK(least(admitted("at_least", {"6.0"})) == doctest::Approx(5.95));
-  CHECK_FALSE(admitted("at_least", {"6.0"}).printed.most);
-  CHECK(most(admitted("at_most", {"6.0"})) == doctest::Approx(6.05));
-  CHECK_FALSE(admitted("at_most", {"6.0"}).printed.least);
-  CHECK(least(admitted("count", {"6"})) == 6);
-  CHECK(most(admitted("count", {"6"})) == 6);
+  const auto least = [](const Allowed& a) { return *a.printed.least - a.below; };
+  const auto most = [](const Allowed& a) { return *a.printed.most + a.above; };
+  CHECK(least(allowed("number", {"0.339"})) == doctest::Approx(0.3385));
+  CHECK(most(allowed("number", {"0.339"})) == doctest::Approx(0.3395));
+  CHECK(most(allowed("number", {"31"})) == doctest::Approx(31.5));
+  CHECK(least(allowed("approximate", {"0.15"})) == doctest::Approx(0.14));
+  CHECK(most(allowed("approximate", {"5.0"})) == doctest::Approx(5.1));
+  CHECK(least(allowed("approximate", {"0.1"})) == doctest::Approx(0.05));  // not 0
+  CHECK(most(allowed("approximate", {"0.1"})) == doctest::Approx(0.15));
+  CHECK(least(allowed("range", {"0.05", "0.1"})) == doctest::Approx(0.04));
+  CHECK(most(allowed("range", {"0.05", "0.1"})) == doctest::Approx(0.15));
+  CHECK(least(allowed("at_least", {"6.0"})) == doctest::Approx(5.95));
+  CHECK_FALSE(allowed("at_least", {"6.0"}).printed.most);
+  CHECK(most(allowed("at_most", {"6.0"})) == doctest::Approx(6.05));
+  CHECK_FALSE(allowed("at_most", {"6.0"}).printed.least);
+  CHECK(least(allowed("count", {"6"})) == 6);
+  CHECK(most(allowed("count", {"6"})) == 6);
   for (const PrintedKind& kind : printed_kinds()) {
     CAPTURE(kind.name);
     CHECK(!kind.reason.empty());
     if (kind.digits == 0) CHECK((kind.interval.least || kind.interval.most));
-    CHECK_THROWS_AS(admitted_by(kind, {"1", "2", "3"}), std::invalid_argument);
+    CHECK_THROWS_AS(allowed_by(kind, {"1", "2", "3"}), std::invalid_argument);
   }
-  CHECK_THROWS_AS(admitted("range", {"2", "1"}), std::invalid_argument);
-  CHECK_THROWS_AS(admitted("number", {"2 pi"}), std::invalid_argument);
+  CHECK_THROWS_AS(allowed("range", {"2", "1"}), std::invalid_argument);
+  CHECK_THROWS_AS(allowed("number", {"2 pi"}), std::invalid_argument);
 }
 
 TEST_CASE("a kind takes the place of value, tolerance and reason in a claim") {
@@ -199,8 +217,8 @@ TEST_CASE("a kind takes the place of value, tolerance and reason in a claim") {
      "reason": "r",)";
   const std::vector<Claim> claims =
       parse_claims("f", claims_text(stated, R"("kind": "approximate", "digits": ["0.15"],)"));
-  CHECK(claims[0].admitted.printed.least == 0.15);
-  CHECK(claims[0].admitted.above == doctest::Approx(0.01));
+  CHECK(claims[0].allowed.printed.least == 0.15);
+  CHECK(claims[0].allowed.above == doctest::Approx(0.01));
   CHECK(complaint(stated, R"("kind": "approximate", "digits": ["0.15", "2"],)")
             .find("/claims/0/digits: must be 1 numbers as printed, got 2") != std::string::npos);
   CHECK(complaint(stated, R"("kind": "number", "digits": ["2 pi"],)")
@@ -239,7 +257,7 @@ TEST_CASE("our result is written in the words of the statement") {
         std::string::npos);
 }
 
-TEST_CASE("the project's own claims are admitted, and there are at least forty") {
+TEST_CASE("the project's own claims are allowed, and there are at least forty") {
   const std::vector<Claim> claims = read_claims(SOURCE_FOLDER "/data/claims.json");
   CHECK(claims.size() >= 40);
 }

@@ -80,7 +80,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("no member has a number that a scene does not admit") {
+TEST_CASE("no member has a number that a scene does not allow") {
   Scene scene;
   scene.x0 = 1e12;
   scene.w0 = -1e12;
@@ -89,7 +89,7 @@ TEST_CASE("no member has a number that a scene does not admit") {
   CHECK(ensemble_of(scene)[1] != scene);
 }
 
-TEST_CASE("an ensemble without members is refused") {
+TEST_CASE("an ensemble without members is rejected") {
   CHECK_THROWS_AS(ensemble_of(Scene{}, {.members = 0}), std::invalid_argument);
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("an ensemble is the same to the last byte with any number of threads")
   CHECK(texts({}) == alone);
 }
 
-TEST_CASE("scenes are run in their order, and the first that is not admitted is the one that is named") {
+TEST_CASE("scenes are run in their order, and the first that is not valid is the one that is named") {
   std::vector<Scene> scenes(5);
   for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i].until_time = double(i + 1);
   for (const std::int64_t threads : {1, 3}) {

@@ -445,13 +445,13 @@ TEST_CASE("the budget's time ends every scene, sooner where a forcing is fast, u
   CHECK(simulate(fast, Exact{.budget = {.max_time = 20}}, {}).end_time == 20);
 }
 
-TEST_CASE("what could not be kept in memory is refused before it is begun") {
+TEST_CASE("what could not be kept in memory is rejected before it is begun") {
   const Scene scene{.until_time = 1};
   const auto message = [&](const Budget& budget, const Record& record) -> std::string {
     try {
       simulate(scene, Exact{.budget = budget}, record);
-    } catch (const std::invalid_argument& refused) {
-      return refused.what();
+    } catch (const std::invalid_argument& rejected) {
+      return rejected.what();
     }
     return {};
   };

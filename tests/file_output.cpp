@@ -61,7 +61,7 @@ TEST_CASE("permissions stay, and a link stays a link") {
   CHECK(fs::status(file).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
-TEST_CASE("what cannot be written is refused and leaves nothing behind") {
+TEST_CASE("what cannot be written is rejected and leaves nothing behind") {
   const Folder folder;
   CHECK_THROWS_WITH_AS(write_file(folder.path, "x"), doctest::Contains("is a directory"), IoError);
   CHECK_THROWS_WITH_AS(write_file(folder.path / "no" / "a.txt", "x"), doctest::Contains("No such file"),

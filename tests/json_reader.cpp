@@ -99,17 +99,17 @@ TEST_CASE("all problems of a file are found in one reading") {
                      "f.json: /r: must be a whole number, written without point or exponent, got 3.0",
                      "f.json: /missing: missing, a value must be given",
                      "f.json: /deep/a/1: must be a number, got null",
-                     "f.json: /q~1~0: unknown key, admitted are: deep, m, missing, n, r, restitution, x",
+                     "f.json: /q~1~0: unknown key, allowed are: deep, m, missing, n, r, restitution, x",
                      "f.json: /restitutoin: unknown key, did you mean \"restitution\"?",
                  });
 }
 
 TEST_CASE("a duplicate key is found wherever it is") {
   CHECK(problems(R"({"a": 1, "b": 2, "a": 1})") ==
-        Lines{"f.json: /a: duplicate key, admitted is one value for each key"});
+        Lines{"f.json: /a: duplicate key, allowed is one value for each key"});
   CHECK(problems(R"({"list": [0, {"a": {}, "a": 2}], "list": 0})") ==
-        Lines{"f.json: /list/1/a: duplicate key, admitted is one value for each key",
-              "f.json: /list: duplicate key, admitted is one value for each key"});
+        Lines{"f.json: /list/1/a: duplicate key, allowed is one value for each key",
+              "f.json: /list: duplicate key, allowed is one value for each key"});
 }
 
 TEST_CASE("a duplicate key is one problem among the others") {
@@ -117,9 +117,9 @@ TEST_CASE("a duplicate key is one problem among the others") {
                  [](ObjectReader& root) {
                    double x = 0;
                    root.required("x", x);
-                 }) == Lines{"f.json: /x: duplicate key, admitted is one value for each key",
+                 }) == Lines{"f.json: /x: duplicate key, allowed is one value for each key",
                              "f.json: /x: must be a number, got the string \"6\"",
-                             "f.json: /y: unknown key, admitted are: x"});
+                             "f.json: /y: unknown key, allowed are: x"});
 }
 
 TEST_CASE("a text has one line and a length in characters, a name only what file names may hold") {
@@ -148,7 +148,7 @@ TEST_CASE("a text has one line and a length in characters, a name only what file
   CHECK(read(std::string(65, 'a'), a_name).size() == 1);
 }
 
-TEST_CASE("an array is no longer than admitted, its texts no two alike") {
+TEST_CASE("an array is no longer than allowed, its texts no two alike") {
   const auto texts = [](const std::string& array) {
     return problems("{\"a\": " + array + "}", [](ObjectReader& root) {
       std::vector<std::string> a;
@@ -164,16 +164,16 @@ TEST_CASE("an array is no longer than admitted, its texts no two alike") {
         }) == Lines{"f.json: /a: must have at most 2 elements, got 3"});
 }
 
-TEST_CASE("what takes far more memory than its text is refused while it is read") {
+TEST_CASE("what takes far more memory than its text is rejected while it is read") {
   std::string objects = "{\"a\": [{}", values = "{\"a\": [0";
   for (int i = 1; i < 100'000; ++i) objects += ",{}";
   for (int i = 1; i < 10'000'000; ++i) values += ",0";
   CHECK(problems(objects + "]}") ==
-        Lines{"f.json: too many objects, arrays, keys and texts, admitted are 100000"});
-  CHECK(problems(values + ",0]}") == Lines{"f.json: too many values, admitted are 10000000"});
+        Lines{"f.json: too many objects, arrays, keys and texts, allowed are 100000"});
+  CHECK(problems(values + ",0]}") == Lines{"f.json: too many values, allowed are 10000000"});
 }
 
-TEST_CASE("what is not JSON is refused with line and column") {
+TEST_CASE("what is not JSON is rejected with line and column") {
   const auto only = [](const std::string& text) {
     const Lines found = problems(text);
     REQUIRE(found.size() == 1);
@@ -189,14 +189,14 @@ TEST_CASE("what is not JSON is refused with line and column") {
   CHECK(only("[1]") == "f.json: must be an object, got an array");
 }
 
-TEST_CASE("nesting is admitted to 64 levels and refused beyond, however deep") {
+TEST_CASE("nesting is allowed to 64 levels and rejected beyond, however deep") {
   const auto nested = [](std::size_t levels) {
     return "{\"a\":" + std::string(levels - 1, '[') + std::string(levels - 1, ']') + "}";
   };
   CHECK(problems(nested(64)).empty());
-  const Lines refused{"f.json: nested too deeply, admitted are 64 levels"};
-  CHECK(problems(nested(65)) == refused);
-  CHECK(problems("{\"a\":" + std::string(1'000'000, '[')) == refused);
+  const Lines rejected{"f.json: nested too deeply, allowed are 64 levels"};
+  CHECK(problems(nested(65)) == rejected);
+  CHECK(problems("{\"a\":" + std::string(1'000'000, '[')) == rejected);
 }
 
 TEST_CASE("a million wrong numbers make a short report") {
@@ -263,11 +263,11 @@ TEST_CASE("what cannot be read is said to be so") {
                        doctest::Contains("is a directory"), IoError);
 }
 
-TEST_CASE("a file may have just the length that is admitted, and not a byte more") {
+TEST_CASE("a file may have just the length that is allowed, and not a byte more") {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "impact-damper-length-test";
   write_file(file, "12345");
   CHECK(read_text(file, {"thing", 5}) == "12345");
   CHECK_THROWS_WITH_AS(read_text(file, {"thing", 4}),
-                       doctest::Contains("too long, admitted are 4 bytes for a thing, got 5"), InputError);
+                       doctest::Contains("too long, allowed are 4 bytes for a thing, got 5"), InputError);
   std::filesystem::remove(file);
 }

@@ -87,7 +87,7 @@ TEST_CASE("fewer peaks than the window give no rows, and one more than that give
   CHECK(averaged_loss_factor(peaks.time, peaks.amplitude).eta.size() == 1);
 }
 
-TEST_CASE("what is not admitted is refused") {
+TEST_CASE("what is not valid is rejected") {
   const Peaks peaks = viscous(0.01, 20);
   for (int half_cycles : {0, 8, 11, 20, -10})
     CHECK_THROWS_AS(averaged_loss_factor(peaks.time, peaks.amplitude, {half_cycles}), std::invalid_argument);

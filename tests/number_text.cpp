@@ -50,7 +50,7 @@ TEST_CASE("the text is the standard library's shortest one") {
   for (int i = 0; i < 100'000; ++i) check(double(random() >> 11 >> random() % 40) / 16);
 }
 
-TEST_CASE("only the whole of a finite number is admitted") {
+TEST_CASE("only the whole of a finite number is allowed") {
   for (const char* text : {"nan", "inf", "-inf", "1e999", "", " 1", "1 ", "1x", "+1", "0x10", "1,5", "--1"}) {
     CAPTURE(text);
     CHECK(!parse_number(text));

@@ -1,4 +1,4 @@
-// Random scenes over all that a scene admits in earnest, by their seed: equal seeds give equal scenes
+// Random scenes over all that a scene allows in earnest, by their seed: equal seeds give equal scenes
 // everywhere, but for the last bits of the C library's exp and log.
 #pragma once
 

@@ -407,7 +407,7 @@ TEST_CASE("x thrown back just as it comes to zero begins no half cycle by roundi
 }
 
 TEST_CASE("a fast light mass costs the primary mass's speed no digits") {
-  // Some 690 000 impacts at a speed 1700 times the primary mass's. Rounding of each is admitted, a bias is
+  // Some 690 000 impacts at a speed 1700 times the primary mass's. Rounding of each is allowed, a bias is
   // not.
   const Scene scene{.mass_ratio = 2e-7,
                     .restitution = 1,

@@ -343,7 +343,7 @@ TEST_CASE("a number that is not finite is never written") {
   }
 }
 
-TEST_CASE("a run file that was changed by hand is refused with the place and the reason") {
+TEST_CASE("a run file that was changed by hand is rejected with the place and the reason") {
   const std::string text = run_text(full_run());
   const auto only = [&](const std::string& old, const std::string& by) {
     CAPTURE(old);
@@ -377,15 +377,15 @@ TEST_CASE("a run file that was changed by hand is refused with the place and the
             .starts_with("r.json: /energy/impact_loss_total: must be the sum of its parts"));
   CHECK(only("\"history\"", "\"histroy\"") == "r.json: /histroy: unknown key, did you mean \"history\"?");
   CHECK(only("\"residual\"", "\"viscous_work\": 7, \"residual\"") ==
-        "r.json: /energy/viscous_work: duplicate key, admitted is one value for each key");
+        "r.json: /energy/viscous_work: duplicate key, allowed is one value for each key");
   CHECK(only(" \"stop_reason\": \"impact_budget\",", "") ==
         "r.json: /stop_reason: missing, a value must be given");
 }
 
-TEST_CASE("whatever happens to a run file's bytes, it is read or refused with at least one line") {
+TEST_CASE("whatever happens to a run file's bytes, it is read or rejected with at least one line") {
   const std::string text = run_text(full_run());
   std::mt19937_64 random(3);
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < 5000; ++i) {
     std::string damaged = text;
     for (std::uint64_t change = random() % 3; change < 3; ++change) {
@@ -405,14 +405,14 @@ TEST_CASE("whatever happens to a run file's bytes, it is read or refused with at
     try {
       parse_run("r.json", damaged);
     } catch (const InputError& error) {
-      ++refused;
+      ++rejected;
       CHECK(!error.problems().empty());
     }
   }
-  CHECK(refused > 4000);  // what survives are changed digits and names in provenance
+  CHECK(rejected > 4000);  // what survives are changed digits and names in provenance
 }
 
-TEST_CASE("all that the default budgets admit and the longest history make a file that is admitted") {
+TEST_CASE("all that the default budgets allow and the longest history make a file that is allowed") {
   // No double's shortest text is longer: a sign, 17 digits with a point, an exponent of three digits.
   constexpr double longest = -2.2250738585072014e-308;
   REQUIRE(number_text(longest).size() == 24);
@@ -456,7 +456,7 @@ TEST_CASE("a scene file's problems are reported together") {
   try {
     parse_scene("s.json",
                 R"({"mass_ratio": -1, "x0": "6", "restitution": 1.5, "omega": 1, "until_time": "t"})");
-    FAIL("read what is not admitted");
+    FAIL("read what is not valid");
   } catch (const InputError& error) {
     CHECK(error.problems() == Lines{"s.json: /x0: must be a number, got the string \"6\"",
                                     "s.json: /until_time: must be null or a number, got the string \"t\"",

@@ -84,16 +84,16 @@ Figure loss_figure(LossOrdinate ordinate) {
   return figure;
 }
 
-std::string refusal(const Figure& figure, const FigureRuns& runs) {
+std::string rejection(const Figure& figure, const FigureRuns& runs) {
   try {
     figure_table(figure, runs);
   } catch (const InputError& error) {
     return error.what();
   }
-  return "not refused";
+  return "not rejected";
 }
 
-std::string catalogue_refusal(const std::string& text) {
+std::string catalogue_rejection(const std::string& text) {
   const fs::path file = fs::temp_directory_path() / "impact-damper-test-catalogue.json";
   std::ofstream(file) << text;
   try {
@@ -103,7 +103,7 @@ std::string catalogue_refusal(const std::string& text) {
     return error.what();
   }
   fs::remove(file);
-  return "not refused";
+  return "not rejected";
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -147,24 +147,24 @@ TEST_CASE("a figure's files are named after its number") {
   CHECK(file_stem(figure) == "figA");
 }
 
-TEST_CASE("a catalogue that does not hold together is refused at the place that is wrong") {
-  CHECK(catalogue_refusal(small_catalogue) == "not refused");
-  const auto refused = [](const std::string& from, const std::string& to, const std::string& at) {
-    const std::string message = catalogue_refusal(replaced(small_catalogue, from, to));
+TEST_CASE("a catalogue that does not hold together is rejected at the place that is wrong") {
+  CHECK(catalogue_rejection(small_catalogue) == "not rejected");
+  const auto rejected = [](const std::string& from, const std::string& to, const std::string& at) {
+    const std::string message = catalogue_rejection(replaced(small_catalogue, from, to));
     CAPTURE(message);
     CHECK(message.find(at) != std::string::npos);
   };
-  refused("catalogue/1", "catalogue/2", "/schema");
-  refused(R"([{"scene": "a", "half)", R"([{"scene": "b", "half)", "/figures/0/curves");
-  refused(R"(["half_cycles"])", R"(["impacts"])", "/figures/0/curves");
-  refused(R"(["half_cycles"])", R"(["half_cycles", "history"])", "/scenes/0/history_below");
-  refused(R"(["half_cycles"])", R"(["half_cycle"])", "/scenes/0/record");
-  refused("12}", "13}", "/figures/0/curves/0/half_cycles");
-  refused("12}", "20}", "/figures/0/curves/0/half_cycles");
-  refused(R"("eta")", R"("theta")", "/figures/0/ordinate");
-  refused(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
-  refused(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
-  refused(R"("title")", R"("titel")", "titel");
+  rejected("catalogue/1", "catalogue/2", "/schema");
+  rejected(R"([{"scene": "a", "half)", R"([{"scene": "b", "half)", "/figures/0/curves");
+  rejected(R"(["half_cycles"])", R"(["impacts"])", "/figures/0/curves");
+  rejected(R"(["half_cycles"])", R"(["half_cycles", "history"])", "/scenes/0/history_below");
+  rejected(R"(["half_cycles"])", R"(["half_cycle"])", "/scenes/0/record");
+  rejected("12}", "13}", "/figures/0/curves/0/half_cycles");
+  rejected("12}", "20}", "/figures/0/curves/0/half_cycles");
+  rejected(R"("eta")", R"("theta")", "/figures/0/ordinate");
+  rejected(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
+  rejected(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
+  rejected(R"("title")", R"("titel")", "titel");
 }
 
 TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for the impacts") {
@@ -346,10 +346,10 @@ TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
   CHECK(widest > 1e-4);  // the decay passes through a chaotic range: the members differ
 }
 
-TEST_CASE("a run that lacks what a figure draws is refused with the figure's and the file's name") {
+TEST_CASE("a run that lacks what a figure draws is rejected with the figure's and the file's name") {
   const auto expect = [](const Figure& figure, const Run& run, const std::string& why) {
     const std::string name = figure.curves[0].scene;
-    const std::string message = refusal(figure, {{name, {"runs/" + name + ".json", run}}});
+    const std::string message = rejection(figure, {{name, {"runs/" + name + ".json", run}}});
     CAPTURE(message);
     CHECK(message.starts_with("figure " + figure.number + ": runs/" + name + ".json: "));
     CHECK(message.find(why) != std::string::npos);
@@ -398,10 +398,10 @@ TEST_CASE("curves of one figure must differ in what it varies and in nothing els
   CHECK(block(table, "curve-2").columns[1].heading == "ν = 4 %");
   CHECK(table.header[1] == "Parameters: e = 0.6, ζ = 1 %");
   runs["two"].run.scene.restitution = 0.5;
-  CHECK(refusal(figure, runs).find("same restitution") != std::string::npos);
+  CHECK(rejection(figure, runs).find("same restitution") != std::string::npos);
   runs["two"].run.scene.restitution = 0.6;
   runs["two"].run.engine = Restitution{};
-  CHECK(refusal(figure, runs).find("another engine") != std::string::npos);
+  CHECK(rejection(figure, runs).find("another engine") != std::string::npos);
 }
 
 TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts lines at gaps") {
@@ -699,6 +699,36 @@ TEST_CASE("the table of a decay has its peaks and their times") {
     CHECK(column(block(table, "curve-1"), 1)[std::size_t(i)] == doctest::Approx(i * pi));
     CHECK(column(block(table, "curve-1"), 2)[std::size_t(i)] == doctest::Approx(6 - 0.05 * i));
   }
+}
+
+TEST_CASE("the law of a decay has each curve's slope, and the line their mean") {
+  Figure figure;
+  figure.number = "7";
+  figure.table = TableKind::decay;
+  figure.down_to = 2.02;
+  figure.varied = Varied::mass_ratio;
+  figure.curves = {{"light", {}}, {"heavy", {}}};
+  // A = 6 - 0.05 i at t = i pi: the slope is the same from any peak to any other. The heavy mass begins
+  // later.
+  Run light = linear_decay(100, 100), heavy = light;
+  light.scene.mass_ratio = 0.01;
+  heavy.scene.mass_ratio = 0.04;
+  for (double& time : heavy.half_cycles->peak_time) time += 2;
+  // Its last peaks, below 2.02, are off the line and must not count.
+  for (std::size_t i = 81; i < 100; ++i) heavy.half_cycles->amplitude[i] /= 2;
+  const FigureRuns runs{{"light", {"light.json", light}}, {"heavy", {"heavy.json", heavy}}};
+  const Table table = figure_table(figure, runs);
+  const double slope = 0.05 / pi, least = slope / 0.04, most = slope / 0.01;
+  same(column(block(table, "law"), 1), {0.01, 0.04});
+  same(column(block(table, "law"), 2), {most, least});
+  const double mean = (least + most) / 2, begin = 0.04 * 2 / 2;
+  same(column(block(table, "line"), 1), {begin, begin + 6 / mean});
+  same(column(block(table, "line"), 2), {6, 0});
+  CHECK(block(table, "line").columns[1].heading == "dA/dt = −0.99 ν");
+  figure.down_to = 6;  // the first peak: there is no chord
+  CHECK_FALSE(has_block(figure_table(figure, runs), "law"));
+  figure.down_to.reset();
+  CHECK_FALSE(has_block(figure_table(figure, runs), "line"));
 }
 
 TEST_CASE(

@@ -135,7 +135,7 @@ TEST_CASE("keys of both kinds in one file are all named") {
       InputError);
 }
 
-TEST_CASE("no number in units that is admitted makes a scale of zero or infinity") {
+TEST_CASE("no number in units that is allowed makes a scale of zero or infinity") {
   for (const double mass : {1e-15, 1e15}) {
     for (const double stiffness : {1e-15, 1e15}) {
       for (const double length : {1e-15, 1e15}) {

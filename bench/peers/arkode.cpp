@@ -36,7 +36,7 @@ class Arkode {
 
   bool advance(double end, N_Vector u, double& t) {
     int flag = ERKStepEvolve(memory_, end, u, &t, ARK_NORMAL);
-    // Two roots so near each other that it refuses to go on: it is set out anew between them.
+    // Two roots so near each other that it does not go on: it is set out anew between them.
     if (flag == ARK_ILL_INPUT) {
       require(ERKStepReInit(memory_, derivative, t, u), "ERKStepReInit");
       flag = ERKStepEvolve(memory_, end, u, &t, ARK_NORMAL);

@@ -74,6 +74,21 @@ function nearest_on(chain, to) {
   return best;
 }
 
+// A table in CSV, whole: in the page a row lacks its block and its curve where they are those of the row before, and its
+// x where it is that of the same row of the block's first curve. A gap has no number at all.
+function whole(table) {
+  const row = /^("(?:[^"]|"")*"|[^",\n]*),("(?:[^"]|"")*"|[^",\n]*),([^,\n]*),(.*)$/gm;
+  let block = "", curve = "", first = [], at = 0;
+  return table.replace(row, (_, its_block, its_curve, x, rest) => {
+    if (its_block && its_block !== block) first = [];
+    if (its_block) [block, curve, at] = [its_block, its_curve, 0];
+    if (at === first.length) first.push(x);
+    const its_x = x || (rest === ",," ? "" : first[at]);
+    ++at;
+    return [block, curve, its_x, rest].join(",");
+  });
+}
+
 // Below a figure that says its file's name: the drawing as it was made, and the table that stands in the page, to keep.
 function offer(figure) {
   if (!figure.dataset.file) return;
@@ -90,7 +105,7 @@ function offer(figure) {
   drawing.setAttribute("height", height);
   link(figure.dataset.file, "image/svg+xml", new XMLSerializer().serializeToString(drawing));
   const table = figure.querySelector("script[data-file]");
-  if (table) link(table.dataset.file, table.type, table.textContent.replace(/^\n/, ""));
+  if (table) link(table.dataset.file, table.type, whole(table.textContent.replace(/^\n/, "")));
   figure.querySelector("figcaption").append(links);
 }
 

@@ -7,6 +7,8 @@ the table of all claims; as HTML and as LaTeX.
     {{figure N}}, {{equation NAME}}          links to them
     {{references}}, {{claims}}               references.md; the table of all claims
 """
+import csv
+import io
 import re
 import subprocess
 from html import escape
@@ -24,6 +26,8 @@ FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
     (r"y'' = -x''", r"$y'' = -x''$"),
     (r"d ln \(w/A\) / d ln A", r"$d\\ln(w/A)/d\\ln A$"),
     (r"d ln (eta|w) / d ln (A|nu)", lambda m: rf"$d\ln {GREEK.get(m[1], m[1])}/d\ln {GREEK.get(m[2], m[2])}$"),
+    (r"A \(eta - 2 zeta/\(1 \+ nu\)\)/nu", r"$A(\\eta - 2\\zeta/(1 + \\nu))/\\nu$"),
+    (r"2 zeta/\(1 \+ nu\)", r"$2\\zeta/(1 + \\nu)$"),
     (r"2 dx/x", r"$2\\Delta x/x$"),
     (r"A eta_s/nu", r"$A\\eta_s/\\nu$"),
     (r"A eta/nu", r"$A\\eta/\\nu$"),
@@ -61,19 +65,50 @@ def rows_of(values: Values, ids) -> list:
              values.verdicts[name]["verdict"]) for name in ids]
 
 
+def all_rows(values: Values) -> list:
+    """The same of all claims, and behind them the statements that are open."""
+    return rows_of(values, values.verdicts) + [(each["id"], each["statement"], each["printed"], "not measured", "open")
+                                               for each in values.open]
+
+
+def sections_of(values: Values) -> dict:
+    return {each["id"]: each["section"] for each in [*values.claims.values(), *values.open]}
+
+
 def scenes_of(figure: dict) -> list:
     return list(dict.fromkeys(curve["scene"] for curve in figure.get("curves", [])))
 
 
 def table_of(values: Values, number: str):
-    """The file of a figure's table; None for a drawing."""
-    file = values.build / f"series/exact/{stem_of(number)}.dat"
+    """The file of a figure's table, for whoever wants its numbers; None for a drawing."""
+    file = values.build / f"series/exact/{stem_of(number)}.csv"
     return file if values.figures[number]["table"] != "drawing" else None
 
 
+def shortened(table: str) -> str:
+    """A table in CSV without what a row shares with others, half of its bytes: its block and its curve if they are those of
+    the row before, its x if it is that of the same row of the block's first curve. page/figures.js puts them back."""
+    lines, before, first, at = [], [None, None], [], 0
+    for line in table.splitlines():
+        *names, x, y, low, high = next(csv.reader([line]))
+        if names[0] != before[0]:
+            first = []
+        at = at + 1 if names == before else 0
+        out = io.StringIO()
+        csv.writer(out, lineterminator="").writerow(["", ""] if names == before else names)
+        is_known = at < len(first) and first[at] == x
+        if at == len(first):
+            first.append(x)
+        lines.append(",".join([out.getvalue(), "" if is_known else x, y, low, high]))
+        before = names
+    return "\n".join(lines) + "\n"
+
+
 def parameters_of(values: Values, number: str) -> str:
+    """What the line below a figure's title says, from the head of the table that gnuplot reads."""
     table = table_of(values, number)
-    found = re.search("^# Parameters: (.*)$", table.read_text(encoding="utf-8"), re.M) if table else None
+    text = table.with_suffix(".dat").read_text(encoding="utf-8") if table else ""
+    found = re.search("^# Parameters: (.*)$", text, re.M)
     return found[1] if found else ""
 
 
@@ -88,9 +123,13 @@ def made_from(values: Values, number: str) -> str:
 
 
 def picture_html(svg: str, name: str, words: str) -> str:
-    """An SVG to stand inline: no head, scaled by the page, described, its ids its own."""
+    """An SVG to stand inline: no head, scaled by the page, described, its ids its own; colours and coordinates without
+    spaces and zeros that say nothing."""
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<svg\s+width=\"\d+\" height=\"\d+\"", f'<svg role="img" aria-label="{escape(words)}"', svg, count=1)
+    svg = re.sub(r"rgb\(\s*(\d+),\s*(\d+),\s*(\d+)\)", lambda m: "#%02x%02x%02x" % tuple(map(int, m.groups())), svg)
+    svg = re.sub(r"(\b(?:d|points|transform)\s*=\s*)(['\"])([^'\"]*)\2", lambda m: m[1] + m[2] + re.sub(
+        r"(\.\d*?)0+(?!\d)", lambda n: n[1].rstrip("."), re.sub(r"\s+", " ", m[3])) + m[2], svg)
     return re.sub(r"(id=['\"]|href='#|url\(#)(?!" + name + "-)", rf"\g<1>{name}-", svg)
 
 
@@ -106,7 +145,7 @@ class Form:
     def words(self, text: str) -> str:
         """The words of a claim, set: all claims' by one call of pandoc, a paragraph each."""
         if not self.set:
-            known = list(dict.fromkeys(text for row in rows_of(self.values, self.values.verdicts) for text in row[1:4]))
+            known = list(dict.fromkeys(text for row in all_rows(self.values) for text in row[1:4]))
             done = subprocess.run(["pandoc", "--from=markdown-smart", f"--to={self.pandoc}", "--mathml", "--wrap=none"],
                                   input="\n\n".join(map(markdown, known)), capture_output=True, text=True, check=True)
             self.set = dict(zip(known, self.paragraphs(done.stdout), strict=True))
@@ -142,7 +181,7 @@ class Html(Form):
             for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
         table = table_of(values, number)
         # The page's script makes a link of it.
-        data = f'<script type="text/plain" data-file="{table.name}">\n{table.read_text(encoding="utf-8")}</script>' if table else ""
+        data = f'<script type="text/csv" data-file="{table.name}">\n{shortened(table.read_text(encoding="utf-8"))}</script>' if table else ""
         claims = f"""<div class="wide rows"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th>
 <th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
 <tbody>{rows}</tbody></table></div>""" if rows else ""
@@ -161,17 +200,18 @@ class Html(Form):
 
     def claims(self) -> str:
         counts = {verdict: sum(v["verdict"] == verdict for v in self.values.verdicts.values())
-                  for verdict in ("reproduced", "not reproduced", "corrected", "derived")}
+                  for verdict in ("reproduced", "not reproduced", "corrected", "derived")} | {"open": len(self.values.open)}
+        sections = sections_of(self.values)
         buttons = f'<button type="button" aria-pressed="true">all {sum(counts.values())}</button>' + "".join(
             f'<button type="button" aria-pressed="false" data-verdict="{verdict.replace(" ", "-")}">{count} {verdict}</button>'
             for verdict, count in counts.items())
         rows = "".join(
             f'<tr id="claim-{name}"><th scope="row" data-head="name"><code>{name}</code></th>'
-            f'<td data-head="where">{escape(self.values.claims[name]["section"])}</td>'
+            f'<td data-head="where">{escape(sections[name])}</td>'
             f'<td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
-            f'<td data-head="ours" data-value="{self.values.verdicts[name]["ours"]}">{self.words(ours)}</td>'
+            f'<td data-head="ours" data-value="{self.values.verdicts.get(name, {}).get("ours")}">{self.words(ours)}</td>'
             f'<td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
-            for name, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
+            for name, statement, paper, ours, verdict in all_rows(self.values))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("name", "where", "claim", "paper", "ours", "verdict"))
         return raw("html", f"""<div class="claims"><div class="switches" role="group" aria-label="Claims shown">{buttons}</div>
 <div class="wide rows" tabindex="0" role="region" aria-label="All claims"><table><caption>Ours is the median of the ensemble;
@@ -212,7 +252,7 @@ class Latex(Form):
 
     def claims(self) -> str:
         rows = "\n".join(rf"{self.words(statement)} & {self.words(paper)} & {self.words(ours)} & {verdict} \\"
-                         for _, statement, paper, ours, verdict in rows_of(self.values, self.values.verdicts))
+                         for _, statement, paper, ours, verdict in all_rows(self.values))
         return raw("latex", r"\begin{claimtable}" + "\n" + rows + "\n" + r"\end{claimtable}")
 
 

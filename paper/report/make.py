@@ -68,6 +68,12 @@ def html_of(text: str, values: Values) -> str:
     return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
+def kept_together(latex: str) -> str:
+    """The tables of the text as boxes that no page's end divides; pandoc makes long tables, near which floats go astray."""
+    return re.sub(r"\\begin\{longtable\}\[\](.*?)\\endhead\n(.*?)\\end\{longtable\}",
+                  r"\\begin{center}\\begin{tabular}\1\2\\end{tabular}\\end{center}", latex, flags=re.S)
+
+
 def pdf_of(text: str, values: Values) -> bytes:
     frame = (HERE / "frame.tex").read_text(encoding="utf-8")
     # Dates in the PDF come from the commit; frame.tex keeps the folder out of it.
@@ -75,7 +81,7 @@ def pdf_of(text: str, values: Values) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         form = Latex(values)
-        (work / "report.tex").write_text(converted(filled(text, values, form), "latex", frame, values))
+        (work / "report.tex").write_text(kept_together(converted(filled(text, values, form), "latex", frame, values)))
         for svg in form.pictures.values():
             called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
         command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
@@ -86,7 +92,7 @@ def pdf_of(text: str, values: Values) -> bytes:
         said = log.read_text(errors="replace") if log.exists() else done.stdout + done.stderr
         if done.returncode:
             raise Mistake("LaTeX failed:\n" + said[said.find("\n!"):][:2000].strip())
-        wide = [line for line in said.split("\n") if line.startswith(("Overfull \\hbox", "LaTeX Warning"))]
+        wide = [line for line in said.split("\n") if line.startswith(("Overfull", "LaTeX Warning"))]
         if wide:
             raise Mistake("LaTeX complains:\n" + "\n".join(wide))
         return (work / "report.pdf").read_bytes()

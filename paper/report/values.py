@@ -2,16 +2,16 @@
 counting, picking, comparing and dividing; all come from what the program made:
 
     CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
-    CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict
-    count.claims, count.reproduced, count.not-reproduced, count.corrected, count.derived
+    CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict; CLAIM.NAME a further number, NAME in "also"
+    count.claims, count.reproduced, count.not-reproduced, count.corrected, count.derived, count.open
     scene.NAME.FIELD        a number of a scene, defaults among them; run.NAME.half_cycles, .impacts, .end_time
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
     figNN.BLOCK.N.peak      column N where column 2 is greatest
     bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
     study.NAME              percent of time saved, by a run of studies.json against its base, on the way to the
                             amplitude study.until; study.NAME.OPTION a number that it changes, such as mass-ratio
-    rate.SCENE              average -dA/dt of a decay of Figure 7, divided by the mass ratio, from the release to the
-                            first peak not above study.until; rate.rule what the median of A eta/nu makes of it
+    rate.SCENE              average -dA/dt of a decay of Figure 7, divided by the mass ratio (its block "law"); rate.rule
+                            what the median of A eta/nu makes of it
     stamp.NUMBER, version, commit, date, year
 
 {{NAME|3}} writes three significant digits, {{NAME|%}} a hundred times the value.
@@ -99,20 +99,6 @@ def studies(source: Path, program: Path) -> dict:
     return values
 
 
-def rate_of_decay(times: list, amplitudes: list, until: float) -> float:
-    """Average -dA/dt from the first peak to the first that is not above `until`."""
-    end = next(i for i, amplitude in enumerate(amplitudes) if amplitude <= until)
-    return (amplitudes[0] - amplitudes[end]) / (times[end] - times[0])
-
-
-def named_in_words(name: str, claim: dict, words: str) -> dict:
-    """The further numbers of a claim, which its words show by name."""
-    parts = re.split(r"\{(\w*)[^}]*\}", claim.get("words", ""))
-    shown = re.fullmatch("".join(re.escape(part) if i % 2 == 0 else "(.+?)" for i, part in enumerate(parts)), words)
-    numbers = {what: re.match(r"-?[\d.]+(?:e[-+]\d+)?", text) for what, text in zip(parts[1::2], shown.groups() if shown else ()) if what}
-    return {f"{name}.{what.replace('_', '-')}": float(number[0]) for what, number in numbers.items() if number}
-
-
 class Values:
     """All values by name. `table_of` gives a figure's table, `claims` and `verdicts` the files' entries by id."""
 
@@ -123,7 +109,9 @@ class Values:
             return json.loads(file.read_text(encoding="utf-8"))
 
         self.source, self.build, self.out = source, build, build / "paper"
-        self.claims = {each["id"]: each for each in read(source / "data/claims.json")["claims"]}
+        stated = read(source / "data/claims.json")
+        self.claims = {each["id"]: each for each in stated["claims"]}
+        self.open = stated["open"]  # statements without a measure: no claims
         self.verdicts = {each["claim"]: each for each in read(verdicts_file)["verdicts"]}
         self.catalogue = read(source / "figures/catalogue.json")
         self.figures = {each["figure"]: each for each in self.catalogue["figures"]}
@@ -141,8 +129,9 @@ class Values:
                 raise Mistake(f"{verdicts_file} knows nothing of the claim {name}: make verify")
             self.known |= {name: told["ours"], f"{name}.low": told["low"], f"{name}.high": told["high"],
                            f"{name}.paper": claim["printed"], f"{name}.verdict": told["verdict"]}
-            self.known |= named_in_words(name, claim, told["words"])
-        self.known["count.claims"] = len(self.verdicts)
+            for what, number in told.get("also", {}).items():
+                self.known[f"{name}.{what.replace('_', '-')}"] = number["ours"]
+        self.known |= {"count.claims": len(self.verdicts), "count.open": len(self.open)}
         for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
             self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())
         for each in self.catalogue["scenes"]:
@@ -169,12 +158,10 @@ class Values:
             self.known[f"bench.{name}"] = target["measured"]
         self.known["bench.processor"] = self.bench["machine"]["processor"]
         self.known["bench.commit"] = self.bench["provenance"]["commit"]
-        self.known["bench.yardstick"] = self.bench["yardstick"]["nanoseconds"]["median"]
+        self.known["bench.reference-operation"] = self.bench["reference_operation"]["nanoseconds"]["median"]
         self.known |= studies(source, build / "src/impact-damper")
-        decays = blocks_of(build / "series/exact/fig07.dat")
-        for i, curve in enumerate(self.figures["7"]["curves"], 1):
-            self.known[f"rate.{curve['scene']}"] = (rate_of_decay(*decays[f"curve-{i}"][:2], self.known["study.until"]) /
-                                                    self.known[f"scene.{curve['scene']}.mass_ratio"])
+        rates = blocks_of(build / "series/exact/fig07.dat")["law"][1]
+        self.known |= {f"rate.{curve['scene']}": rate for curve, rate in zip(self.figures["7"]["curves"], rates, strict=True)}
         # With A eta/nu = c the definition eta = -2 A'/A is A' = -c nu/2.
         self.known["rate.rule"] = self.known["product-mid-range"] / 2
 

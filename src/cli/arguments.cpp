@@ -20,26 +20,26 @@ std::optional<std::string> Arguments::text(const std::string& option) const {
 std::optional<std::string> Arguments::file(const std::string& option) {
   std::optional<std::string> name = text(option);
   if (!name || !name->empty()) return name;
-  refuse(option, "must be a file name, got \"\"");
+  reject(option, "must be a file name, got \"\"");
   return std::nullopt;
 }
 
 bool Arguments::flag(const std::string& option) {
   const std::vector<std::string> values = texts(option);
-  if (values.size() > 1) refuse(option, "is given more than once");
+  if (values.size() > 1) reject(option, "is given more than once");
   if (values.size() == 1 && values[0] != "true")
-    refuse(option, "takes no value, got " + in_quotes(values[0]));
+    reject(option, "takes no value, got " + in_quotes(values[0]));
   return !values.empty();
 }
 
-void Arguments::refuse_overwriting(const std::string& option, const std::optional<std::string>& output,
+void Arguments::reject_overwriting(const std::string& option, const std::optional<std::string>& output,
                                    const std::vector<std::filesystem::path>& inputs) {
   if (!output) return;
   for (const std::filesystem::path& input : inputs) {
     std::error_code none;  // a file that does not exist is not the same as another
     if (!std::filesystem::is_regular_file(input, none)) continue;
     if (std::filesystem::equivalent(*output, input, none)) {
-      return refuse(option, "must not be one of the files that are read, which would be lost, got " +
+      return reject(option, "must not be one of the files that are read, which would be lost, got " +
                                 in_quotes(*output));
     }
   }
@@ -49,8 +49,8 @@ std::optional<double> Arguments::number(const std::string& option, NumberRange r
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
   const std::optional<double> value = parse_number(*given_text);
-  if (value && range.admits(*value)) return value;
-  refuse(option, "must be " + range.describe("a finite number") + ", got " + in_quotes(*given_text));
+  if (value && range.allows(*value)) return value;
+  reject(option, "must be " + range.describe("a finite number") + ", got " + in_quotes(*given_text));
   return std::nullopt;
 }
 
@@ -58,8 +58,8 @@ std::optional<std::int64_t> Arguments::whole_number(const std::string& option, N
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
   const std::optional<std::int64_t> value = parse_integer(*given_text);
-  if (value && range.admits(static_cast<double>(*value))) return value;
-  refuse(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
+  if (value && range.allows(static_cast<double>(*value))) return value;
+  reject(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
   return std::nullopt;
 }
 
@@ -72,7 +72,7 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
     if (*given_text == words[i]) return i;
     list += (i == 0 ? "" : ", ") + std::string(words[i]);
   }
-  refuse(option, "must be one of " + list + ", got " + in_quotes(*given_text));
+  reject(option, "must be one of " + list + ", got " + in_quotes(*given_text));
   return std::nullopt;
 }
 
@@ -93,22 +93,22 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
   const Format format = arguments.choice("--format", offered, *offered.begin());
   const std::string ending = output ? std::filesystem::path(*output).extension().string() : "";
   if (ending == ".csv" && format != Format::csv) {
-    arguments.refuse("--output", "must not end in .csv for the format " + std::string(name_of(format)) +
+    arguments.reject("--output", "must not end in .csv for the format " + std::string(name_of(format)) +
                                      "; --format csv writes CSV; got " + in_quotes(*output));
   } else if (ending == ".json" && format != Format::json) {
-    arguments.refuse("--output", "must not end in .json for the format " + std::string(name_of(format)) +
+    arguments.reject("--output", "must not end in .json for the format " + std::string(name_of(format)) +
                                      ", got " + in_quotes(*output));
   }
   return format;
 }
 
-void refuse_csv_name(Arguments& arguments, const std::optional<std::string>& output,
+void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output,
                      const std::string& what) {
   if (output && std::filesystem::path(*output).extension() == ".csv")
-    arguments.refuse("--output", "must not end in .csv: it is " + what + ", got " + in_quotes(*output));
+    arguments.reject("--output", "must not end in .csv: it is " + what + ", got " + in_quotes(*output));
 }
 
-void Arguments::refuse(const std::string& option, const std::string& what) {
+void Arguments::reject(const std::string& option, const std::string& what) {
   problems_ += (problems_.empty() ? "" : "\n") + option + ": " + what;
 }
 

@@ -19,7 +19,7 @@
 
 namespace impact_damper::cli {
 
-// A command line that is not admitted: what() has one line for each problem.
+// A command line that is not valid: what() has one line for each problem.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,7 +29,7 @@ class Arguments {
  public:
   explicit Arguments(const CLI::App& app) : app_(app) {}
 
-  // Absent if the option was not given, or was given and is not admitted: then it is noted for finish().
+  // Absent if the option was not given, or was given and is not valid: then it is noted for finish().
   std::optional<std::string> text(const std::string& option) const;
   std::vector<std::string> texts(const std::string& option) const;
   std::optional<std::string> file(const std::string& option);  // its name
@@ -38,20 +38,20 @@ class Arguments {
   std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);
   // The same for an enumeration whose words name_of(value) gives.
   template <typename Enum>
-  Enum choice(const std::string& option, std::initializer_list<Enum> admitted, Enum otherwise) {
+  Enum choice(const std::string& option, std::initializer_list<Enum> allowed, Enum otherwise) {
     std::vector<std::string_view> words;
-    for (const Enum value : admitted) words.push_back(name_of(value));
+    for (const Enum value : allowed) words.push_back(name_of(value));
     const std::optional<std::size_t> index = word(option, words);
-    return index ? admitted.begin()[*index] : otherwise;
+    return index ? allowed.begin()[*index] : otherwise;
   }
   bool given(const std::string& option) const;
   bool flag(const std::string& option);  // given, once and without a value
-  // Refuses an output that is one of these files, which would be lost with it.
-  void refuse_overwriting(const std::string& option, const std::optional<std::string>& output,
+  // Rejects an output that is one of these files, which would be lost with it.
+  void reject_overwriting(const std::string& option, const std::optional<std::string>& output,
                           const std::vector<std::filesystem::path>& inputs);
 
-  // Notes a problem: "what is admitted, what was given".
-  void refuse(const std::string& option, const std::string& what);
+  // Notes a problem: "what is allowed, what was given".
+  void reject(const std::string& option, const std::string& what);
   // Throws UsageError if anything was noted.
   void finish() const;
 
@@ -64,11 +64,11 @@ class Arguments {
 enum class Format { json, gnuplot, csv };
 std::string_view name_of(Format format);
 // Which of `offered` --format names, the first of them if it is not given. A name of an output that ends in
-// ".csv" or ".json" for what is another format is refused.
+// ".csv" or ".json" for what is another format is rejected.
 Format format_of(Arguments& arguments, const std::optional<std::string>& output,
                  std::initializer_list<Format> offered);
 // The same for a command whose output has one form: `what` it writes, "the verdicts as JSON".
-void refuse_csv_name(Arguments& arguments, const std::optional<std::string>& output, const std::string& what);
+void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output, const std::string& what);
 
 // Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
 std::string swallowed_options(const CLI::App& command);

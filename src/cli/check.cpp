@@ -63,24 +63,24 @@ int check(const CLI::App& app) {
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
   if (!arguments.given("KIND"))
-    arguments.refuse("KIND", "must be given: scene, run, catalogue, claims or manifest");
+    arguments.reject("KIND", "must be given: scene, run, catalogue, claims or manifest");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
-    arguments.refuse("FILE", "must be given, one or several");
+    arguments.reject("FILE", "must be given, one or several");
   arguments.finish();
 
-  std::string admitted;
+  std::string allowed;
   std::vector<std::string> problems;
   for (const std::string& file : files) {
     try {
       readers[*kind].read(file, scenes);
-      admitted += file + ": admitted\n";
+      allowed += file + ": valid\n";
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   }
   if (!problems.empty()) throw InputError(problems);
-  write_standard_output(admitted);
+  write_standard_output(allowed);
   return 0;
 }
 

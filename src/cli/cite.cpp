@@ -144,10 +144,10 @@ int cite(Arguments arguments) {
       arguments.file("--manifest").value_or(project_file("data/reference/manifest.json"));
   const std::optional<std::string> typed = arguments.text("--stamp");
   if (arguments.given("--figure") && typed)
-    arguments.refuse("--stamp", "must be given without --figure, got both");
+    arguments.reject("--stamp", "must be given without --figure, got both");
   const std::optional<Stamp> stamp = typed ? parse_stamp(*typed) : std::nullopt;
   if (typed && !stamp)
-    arguments.refuse("--stamp",
+    arguments.reject("--stamp",
                      "must be 8 to 64 hexadecimal digits, with or without a version behind them, such as "
                      "\"1a2b3c4d · 0.1.0\", got " +
                          in_quotes(*typed));
@@ -160,7 +160,7 @@ int cite(Arguments arguments) {
   const std::optional<std::size_t> number = arguments.word("--figure", numbers);
   std::vector<Stamped> figures;
   if (stamp) figures = find_stamped(manifest, stamp->digits);
-  if (stamp && figures.empty()) arguments.refuse("--stamp", why_not(manifest, *stamp, file));
+  if (stamp && figures.empty()) arguments.reject("--stamp", why_not(manifest, *stamp, file));
   arguments.finish();
   if (number) {
     const CitedFigure& figure = manifest.figures[*number];

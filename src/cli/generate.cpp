@@ -264,7 +264,7 @@ std::string fish_completion(const CLI::App& program) {
 int generate(const CLI::App& program, Arguments arguments) {
   const std::vector<std::string_view> kinds{"man", "bash", "zsh", "fish"};
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
-  if (!arguments.given("KIND")) arguments.refuse("KIND", "must be given: man, bash, zsh or fish");
+  if (!arguments.given("KIND")) arguments.reject("KIND", "must be given: man, bash, zsh or fish");
   arguments.finish();
   write_standard_output(*kind == 0   ? man_page(program)
                         : *kind == 1 ? bash_completion(program)

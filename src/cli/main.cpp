@@ -99,9 +99,9 @@ int main(int argc, char** argv) {
       "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
       "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
       "is.\n\n"
-      "Exit codes: 0 done, 1 a check failed, 2 the command line is not admitted, 3 an input file's content "
+      "Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content "
       "is\n"
-      "not admitted, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
+      "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
 
   const std::array commands{
       cli::run_command(program),    cli::report_command(program), cli::scenes_command(program),

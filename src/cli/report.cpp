@@ -71,10 +71,10 @@ int report(const CLI::App& app) {
   ensemble.threads = threads_of(arguments);
   const auto output = arguments.file("--output"), figures = arguments.file("--figures");
   const std::string scene_name = arguments.text("--scene").value_or("");
-  arguments.refuse_overwriting("--output", output, {scene_name});
-  refuse_csv_name(arguments, output, "a page of HTML; impact-damper run --format csv writes CSV");
+  arguments.reject_overwriting("--output", output, {scene_name});
+  reject_csv_name(arguments, output, "a page of HTML; impact-damper run --format csv writes CSV");
   if (figures && !fs::is_directory(*figures))
-    arguments.refuse("--figures", "must be an existing folder, got " + in_quotes(*figures));
+    arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
   arguments.finish();
   if (output) {
     require_writable(*output);
@@ -121,7 +121,7 @@ Command report_command(CLI::App& program) {
     app->add_option(name, help)->type_name(type)->group("Output");
   };
   add("--members", "N",
-      "minutely different releases that are simulated, the scene's own\namong them; 1 to 100, default 16");
+      "perturbed initial conditions that are simulated, the scene's own\namong them; 1 to 100, default 16");
   add("--figures", "FOLDER", "write each figure there as well, as SVG");
   add("-o,--output", "FILE", "write the page there instead of to stdout");
   add_threads_option(*app);

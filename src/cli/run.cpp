@@ -26,7 +26,7 @@ void read_sections(Arguments& arguments, Record& record) {
   std::set<std::string> listed;
   for (std::string word; std::getline(words, word, ',');) {
     if (!listed.insert(word).second)
-      arguments.refuse("--record", "must list each once, got " + in_quotes(*list));
+      arguments.reject("--record", "must list each once, got " + in_quotes(*list));
     if (word == "half_cycles")
       record.half_cycles = true;
     else if (word == "impacts")
@@ -36,12 +36,12 @@ void read_sections(Arguments& arguments, Record& record) {
     else if (word == "energy")
       record.energy = true;
     else if (word != "history") {
-      arguments.refuse("--record",
+      arguments.reject("--record",
                        "must be a list of half_cycles, impacts, contacts, energy, history with commas "
                        "between, got " +
                            in_quotes(word));
     } else if (!arguments.given("--history") && !arguments.given("--history-below")) {
-      arguments.refuse("--record", "history needs samples to be asked for, by --history or --history-below");
+      arguments.reject("--record", "history needs samples to be asked for, by --history or --history-below");
     }
   }
 }
@@ -60,7 +60,7 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   Record record;
   read_sections(arguments, record);
   if (arguments.given("--history") && arguments.given("--history-below")) {
-    arguments.refuse("--history", "either it or --history-below must be given, got both");
+    arguments.reject("--history", "either it or --history-below must be given, got both");
   }
   const Given unit = given_in(file.scales);
   const std::string seconds = file.scales ? " s" : "", millimetres = file.scales ? " mm" : "";
@@ -70,14 +70,14 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
     if (!window ||
         !(window->first >= last && window->second > window->first && window->second <= 1e12 * unit.time) ||
         !(window->count >= 2 && window->count <= most_samples)) {
-      arguments.refuse("--history", "must be T0:T1:N with " + number_text(last) + " <= T0 < T1 <= " +
+      arguments.reject("--history", "must be T0:T1:N with " + number_text(last) + " <= T0 < T1 <= " +
                                         number_text(1e12 * unit.time) + seconds + " and 2 to " +
                                         std::to_string(most_samples) + " samples, got " + in_quotes(text));
       continue;
     }
     const std::optional<double> end = file.scene.until_time;
     if (end && !(window->first / unit.time <= *end)) {
-      arguments.refuse("--history", "must begin before the end of the run, " +
+      arguments.reject("--history", "must begin before the end of the run, " +
                                         (file.scales ? "at " + rounded_text(*end * unit.time, 6) + seconds
                                                      : "--until-time " + number_text(*end)) +
                                         ", got " + in_quotes(text));
@@ -95,7 +95,7 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
       std::string wanted = "must be A:LENGTH:N with 0 < A < " + number_text(above_it) + millimetres;
       wanted += ", 0 < LENGTH <= " + number_text(1e12 * unit.time) + seconds;
       wanted += " and 2 to " + std::to_string(most_samples) + " samples, got " + in_quotes(text);
-      arguments.refuse("--history-below", wanted);
+      arguments.reject("--history-below", wanted);
       continue;
     }
     record.history_below.push_back({window->first / unit.length, window->second / unit.time, window->count});
@@ -131,19 +131,19 @@ int run(const CLI::App& app) {
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments, scene_file);
   const std::optional<std::string> file = arguments.file("--output");
-  arguments.refuse_overwriting("--output", file, {arguments.text("--scene").value_or("")});
+  arguments.reject_overwriting("--output", file, {arguments.text("--scene").value_or("")});
   const Format format = format_of(arguments, file, {Format::json, Format::csv});
   const bool in_si = arguments.flag("--si");
   if (format == Format::csv && !holds_one_table(record)) {
-    arguments.refuse(
+    arguments.reject(
         "--format",
         "csv is one table: record one of half_cycles, impacts, contacts and history, for instance by "
         "--record impacts");
   }
   if (in_si && format != Format::csv)
-    arguments.refuse("--si",
+    arguments.reject("--si",
                      "is for --format csv; a run file is dimensionless, its units say what a unit is in SI");
-  if (in_si && !scales) arguments.refuse("--si", "needs a scene in units, by --scene");
+  if (in_si && !scales) arguments.reject("--si", "needs a scene in units, by --scene");
   arguments.finish();
   if (file) {
     require_writable(*file);
@@ -215,9 +215,9 @@ Command run_command(CLI::App& program) {
       "  impact-damper run --scene data/examples/mast.json --record history --history 0:2:401 \\\n"
       "    --format csv --si -o mast.csv\n\n"
       "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there, and\n"
-      "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not admitted, 3 "
+      "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not valid, 3 "
       "the scene\n"
-      "file's content is not admitted, 4 numerical failure, 5 the scene file cannot be read or\n"
+      "file's content is not valid, 4 numerical failure, 5 the scene file cannot be read or\n"
       "the run cannot be written.");
   return {app, [app] { return run(*app); }};
 }

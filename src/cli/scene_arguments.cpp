@@ -31,8 +31,8 @@ Budget budget_of(Arguments& arguments) {
   return budget;
 }
 
-// Options that only some engines have; with another they would be ignored, so they are refused.
-void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
+// Options that only some engines have; with another they would be ignored, so they are rejected.
+void reject_foreign_options(Arguments& arguments, std::string_view engine) {
   struct Own {
     const char* option;
     std::vector<std::string_view> engines;
@@ -53,7 +53,7 @@ void refuse_foreign_options(Arguments& arguments, std::string_view engine) {
       continue;
     std::string list;
     for (const std::string_view name : own.engines) list += (list.empty() ? "" : " or ") + std::string(name);
-    arguments.refuse(own.option,
+    arguments.reject(own.option,
                      "is an option of --engine " + list + ", got --engine " + std::string(engine));
   }
 }
@@ -75,21 +75,21 @@ SceneFile scene_of(Arguments& arguments) {
   override_with("until_amplitude", scene.until_amplitude);
   if (!scene.until_time && !scene.until_amplitude) {
     if (all_read)
-      arguments.refuse("--until-time",
+      arguments.reject("--until-time",
                        "it, --until-amplitude or both must be given: when is the run to stop?");
     return file;
   }
   for (const Problem& problem : problems_of(scene))
-    arguments.refuse(option_of(problem.field), problem.message);
+    arguments.reject(option_of(problem.field), problem.message);
   return file;
 }
 
 Engine engine_of(Arguments& arguments) {
   const std::vector<std::string_view> names{Exact::name, Restitution::name, Cem::name};
   const std::optional<std::size_t> chosen = arguments.word("--engine", names);
-  if (!chosen && arguments.given("--engine")) return {};  // refused; which options belong to it is unknown
+  if (!chosen && arguments.given("--engine")) return {};  // rejected; which options belong to it is unknown
   const std::string_view name = names[chosen.value_or(0)];
-  refuse_foreign_options(arguments, name);
+  reject_foreign_options(arguments, name);
 
   const Budget budget = budget_of(arguments);
   const Calibration calibration = arguments.choice(
@@ -160,7 +160,7 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
        "--max-steps");
 }
 
-void refuse_as_options(const std::invalid_argument& problems) {
+void reject_as_options(const std::invalid_argument& problems) {
   std::istringstream lines(problems.what());
   std::string text;
   for (std::string line; std::getline(lines, line);) {

@@ -14,7 +14,7 @@ namespace impact_damper::cli {
 void add_scene_options(CLI::App& app);
 void add_engine_options(CLI::App& app);
 
-// The scene of --scene and the options beside it, which win; what is not admitted is noted in `arguments`.
+// The scene of --scene and the options beside it, which win; what is not valid is noted in `arguments`.
 // Throws InputError and IoError about the file.
 SceneFile scene_of(Arguments& arguments);
 Engine engine_of(Arguments& arguments);
@@ -25,14 +25,14 @@ void warn_of_cautions(const std::string& command, const Scene& scene, const std:
 // where the run got to, and the option that raises it.
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
-// What simulate() refuses, naming fields, as a UsageError that names the options.
-[[noreturn]] void refuse_as_options(const std::invalid_argument& problems);
+// What simulate() rejects, naming fields, as a UsageError that names the options.
+[[noreturn]] void reject_as_options(const std::invalid_argument& problems);
 template <class Simulate>
 auto saying_options(Simulate&& simulate_something) {
   try {
     return simulate_something();
   } catch (const std::invalid_argument& problems) {
-    refuse_as_options(problems);
+    reject_as_options(problems);
   }
 }
 

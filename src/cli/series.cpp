@@ -37,7 +37,7 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
       std::string known;
       for (const std::string_view number : numbers)
         known += (known.empty() ? "" : ", ") + std::string(number);
-      arguments.refuse("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
+      arguments.reject("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
     }
   }
   return figures;
@@ -70,7 +70,7 @@ void load(const Figure& figure, const SceneRuns& folders, FigureRuns& runs) {
 
 int make_tables(Arguments arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
-  if (!arguments.given("--runs")) arguments.refuse("--runs", "must be given: the folder of run files");
+  if (!arguments.given("--runs")) arguments.reject("--runs", "must be given: the folder of run files");
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto output = arguments.file("--output");
   const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
@@ -81,12 +81,12 @@ int make_tables(Arguments arguments) {
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
   const bool into_folder = output && fs::is_directory(*output);
   if (!into_folder && figures.size() != 1) {
-    arguments.refuse("--output", "must be an existing folder if more than one table is made, got " +
+    arguments.reject("--output", "must be an existing folder if more than one table is made, got " +
                                      (output ? in_quotes(*output) : "none"));
   }
   std::vector<fs::path> inputs{catalogue_file};
   for (const CatalogueScene& scene : catalogue.scenes) inputs.push_back(folders.file_of(scene.name));
-  arguments.refuse_overwriting("--output", output, inputs);
+  arguments.reject_overwriting("--output", output, inputs);
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
 
@@ -143,7 +143,7 @@ Command series_command(CLI::App& program) {
       "an\n"
       "empty cell is no number, a row without numbers interrupts the line.\n"
       "A run that is missing, too short, altered, of another scene or of another engine than the others is\n"
-      "refused with the figure's and the file's name.\n\n"
+      "rejected with the figure's and the file's name.\n\n"
       "Examples:\n"
       "  impact-damper series --runs build/runs/exact --figure 8\n"
       "  impact-damper series --runs build/runs/exact -o build/series/exact\n"

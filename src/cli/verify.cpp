@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 struct Verified {
   const Claim* claim;
   Spread ours;
+  NamedSpreads also;  // the further numbers that the words show
   std::string words;  // the same in the statement's terms
   Verdict verdict;
   Verdict recorded = Verdict::reproduced;
@@ -38,13 +39,16 @@ struct Verified {
 // Four significant digits, for people; the verdict file has all of them.
 std::string brief(double value) { return rounded_text(value, 4); }
 
-std::string admitted_text(const Claim& claim) {
-  const auto& [printed, below, above, reason] = claim.admitted;
+std::string allowed_text(const Claim& claim) {
+  const auto& [printed, below, above, reason] = claim.allowed;
   const auto& [least, most] = printed;
   if (least && most && *least == *most) return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
   if (least && most) return brief(*least - below) + " to " + brief(*most + above);
   return least ? ">= " + brief(*least - below) : "<= " + brief(*most + above);
 }
+
+// What stands in the columns of a statement that is open.
+constexpr const char *not_measured = "not measured", *open_word = "open";
 
 // Characters, not bytes: claims are written in UTF-8.
 std::size_t width(const std::string& text) {
@@ -52,13 +56,15 @@ std::size_t width(const std::string& text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::string table_text(const std::vector<Verified>& all) {
+std::string table_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::vector<std::vector<std::string>> rows{
-      {"claim", "paper", "admitted", "ours (median, extremes of the ensemble)", "verdict"}};
+      {"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
-    rows.push_back({each.claim->id, each.claim->printed, admitted_text(*each.claim), each.words,
+    rows.push_back({each.claim->id, each.claim->printed, allowed_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
                         (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
+  for (const OpenStatement& each : open)
+    rows.push_back({each.id, each.printed, not_measured, not_measured, open_word});
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
@@ -73,7 +79,13 @@ std::string table_text(const std::vector<Verified>& all) {
   return text;
 }
 
-std::string summary_text(const std::vector<Verified>& all) {
+std::string open_text(const std::vector<OpenStatement>& open) {
+  if (open.empty()) return "";
+  return "; besides, " + std::to_string(open.size()) +
+         (open.size() == 1 ? " statement of the paper is open" : " statements of the paper are open");
+}
+
+std::string summary_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::size_t count[4] = {}, changed = 0, our_own = 0;
   for (const Verified& each : all) {
     ++count[static_cast<std::size_t>(each.verdict)];
@@ -84,7 +96,8 @@ std::string summary_text(const std::vector<Verified>& all) {
          std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected, " +
          std::to_string(count[3]) + " derived; " +
          (our_own > 0 ? std::to_string(our_own) + " of them are ours, not the paper's; " : "") +
-         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + "\n";
+         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + open_text(open) +
+         "\n";
 }
 
 std::string cell(std::string text) {  // of a Markdown table
@@ -92,17 +105,22 @@ std::string cell(std::string text) {  // of a Markdown table
   return text;
 }
 
-std::string markdown_text(const std::vector<Verified>& all, const std::string& engine) {
+std::string markdown_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open,
+                          const std::string& engine) {
   std::string text =
-      "| id | section | claim | paper | ours | admitted | because | verdict "
+      "| id | section | claim | paper | ours | allowed | because | verdict "
       "|\n|---|---|---|---|---|---|---|---|\n";
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
     text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
-            cell(claim.printed) + " | " + cell(each.words) + " | " + admitted_text(claim) + " | " +
-            cell(claim.admitted.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
+            cell(claim.printed) + " | " + cell(each.words) + " | " + allowed_text(claim) + " | " +
+            cell(claim.allowed.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
   }
-  text += "\n" + summary_text(all);
+  for (const OpenStatement& each : open)
+    text += "| " + each.id + " | " + cell(each.section) + " | " + cell(each.statement) + " | " +
+            cell(each.printed) + " | " + not_measured + " | " + not_measured + " | " +
+            cell(each.explanation) + " | " + open_word + " |\n";
+  text += "\n" + summary_text(all, open);
   for (const Verified& each : all) {
     const auto otherwise = each.claim->with_engine.find(engine);
     if (otherwise != each.claim->with_engine.end())
@@ -125,22 +143,44 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string verdicts_text(const std::vector<Verified>& all) {
-  const auto json_number = [](double value) {
+// "ours": 1, "low": 0.9, "high": 1.1
+std::string spread_json(const Spread& spread) {
+  const auto number = [](double value) {
     return std::isfinite(value) ? number_text(value) : std::string("null");
   };
+  return "\"ours\": " + number(spread.median) + ", \"low\": " + number(spread.low) +
+         ", \"high\": " + number(spread.high);
+}
+
+std::string also_json(const NamedSpreads& also) {
+  if (also.empty()) return "";
+  std::string text = ", \"also\": {";
+  const char* separator = "";
+  for (const auto& [name, spread] : also) {
+    text += separator + quoted(name) + ": {" + spread_json(spread) + '}';
+    separator = ", ";
+  }
+  return text + '}';
+}
+
+std::string verdicts_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
   std::string text = "{\"schema\": \"impact-damper/verdicts/1\",\n \"verdicts\": [";
   const char* separator = "\n";
   for (const Verified& each : all) {
     text += separator;
-    text += "  {\"claim\": " + quoted(each.claim->id) + ", \"ours\": " + json_number(each.ours.median) +
-            ", \"low\": " + json_number(each.ours.low) + ", \"high\": " + json_number(each.ours.high) +
+    text += "  {\"claim\": " + quoted(each.claim->id) + ", " + spread_json(each.ours) + also_json(each.also) +
             ", \"words\": " + quoted(each.words) +
             ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
             ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
     separator = ",\n";
   }
-  return text + "\n ]}\n";
+  text += "\n ]";
+  separator = ",\n \"open\": [";
+  for (const OpenStatement& each : open) {
+    text += separator + quoted(each.id);
+    separator = ", ";
+  }
+  return text + (open.empty() ? "}\n" : "]}\n");
 }
 
 std::set<std::string> scenes_of(const Claim& claim) {
@@ -188,19 +228,20 @@ int verify(Arguments arguments) {
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
-  refuse_csv_name(arguments, verdicts_file, "the verdicts as JSON");
+  reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
   if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
-    arguments.refuse("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
+    arguments.reject("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
   arguments.finish();
 
-  const std::vector<Claim> claims = read_claims(claims_file);
+  const ClaimsFile read = read_claims_file(claims_file);
+  const std::vector<Claim>& claims = read.claims;
   if (catalogue) check_catalogue(*catalogue, claims);
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
     for (const std::string& scene : scenes_of(claim)) inputs.push_back(folders.file_of(scene));
-  arguments.refuse_overwriting("--output", verdicts_file, inputs);
-  arguments.refuse_overwriting("--markdown", markdown_file, inputs);
+  arguments.reject_overwriting("--output", verdicts_file, inputs);
+  arguments.reject_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
   for (const auto& file : {verdicts_file, markdown_file})
     if (file) require_writable(*file);
@@ -220,20 +261,22 @@ int verify(Arguments arguments) {
       told = now;
     }
     try {
-      NamedSpreads spreads{{"", measure(runs, claim.measure)}};
-      for (const auto& [name, call] : claim.also) spreads[name] = measure(runs, call);
-      const Spread ours = spreads.at("");
-      all.push_back({&claim, ours, in_words(claim.words, spreads), judge(claim, ours.median)});
+      NamedSpreads also;
+      for (const auto& [name, call] : claim.also) also[name] = measure(runs, call);
+      NamedSpreads spreads = also;
+      const Spread ours = spreads[""] = measure(runs, claim.measure);
+      all.push_back(
+          {&claim, ours, std::move(also), in_words(claim.words, spreads), judge(claim, ours.median)});
     } catch (const std::invalid_argument& problem) {
       throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
     }
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
-  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all));
-  if (markdown_file) write_file(*markdown_file, markdown_text(all, engine));
-  write_standard_output(table_text(all) + "\n" + (engine.empty() ? "" : "engine " + engine + ", ") +
-                        summary_text(all));
+  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all, read.open));
+  if (markdown_file) write_file(*markdown_file, markdown_text(all, read.open, engine));
+  write_standard_output(table_text(all, read.open) + "\n" +
+                        (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 
@@ -254,12 +297,12 @@ Command verify_command(CLI::App& program) {
   app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
   add_threads_option(*app);
   app->footer(
-      "Prints one line for each claim: what the paper prints, what is admitted, what comes out here (median\n"
-      "and extremes over an ensemble of minutely different releases), and the verdict on the median:\n"
+      "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
+      "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
       "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
       "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
       "is\n"
-      "of another scene or engine than the others is refused.\n\n"
+      "of another scene or engine than the others is rejected.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");

@@ -4,7 +4,7 @@
 // The compiler and whatever runs in the same process can take that away: -ffast-math and its parts,
 // contraction to fused multiply-add, arithmetic in x87 registers; a rounding mode that a library left behind;
 // denormal numbers flushed to zero, as the start-up code does that g++ and clang++ link into a program built
-// with -ffast-math, whatever its libraries were built with. What the preprocessor can see is refused at
+// with -ffast-math, whatever its libraries were built with. What the preprocessor can see is rejected at
 // compile time, in whatever includes an engine; the rest by require_arithmetic().
 #pragma once
 

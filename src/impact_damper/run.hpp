@@ -80,7 +80,7 @@ struct EnergyLedger {
 };
 
 // Rows that a section of a run may be asked to have at most; samples that a history may be: with everything
-// that the default budgets admit beside them they take less than 200 MB, and their file can be read
+// that the default budgets allow beside them they take less than 200 MB, and their file can be read
 // (run_file.hpp).
 inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
 

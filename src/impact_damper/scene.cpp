@@ -28,7 +28,7 @@ const std::array<SceneField, 10> scene_fields{{
 std::vector<Problem> problems_of(const Scene& scene) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range) {
-    if (range.admits(value)) return;
+    if (range.allows(value)) return;
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
   for (const SceneField& field : scene_fields) {

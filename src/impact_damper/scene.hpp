@@ -31,12 +31,12 @@ struct Scene {
 };
 
 // One number of a scene: its name at every border (JSON key; option name with '-' for '_'), where it
-// is kept, and which values it admits. Readers, writers and checks all go through this table,
+// is kept, and which values it allows. Readers, writers and checks all go through this table,
 // but for the two stops.
 struct SceneField {
   std::string_view name;
   double Scene::*member;
-  double least, most;  // both admitted
+  double least, most;  // both allowed
   std::string_view meaning;
 };
 extern const std::array<SceneField, 10> scene_fields;

@@ -8,10 +8,10 @@ namespace impact_damper {
 
 // Runs `scene` with `engine`, recording what `record` asks for.
 // Throws std::invalid_argument naming every problem if the scene, the engine's options or the record
-// are not admitted (an unstable time step of the component element method among them), and NumericalError
-// (files/errors.hpp) where that method overflows, where a closed form's next event is too long to search for (no
-// call takes more than a few seconds with the default budget), and where this process's arithmetic cannot give
-// the promised bits (arithmetic.hpp).
+// are not valid (an unstable time step of the component element method among them), and NumericalError
+// (files/errors.hpp) where that method overflows, where a closed form's next event is too long to search for
+// (no call takes more than a few seconds with the default budget), and where this process's arithmetic cannot
+// give the promised bits (arithmetic.hpp).
 Run simulate(const Scene& scene, const Engine& engine, const Record& record);
 
 }  // namespace impact_damper

@@ -78,8 +78,8 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
   }
   for (const UnitField& field : unit_fields) {
     const std::optional<double>& value = scene.*field.member;
-    const NumberRange range{field.least, field.most, field.least_is_admitted};
-    if (value && !range.admits(*value))
+    const NumberRange range{field.least, field.most, field.least_is_allowed};
+    if (value && !range.allows(*value))
       problems.push_back(
           {std::string(field.name), range.describe("must be") + ", got " + number_text(*value)});
   }

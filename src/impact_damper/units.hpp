@@ -68,14 +68,14 @@ struct SceneInUnits {
   std::optional<double> until_seconds, until_millimetres;  // stops; one of them at least
 };
 
-// One number of it: its name, which is its JSON key, where it is kept, which values it admits and what it is.
+// One number of it: its name, which is its JSON key, where it is kept, which values it allows and what it is.
 // Limits are such that no scale over- or underflows.
 struct UnitField {
   std::string_view name;
   std::optional<double> SceneInUnits::*member;
-  double least;              // smallest admitted value
-  bool least_is_admitted;    // false: strictly above
-  double most;               // largest admitted value, admitted
+  double least;              // smallest allowed value
+  bool least_is_allowed;     // false: strictly above
+  double most;               // largest allowed value, allowed
   std::string_view unit;     // "" for a ratio
   std::string_view becomes;  // the field of Scene that is made of it; "" where it only scales
   bool also_dimensionless;   // has the same name and meaning in a dimensionless scene
@@ -84,7 +84,7 @@ struct UnitField {
 extern const std::array<UnitField, 16> unit_fields;
 
 // What is wrong with it, as problems_of(Scene): what is missing, out of range, given twice, or makes a Scene
-// that is not admitted. Empty means that the two functions below may be called.
+// that is not valid. Empty means that the two functions below may be called.
 std::vector<Problem> problems_of(const SceneInUnits& scene);
 
 Scales scales_of(const SceneInUnits& scene);

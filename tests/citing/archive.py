@@ -134,7 +134,7 @@ with (COPY / "src/impact_damper/run.cpp").open("a") as file:
     file.write("\n")
 wanted(f'.commit = "{commit}-dirty"'.encode() in provenance(COPY), "a changed source is not told")
 
-# What is refused, and leaves the archive as it was.
+# What is rejected, and leaves the archive as it was.
 for what, told in (("changed", " M src/impact_damper/run.cpp"), ("surplus", "?? surplus.txt")):
     done = run(COPY / "paper/archive", BUILD, HOME=str(FOLDER))
     wanted(done.returncode == 1 and told in done.stderr, f"{what}: exit code {done.returncode}: {done.stderr}")
@@ -145,7 +145,7 @@ for what, told in (("changed", " M src/impact_damper/run.cpp"), ("surplus", "?? 
 (BUILD / "paper/report.pdf").unlink()
 done = run(COPY / "paper/archive", BUILD, HOME=str(FOLDER))
 wanted(done.returncode == 1 and "report.pdf is missing: make paper" in done.stderr, f"no report: {done.stderr}")
-wanted(first.read_bytes() == bytes_of_first, "a refusal has changed the archive")
+wanted(first.read_bytes() == bytes_of_first, "a rejection has changed the archive")
 
 # Without room: the old one stays, nothing unfinished, not even of a process that was killed.
 (BUILD / "paper/report.pdf").write_text("another report\n")

@@ -1,5 +1,5 @@
-"""The schemas of data/schema/ and the program admit the same files, but for what manifest.txt says no schema can
-express: the corpus, the project's own files, a fresh run of each engine, and whatever becomes of the admitted ones
+"""The schemas of data/schema/ and the program allow the same files, but for what manifest.txt says no schema can
+express: the corpus, the project's own files, a fresh run of each engine, and whatever becomes of the allowed ones
 of the corpus if one value after the other is changed, left out or doubled.
 
     agree.py PROGRAM SOURCE FOLDER      FOLDER is for the changed files
@@ -33,13 +33,13 @@ def validator(kind):
 VALIDATORS = {kind: validator(kind) for kind in KINDS}
 
 
-def refuse_constant(word):
+def reject_constant(word):
     raise ValueError(word)
 
 
-def schema_admits(kind, file):
+def schema_allows(kind, file):
     try:
-        value = json.loads(file.read_bytes().decode("utf-8-sig"), parse_constant=refuse_constant)
+        value = json.loads(file.read_bytes().decode("utf-8-sig"), parse_constant=reject_constant)
         json.dumps(value, ensure_ascii=False).encode()  # half a surrogate is no character
     except (ValueError, RecursionError):
         return False
@@ -183,20 +183,20 @@ def main():
     faults, exceptions = [], 0
     for kind in KINDS:
         for file in own[kind]:
-            if not schema_admits(kind, file):
-                faults.append(f"{file}: refused by the {kind} schema")
+            if not schema_allows(kind, file):
+                faults.append(f"{file}: rejected by the {kind} schema")
         said = complaints(kind, files[kind] + own[kind])
-        faults += [f"refused: {line}" for file in own[kind] for line in said[str(file)]]
+        faults += [f"rejected: {line}" for file in own[kind] for line in said[str(file)]]
         for count, file in enumerate(files[kind]):
             if count % 2000 == 1999:
                 print(f"{kind}: {count + 1} of {len(files[kind])}", file=sys.stderr, flush=True)
             lines = said[str(file)]
             beyond_schemas = all(any(each.search(line) for each in inexpressible) for line in lines)
             exceptions += bool(lines) and beyond_schemas
-            admitted = schema_admits(kind, file)
-            if admitted != beyond_schemas:
-                faults.append(f"the {kind} schema {'admits' if admitted else 'refuses'} {file}, of which the program says: {lines}")
-    print(f"{exceptions} refused for what no schema can express, {len(faults)} faults")
+            allowed = schema_allows(kind, file)
+            if allowed != beyond_schemas:
+                faults.append(f"the {kind} schema {'allows' if allowed else 'rejects'} {file}, of which the program says: {lines}")
+    print(f"{exceptions} rejected for what no schema can express, {len(faults)} faults")
     for fault in faults[:20]:
         print(fault[:600])
     if not faults:

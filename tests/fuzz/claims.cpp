@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const Claim& claim : *claims) {
     fuzz::require(std::ranges::count(measures(), claim.measure.name, &Measure::name) == 1);
     fuzz::require(judge(claim, std::numeric_limits<double>::quiet_NaN()) == Verdict::not_reproduced);
-    const std::optional<double>& least = claim.admitted.printed.least;
+    const std::optional<double>& least = claim.allowed.printed.least;
     if (least) fuzz::require(judge(claim, *least) != Verdict::not_reproduced);
   }
   return 0;

@@ -15,7 +15,7 @@ inline void require(bool holds) {
   if (!holds) std::abort();
 }
 
-// What `parse` makes of the bytes; absent if it refuses them, which it may with InputError only, in lines of
+// What `parse` makes of the bytes; absent if it rejects them, which it may with InputError only, in lines of
 // their own that begin with the file's name.
 template <typename Parse>
 auto read(Parse parse, const std::uint8_t* data, std::size_t size)

@@ -1,4 +1,4 @@
-// What is read as a scene is written as one that reads as the same; what is not is refused in words.
+// What is read as a scene is written as one that reads as the same; what is not is rejected in words.
 #include "fuzz.hpp"
 #include "impact_damper/files/scene_file.hpp"
 

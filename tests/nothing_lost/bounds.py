@@ -1,7 +1,7 @@
 """Scenes and wishes beyond all bounds: each ends soon and below 200 MB, by a stop reason or an error.
 
 Soon is measured as processor time, and with room for a slow machine and an unoptimised build; memory is the
-largest resident set. First cases that are known to be hard, then scenes drawn at random from all that is admitted.
+largest resident set. First cases that are known to be hard, then scenes drawn at random from all that is allowed.
 """
 
 import os
@@ -67,7 +67,7 @@ class Bounds:
                 self.check(done.returncode == 0, f"{' '.join(command)}: cannot be read: {done.stderr}")
             out.unlink()
 
-    def refuses(self, words, command, codes=(2,)):
+    def rejects(self, words, command, codes=(2,)):
         if self.leaves_out(command):
             return
         said = self.run([*command, "-o", "out.json"], codes)
@@ -85,8 +85,8 @@ def known(b, tree):
     for engine in ("exact", "restitution", "cem"):
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--force-amplitude", "0.1"])
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--restitution", "1", "--x0", "1e-3"])
-        b.refuses("must be <= 10000000", [*FOR_EVER, *EVERYTHING, "--engine", engine, "--max-impacts", "1000000000"])
-        b.refuses("must be <= 10000000", [*FOR_EVER, "--engine", engine, "--max-half-cycles", "1000000000"])
+        b.rejects("must be <= 10000000", [*FOR_EVER, *EVERYTHING, "--engine", engine, "--max-impacts", "1000000000"])
+        b.rejects("must be <= 10000000", [*FOR_EVER, "--engine", engine, "--max-half-cycles", "1000000000"])
         # No impact at all, no half cycle, nothing that is recorded.
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--x0", "0.01", "--y0", "0.5"])
         b.stops(BUDGETS, [*FOR_EVER, "--record", "contacts", "--engine", engine, "--x0", "0.01", "--y0", "0.5"])
@@ -99,17 +99,17 @@ def known(b, tree):
         b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--engine", engine, "--mass-ratio", "1e-9"])
         b.stops([*BUDGETS, "time"], ["run", "--until-time", "3e5", *EVERYTHING, "--engine", engine,
                                      "--force-amplitude", "0.05"])
-        b.refuses("--mass-ratio: must be >= 1e-09", [*FOR_EVER, "--engine", engine, "--mass-ratio", "5e-324"])
+        b.rejects("--mass-ratio: must be >= 1e-09", [*FOR_EVER, "--engine", engine, "--mass-ratio", "5e-324"])
         b.stops([*BUDGETS, "amplitude"], ["run", "--until-amplitude", "1e-300", *EVERYTHING, "--engine", engine])
 
-    # A history of 1e12 points; and the longest that is admitted.
+    # A history of 1e12 points; and the longest that is allowed.
     for points in ("1000000000000", "100000000", "500001"):
-        b.refuses("samples", ["run", "--until-time", "10", "--history", f"0:10:{points}"])
-        b.refuses("samples", ["run", "--until-time", "10", "--history-below", f"5:10:{points}"])
-    b.refuses("--history: must ask for at most 500000 samples in all",
+        b.rejects("samples", ["run", "--until-time", "10", "--history", f"0:10:{points}"])
+        b.rejects("samples", ["run", "--until-time", "10", "--history-below", f"5:10:{points}"])
+    b.rejects("--history: must ask for at most 500000 samples in all",
               ["run", "--until-time", "10", "--history", "0:1:300000", "--history", "1:2:300000"])
     b.stops(["time"], ["run", "--until-time", "50", *EVERYTHING, "--history", "0:50:500000"])
-    # As much as the default budgets admit of everything at once: about 100 MB.
+    # As much as the default budgets allow of everything at once: about 100 MB.
     b.stops(BUDGETS, [*FOR_EVER, *EVERYTHING, "--history", "0:50000:500000", "--force-amplitude", "0.1"], read=True)
 
     # Steps of the component element method, whose squares may underflow.
@@ -123,14 +123,14 @@ def known(b, tree):
     runs, claims = str(tree / "build" / "runs" / "exact"), str(scratch.SOURCE / "data" / "claims.json")
     verify = ["verify", "--runs", runs, "--claims", claims, "--scenes", str(scratch.SOURCE / "data" / "scenes")]
     for members in ("1000000000", "10000", "101"):
-        b.refuses("--members: must be a whole number >= 1 and <= 100", [*verify, "--members", members])
+        b.rejects("--members: must be a whole number >= 1 and <= 100", [*verify, "--members", members])
     for threads in ("0", "-1", "100000", "1e9", "99999999999999999999"):
-        b.refuses("--threads: must be a whole number >= 1 and <= 1024", [*verify, "--threads", threads])
+        b.rejects("--threads: must be a whole number >= 1 and <= 1024", [*verify, "--threads", threads])
     b.run([*verify, "--members", "100", "--threads", "1024"], [0, 1])
 
 
 def drawn(choose):
-    """Options of a run, over all that is admitted."""
+    """Options of a run, over all that is allowed."""
     def size(low, high):
         return repr(10 ** choose.uniform(low, high))
     engine = choose.choice(["exact", "exact", "restitution", "cem"])

@@ -84,9 +84,9 @@ FAULTS = {
 
     "never ends": (
         BEFORE, "while :; do :; done", [([*SHORTEST, "0:1:300000", "--seconds", "1"], "exit code -24 after")]),
-    "takes more memory than is admitted": (
+    "takes more memory than is allowed": (
         BEFORE, "head -c 260000000 /dev/zero | tail -c 260000000 >/dev/null", [([*SHORTEST, "0:1:300000"], "MB")]),
-    "begins what it should refuse": (
+    "begins what it should reject": (
         BEFORE, 'for argument; do\n  shift\n  case $argument in 1000000000*) argument=10 ;; esac\n'
         '  set -- "$@" "$argument"\ndone',
         [([*SHORTEST, "--max-impacts 1000000000"], "wrote a file")]),

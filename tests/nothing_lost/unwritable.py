@@ -45,7 +45,7 @@ class Programs:
     def drawing(self, stem):
         return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, scratch.VERSION]
 
-    def refused(self, command, words, **more):
+    def rejected(self, command, words, **more):
         """The command fails with exit code 5 and one line that holds the words."""
         done = subprocess.run(command, text=True, capture_output="stdout" not in more,
                               **({"stderr": subprocess.PIPE} if "stdout" in more else {}), **more)
@@ -58,19 +58,19 @@ class Programs:
 def devices(p):
     for command in (p.run("-o", "/dev/full"), p.series("--figure", "7", "-o", "/dev/full"), p.report("-o", "/dev/full"),
                     p.verify("-o", "/dev/full"), p.verify("--markdown", "/dev/full")):
-        p.refused(command, ["/dev/full: cannot be written", FULL])
+        p.rejected(command, ["/dev/full: cannot be written", FULL])
     to_stdout = [p.run(), p.series("--figure", "7"), p.verify(), p.report(), [p.program, "scenes", str(p.tree / "data/scenes")],
                  [p.program, "figures", p.catalogue], [p.program, "--help"], [p.program, "run", "--help"],
                  [p.program, "--version"]]
     with open("/dev/full", "w") as full:
         for command in to_stdout:
-            p.refused(command, ["standard output: cannot be written", FULL], stdout=full)
+            p.rejected(command, ["standard output: cannot be written", FULL], stdout=full)
     for command in to_stdout:
-        p.refused(["sh", "-c", '"$0" "$@" >&-', *command], ["standard output: cannot be written"])
+        p.rejected(["sh", "-c", '"$0" "$@" >&-', *command], ["standard output: cannot be written"])
     # What is told is lost, what is written is not.
     verdicts = p.tree / "verdicts.json"
     with open("/dev/full", "w") as full:
-        p.refused(p.verify("-o", str(verdicts)), ["standard output"], stdout=full)
+        p.rejected(p.verify("-o", str(verdicts)), ["standard output"], stdout=full)
     p.check(verdicts.exists(), "verify with standard output on a full disk has lost its verdicts")
 
     # A reader that has seen enough: more than a pipe holds is written, and one line read.
@@ -148,7 +148,7 @@ def read_only_disk(p, here):
                           ("fig07.dat", p.series("--figure", "7", "-o", ".")),
                           ("verdicts.json", p.verify("-o", "verdicts.json")),
                           ("page.html", p.report("-o", "page.html")), ("./fig.", p.drawing("./fig"))):
-        p.refused(command, [file, "cannot be written", READ_ONLY], cwd=here)
+        p.rejected(command, [file, "cannot be written", READ_ONLY], cwd=here)
     p.check((here / "out.json").read_text() == "old\n", "a read-only file was changed")
     subprocess.run(["umount", str(here)], check=True)
 
@@ -188,7 +188,7 @@ def without_permission(p, here):
         return False
     for name, command in (("out.json", p.run("-o", "out.json")), ("page.html", p.report("-o", "page.html")),
                           ("./fig.", p.drawing("./fig"))):
-        p.refused(nobody + command, [name, "cannot be written", DENIED], cwd=here)
+        p.rejected(nobody + command, [name, "cannot be written", DENIED], cwd=here)
     return True
 
 

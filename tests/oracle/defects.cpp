@@ -158,7 +158,7 @@ TEST_CASE("cem knows from the first step to which side a force moves a mass at r
   agrees(scene, Cem{.locate = true});
 }
 
-TEST_CASE("extreme mass ratios are refused, or give finite numbers") {
+TEST_CASE("extreme mass ratios are rejected, or give finite numbers") {
   Scene least;
   least.mass_ratio = 5e-324, least.until_time = 10;
   CHECK(!problems_of(least).empty());
@@ -169,6 +169,6 @@ TEST_CASE("extreme mass ratios are refused, or give finite numbers") {
     Record record;
     record.impacts = record.contacts = record.energy = true;
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
-      CHECK_NOTHROW(run_text(simulate(scene, engine, record)));  // refuses what is not finite
+      CHECK_NOTHROW(run_text(simulate(scene, engine, record)));  // rejects what is not finite
   }
 }

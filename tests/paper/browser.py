@@ -93,7 +93,7 @@ class Report(unittest.TestCase):
             root = ElementTree.fromstring(svg)
             self.assertEqual([root.get(side) for side in ("width", "height")], root.get("viewBox").split()[2:])
             self.assertEqual(dict(tables), {} if number in "AB" else
-                             {f"{stem}.dat": (TABLES / f"{stem}.dat").read_text(encoding="utf-8")})
+                             {f"{stem}.csv": (TABLES / f"{stem}.csv").read_text(encoding="utf-8")})
 
     def test_every_curve_has_its_own_name(self):
         self.page.open(PAGE, WIDTHS["desk"])
@@ -171,7 +171,7 @@ class Report(unittest.TestCase):
 
     def test_curves_are_switched(self):
         self.page.open(PAGE, WIDTHS["desk"])
-        shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='rgb(213,  94,   0)']")]
+        shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='#d55e00']")]
           .map(each => getComputedStyle(each).visibility)"""
         self.assertEqual(set(self.page.does(shown)), {"visible"})
         button = '[...document.querySelectorAll("#figure-8 .switches button")].find(b => b.textContent === "ν = 4 %")'
@@ -204,7 +204,7 @@ class Report(unittest.TestCase):
         rows = """[...document.querySelectorAll(".claims tbody tr")].filter(row => !row.hidden)
           .map(row => [...row.cells].map(cell => cell.textContent))"""
         everything = self.page.does(rows)
-        for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
+        for verdict in ("reproduced", "not reproduced", "corrected", "derived", "open"):
             self.page.does(f"""[...document.querySelectorAll(".claims .switches button")]
               .find(b => b.textContent.match(/^\\d+ {verdict}$/)).click()""")
             self.assertEqual(self.page.does(rows), [row for row in everything if row[-1] == verdict], verdict)

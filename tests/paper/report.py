@@ -48,9 +48,9 @@ class TheText(unittest.TestCase):
         for fault in ("a loss of 0.339", "$\\nu = 0.02$", "$$A = 12$$", "31 percent", "in 3 runs", "the 10th",
                       "::: equation a\nA = 0.5\n:::\n", "$10^{-9} + 10$"):
             self.assertNotEqual(typed(fault), [], fault)
-        for admitted in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}", "$10^{-9}$",
+        for allowed in ("equation (9)", "equations (5) to (8)", "of 1987", "$2\\zeta x'^2$", "{{bench.s3|3}}", "$10^{-9}$",
                          "::: figure 8\nA\n:::\n", "::: equation a\n2\\zeta\n:::\n", "[reference 9](#reference-9)"):
-            self.assertEqual(typed(admitted), [], admitted)
+            self.assertEqual(typed(allowed), [], allowed)
 
 
 class TheReport(unittest.TestCase):
@@ -60,12 +60,16 @@ class TheReport(unittest.TestCase):
         changed = next(each for each in verdicts["verdicts"] if each["claim"] == "product-mid-range")
         said = f"{changed['ours']:.4g}"
         changed["ours"], changed["verdict"] = 0.4321, "reproduced"
+        beside = next(each for each in verdicts["verdicts"] if each["claim"] == "collapse-zeta")["also"]["worst"]
+        worst, beside["ours"] = f"{beside['ours']:.2g}", 77.0
         other = FOLDER / "verdicts.json"
         other.write_text(json.dumps(verdicts))
         after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
         sentence = r'the\s+result\s+here\s+is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
         self.assertEqual(re.search(sentence, before)[1], said)
         self.assertEqual(re.search(sentence, after)[1], "0.4321")
+        further = r'title="collapse-zeta.worst">([\d.]+)</span>'
+        self.assertEqual((re.search(further, before)[1], re.search(further, after)[1]), (worst, "77"))
         count = r'title="count.not-reproduced">(\d+)<'
         self.assertEqual(int(re.search(count, after)[1]), int(re.search(count, before)[1]) - 1)
         row = r'<tr id="claim-product-mid-range">.*?</tr>'
@@ -85,6 +89,16 @@ class TheReport(unittest.TestCase):
         [told] = set(re.findall(r'title="rate.rule">([\d.]+)<', page))
         self.assertEqual(told, "0.17")
 
+    def test_what_is_open_is_listed_and_is_no_claim(self):
+        page = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
+        stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))
+        for each in stated["open"]:
+            row = re.search(rf'<tr id="claim-{each["id"]}">.*?</tr>', page, re.S)[0]
+            self.assertIn(">not measured<", row)
+            self.assertIn('class="open">open<', row)
+        self.assertEqual(re.search(r'title="count.claims">(\d+)<', page)[1], str(len(stated["claims"])))
+        self.assertEqual(page.count('<tr id="claim-'), len(stated["claims"]) + len(stated["open"]))
+
     def test_what_claims_say_is_set(self):
         sys.path.insert(0, str(SOURCE / "paper/report"))
         from blocks import markdown
@@ -93,7 +107,8 @@ class TheReport(unittest.TestCase):
                              ("k = 1e+06", r"$k = 10^{6}$"), ("2 zeta and e = 0.6", r"$2\zeta$ and $e = 0.6$"),
                              ("5e-8 <b> * x_1", r"$5\times 10^{-8}$ \<b\> \* x\_1")):
             self.assertEqual(markdown(said), wanted)
-        for claim in json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))["claims"]:
+        stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))
+        for claim in stated["claims"] + stated["open"]:
             words = re.sub(r"\$[^$]*\$", "", markdown(claim["statement"]))
             self.assertNotRegex(words, r"\b(nu|eta|zeta|sqrt)\b|\^|_", claim["id"])
 
@@ -112,7 +127,7 @@ class TheReport(unittest.TestCase):
             feet = sorted(float(foot) for foot in re.findall(r'yMax="([\d.]+)"', words))
             self.assertGreater(feet[-2], 0.6 * height, f"page {page}: its lower third is empty")
 
-    def test_an_unknown_name_is_refused_and_nothing_is_written(self):
+    def test_an_unknown_name_is_rejected_and_nothing_is_written(self):
         copy = FOLDER / "source"
         shutil.rmtree(copy, ignore_errors=True)
         for part in ("paper", "data", "figures", "bench/results"):
@@ -120,7 +135,7 @@ class TheReport(unittest.TestCase):
         shutil.copy(SOURCE / "CMakeLists.txt", copy)
         text = copy / "paper/report/text.md"
         text.write_text(text.read_text(encoding="utf-8").replace("{{product-mid-range}}", "{{product-midrange}}"))
-        out = FOLDER / "refused"
+        out = FOLDER / "rejected"
         shutil.rmtree(out, ignore_errors=True)
         done = subprocess.run([copy / "paper/report/make.py", BUILD, "--html", "--verdicts", VERDICTS, "--out", out],
                               capture_output=True, text=True)

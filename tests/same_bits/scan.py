@@ -24,7 +24,7 @@ WORDS = {
     "an order of summation": r"\bstd::execution\b|\b(transform_)?reduce\(|#pragma omp|\batomic<double>",
     "another precision": r"\bfloat\b|\blong double\b|\b__float128\b|\bfma\(",
 }
-ADMITTED = {
+ALLOWED = {
     ("cli/main.cpp", "ostringstream"): "CLI11 writes its help into it, in the classic locale; no number of a result",
     ("cli/drawing.cpp", "environ"): "where gnuplot is looked for, and what it inherits; what it heeds is set (figures/draw)",
     ("cli/verify.cpp", "steady_clock"): "when to show progress on stderr",
@@ -34,7 +34,7 @@ ADMITTED = {
 
 
 def findings(folder: Path) -> list:
-    """What is not admitted, as text; also what is admitted, but no longer there."""
+    """What is not valid, as text; also what is allowed, but no longer there."""
     found, used = [], set()
     for path in sorted(path for path in folder.rglob("*") if path.suffix in (".cpp", ".hpp", ".in")):
         name = str(path.relative_to(folder))
@@ -42,12 +42,12 @@ def findings(folder: Path) -> list:
             code = re.sub(r'"(\\.|[^"\\])*"', '""', line).split("//")[0]
             for subject, words in WORDS.items():
                 for match in re.finditer(words, code):
-                    if (name, match[0]) in ADMITTED:
+                    if (name, match[0]) in ALLOWED:
                         used.add((name, match[0]))
                     else:
                         found.append(f"{name}:{number}: {match[0]}: depends on {subject}")
     if folder == SOURCE:
-        found += [f"{name}: {word} is admitted, but not there any more" for name, word in sorted(ADMITTED.keys() - used)]
+        found += [f"{name}: {word} is allowed, but not there any more" for name, word in sorted(ALLOWED.keys() - used)]
     return found
 
 

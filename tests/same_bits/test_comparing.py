@@ -210,7 +210,7 @@ class RenewingTheReference(InAFolder):
     def changelog(self):
         return (self.folder / "CHANGELOG.md").read_text()
 
-    def test_a_dirty_tree_is_refused_and_named(self):
+    def test_a_dirty_tree_is_rejected_and_named(self):
         self.verdicts("build", 1, 2)
         (self.folder / "CHANGELOG.md").write_text("typed")
         (self.folder / "new.txt").write_text("typed")
@@ -221,7 +221,7 @@ class RenewingTheReference(InAFolder):
         self.assertIn("?? new.txt", done.stderr)
         self.assertIn("0.33651", (self.folder / "data/reference/verdicts.json").read_text())
 
-    def test_what_is_in_no_repository_is_refused(self):
+    def test_what_is_in_no_repository_is_rejected(self):
         shutil.rmtree(self.folder / ".git")
         self.assertEqual(self.renew().returncode, 1)
 

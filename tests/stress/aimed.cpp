@@ -24,8 +24,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const char* name_of_engine(const Engine& engine) { return name_of(engine).data(); }
 
-Check about(const std::string& what, const std::string& admitted) {
-  return {.subject = "aimed", .what = what, .measured = {}, .admitted = admitted};
+Check about(const std::string& what, const std::string& allowed) {
+  return {.subject = "aimed", .what = what, .measured = {}, .allowed = allowed};
 }
 
 std::string in_full(const Scene& scene, const Engine& engine) {
@@ -174,7 +174,7 @@ Check within_a_rounding(const Options& options) {
       }
       if (run.stop_reason != StopReason::time) check.miss("did not reach its end; " + in_full(scene, engine));
       if (!(std::abs(run.energy->residual) <= closed_ledger))
-        check.miss("ledger open by " + rounded(run.energy->residual) + "; " + in_full(scene, engine));
+        check.miss("energy balance open by " + rounded(run.energy->residual) + "; " + in_full(scene, engine));
       // Nothing decays at such a mass ratio: every half cycle is the third again, but for impacts that
       // rounding adds or takes at the end of a bounce-down.
       const std::vector<std::int64_t>& each = run.half_cycles->impacts;
@@ -295,10 +295,10 @@ std::vector<Check> no_wall(const Options& options) {
 // The work that an event may take, counted in operations of the scalar: no clock, so that it is the same
 // everywhere. A few hundred to a few thousand are usual.
 Check crawling() {
-  constexpr double admitted = 1e6;
+  constexpr double allowed = 1e6;
   Check check =
       about("arithmetic operations for each search of an event, where nothing is easy to tell apart",
-            rounded(admitted));
+            rounded(allowed));
   Worst worst;
   const double least = std::numeric_limits<double>::denorm_min();
   struct Hard {
@@ -318,7 +318,7 @@ Check crawling() {
                                      counts.divisions + counts.other_arithmetic) /
                               double(counts.searches + 1);
     worst.take(operations);
-    if (!(operations <= admitted))
+    if (!(operations <= allowed))
       check.miss(rounded(operations) + " for each search; " + in_full(scene, Exact{}));
   }
   check.measured = rounded(worst);
@@ -329,7 +329,7 @@ Check crawling() {
 // one that rests on it.
 Check long_times() {
   Check check =
-      about("impacts and contacts up to t = 1e9: the ledger, order, the end", rounded(closed_ledger));
+      about("impacts and contacts up to t = 1e9: the energy balance, order, the end", rounded(closed_ledger));
   Worst worst;
   struct Slow {
     double x0, y0, w0, e, zeta;

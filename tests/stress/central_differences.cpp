@@ -139,7 +139,7 @@ std::vector<Check> growth_checks(const Options& options) {
   std::vector<Check> checks;
   const auto block = [&](const std::string& name, const std::string& what, const auto& closed_form,
                          const auto& growth_at) {
-    Check check{.subject = "central-differences", .what = what, .measured = {}, .admitted = {}};
+    Check check{.subject = "central-differences", .what = what, .measured = {}, .allowed = {}};
     table += "\n\n# " + name + "\nstep measured closed_form\n";
     Worst worst;
     for (const double f : by_limit) {
@@ -160,7 +160,7 @@ std::vector<Check> growth_checks(const Options& options) {
       table += rounded(f, 6) + " " + rounded(closed_form(f), 6) + "\n";
     }
     check.measured = rounded(worst);
-    check.admitted = "1e-3";
+    check.allowed = "1e-3";
     checks.push_back(check);
   };
   for (const Damper damper : {Damper::centred, Damper::lagged}) {
@@ -188,7 +188,7 @@ std::vector<Check> growth_checks(const Options& options) {
       Check check{.subject = "central-differences",
                   .what = name + ", in contact, e = " + rounded(e) + ": the stated limit, relative error",
                   .measured = rounded(limit_error),
-                  .admitted = "1e-9",  // the primary spring beside k
+                  .allowed = "1e-9",  // the primary spring beside k
                   .cases = 1};
       if (!(limit_error < 1e-9)) check.miss("stability_limit is off by " + rounded(limit_error));
       checks.push_back(check);
@@ -248,7 +248,7 @@ std::vector<Check> restitution_checks(const Options& options) {
     Check check{.subject = "central-differences",
                 .what = std::string(scheme.name) + ": order of the delivered restitution's error in the step",
                 .measured = rounded(order, 3),
-                .admitted = rounded(scheme.order) + " +- " + rounded(scheme.tolerance),
+                .allowed = rounded(scheme.order) + " +- " + rounded(scheme.tolerance),
                 .cases = points};
     if (!(std::abs(order - scheme.order) <= scheme.tolerance))
       check.miss("order " + rounded(order, 4) + ", error " + rounded(last) + " with the smallest step");

@@ -18,12 +18,12 @@ enum class Promise {
   ledger,          // closes
 };
 inline constexpr std::array<const char*, 6> promises{"finite",        "consistent",     "bounded",
-                                                     "between walls", "end on the dot", "ledger"};
+                                                     "between walls", "end on the dot", "energy balance"};
 
 struct Examined {
   std::array<std::string, promises.size()> broken;  // by Promise; empty: kept
   double outside = 0;   // farthest y beyond its side of a wall, by what rounding may do
-  double residual = 0;  // of the ledger
+  double residual = 0;  // of the energy balance
   bool all_kept() const;
 };
 

@@ -206,8 +206,8 @@ struct Tally {
 
 void write_histogram(const Options& options, const Tally& tally) {
   std::string text =
-      "# How many random scenes leave their ledger open by how much, by half decades.\n"
-      "# residual: upper end, by the energy that went through the ledger\n\n\n# residuals\n"
+      "# How many random scenes leave their energy balance open by how much, by half decades.\n"
+      "# residual: upper end, by the energy that went through the balance\n\n\n# residuals\n"
       "residual exact restitution\n";
   for (std::size_t i = 0; i < tally.histogram[0].size(); ++i)
     text += rounded(std::pow(10, double(i + 1) / 2 - decades), 4) + " " +
@@ -261,21 +261,21 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
       "the run ends by its time or its impacts, none of them found again and again",
       "0 <= y <= 1 in flight, beyond its wall in contact, by rounding",
       "a contact that the end of the run cuts ends with it",
-      "the ledger closes"};
+      "the energy balance closes"};
   for (std::size_t e = 0; e < 2; ++e) {
     for (std::size_t p = 0; p < promises.size(); ++p) {
       Check check = whole.checks[e][p];
       check.subject = "random";
       check.what = std::string(engine_names[e]) + ": " + sentences[p];
       check.measured = check.missed == 0 ? "all" : "not all";
-      check.admitted = "all";
+      check.allowed = "all";
       if (p == std::size_t(Promise::between_walls)) {
         check.measured = rounded(whole.outside[e]) + " roundings";
-        check.admitted = rounded(roundings_beyond_a_wall);
+        check.allowed = rounded(roundings_beyond_a_wall);
       }
       if (p == std::size_t(Promise::ledger)) {
         check.measured = rounded(whole.residual[e]);
-        check.admitted = rounded(closed_ledger);
+        check.allowed = rounded(closed_ledger);
       }
       checks.push_back(check);
     }
@@ -286,7 +286,7 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
       "distance of the first impacts from those on rigid walls: a tenth with 100 times the stiffness";
   check.measured =
       check.cases == 0 ? "-" : rounded(whole.least_ratio, 3) + " to " + rounded(whole.most_ratio, 3);
-  check.admitted = rounded(least_ratio) + " to " + rounded(most_ratio);
+  check.allowed = rounded(least_ratio) + " to " + rounded(most_ratio);
   checks.push_back(check);
   return checks;
 }

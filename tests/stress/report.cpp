@@ -29,10 +29,10 @@ std::string rounded(double value, int digits) { return printed("%.*g", digits, v
 std::string full(double value) { return printed("%.*g", 17, value); }
 
 std::string markdown(const std::vector<Check>& checks) {
-  std::string text = "| subject | what | cases | worst | admitted | misses |\n|---|---|---|---|---|---|\n";
+  std::string text = "| subject | what | cases | worst | allowed | misses |\n|---|---|---|---|---|---|\n";
   for (const Check& check : checks) {
     text += "| " + check.subject + " | " + cell(check.what) + " | " + std::to_string(check.cases) + " | " +
-            cell(check.measured) + " | " + cell(check.admitted) + " | " +
+            cell(check.measured) + " | " + cell(check.allowed) + " | " +
             (check.missed == 0 ? "none" : "**" + std::to_string(check.missed) + "**") + " |\n";
   }
   for (const Check& check : checks) {
@@ -51,7 +51,7 @@ std::string json(const std::vector<Check>& checks) {
                    {"what", check.what},
                    {"cases", check.cases},
                    {"measured", check.measured},
-                   {"admitted", check.admitted},
+                   {"allowed", check.allowed},
                    {"missed", check.missed},
                    {"misses", check.misses}});
   return nlohmann::ordered_json{{"schema", "impact-damper/stress/1"}, {"checks", all}}.dump(1) + "\n";

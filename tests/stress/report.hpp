@@ -13,7 +13,7 @@ struct Check {
   std::string subject;   // of the program's --only
   std::string what;      // a sentence
   std::string measured;  // the worst of all cases, as text
-  std::string admitted;
+  std::string allowed;
   std::int64_t cases = 0, missed = 0;
   std::vector<std::string> misses;  // the first ones: seed, numbers, scene
 

@@ -122,12 +122,12 @@ Exponents exponents_of(const Scene& scene, const std::vector<HalfCycle>& rows, S
   return result;
 }
 
-Check about(const std::string& what, const std::string& admitted) {
-  return {.subject = "sensitivity", .what = what, .measured = {}, .admitted = admitted};
+Check about(const std::string& what, const std::string& allowed) {
+  return {.subject = "sensitivity", .what = what, .measured = {}, .allowed = allowed};
 }
-void decide(Check& check, double error, double admitted, const std::string& which) {
+void decide(Check& check, double error, double allowed, const std::string& which) {
   ++check.cases;
-  if (!(error <= admitted)) check.miss(which + ": " + rounded(error, 4));
+  if (!(error <= allowed)) check.miss(which + ": " + rounded(error, 4));
 }
 
 Check free_flight() {

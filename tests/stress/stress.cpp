@@ -83,7 +83,7 @@ int run(const std::vector<std::string>& arguments) {
       for (const Check& check : subject.run(options)) checks.push_back(check);
     } catch (const std::exception& error) {
       Check check{
-          .subject = subject.name, .what = "runs to its end", .measured = {}, .admitted = {}, .cases = 1};
+          .subject = subject.name, .what = "runs to its end", .measured = {}, .allowed = {}, .cases = 1};
       check.miss(error.what());
       checks.push_back(check);
     }

@@ -430,7 +430,7 @@ class Examination {
     const bool same_sign = open * ledger.residual >= 0 || std::abs(open) <= rounded;
     require(same_sign && std::abs(open) <= size * most + rounded && std::abs(open) >= size * least - rounded,
             "/energy/residual",
-            got("what the terms of the ledger leave open, " + number_text(open) + ", by " +
+            got("what the terms of the energy balance leave open, " + number_text(open) + ", by " +
                     number_text(least) + (most > least ? " to " + number_text(most) : ""),
                 ledger.residual));
   }

@@ -41,7 +41,7 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
         1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
     const double shift = options.step * (drawn & 1 ? steps : -steps);
     const Scene shifted = scaled(scene, 1 + shift);
-    // Beyond the largest number that a scene admits there is none: then the other way.
+    // Beyond the largest number that a scene allows there is none: then the other way.
     const bool is_beyond = problems_of(shifted).size() > problems_of(scene).size();
     scenes.push_back(is_beyond ? scaled(scene, 1 - shift) : shifted);
   }

@@ -1,4 +1,4 @@
-// Ensembles: the same scene released minutely differently, many times.
+// Ensembles: the same scene with perturbed initial conditions, many times.
 //
 // Between amplitudes of about 3 and 0.4 the motion is chaotic: a last bit of the initial value decides the
 // third digit of an amplitude. A number that such a range enters is therefore the median over an ensemble,

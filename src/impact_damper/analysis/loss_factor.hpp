@@ -29,7 +29,7 @@ struct LossFactor {
 };
 
 // `peak_time` strictly ascending, `amplitude` positive, of equal length. Throws std::invalid_argument if
-// the columns or the options are not admitted.
+// the columns or the options are not valid.
 LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
                                 const LossFactorOptions& options = {});
 

@@ -7,8 +7,8 @@
 
 namespace impact_damper {
 
-// A file that was read but whose content is not admitted. Each problem is one whole line,
-// "FILE: /json/pointer: what is wrong, what is admitted, what was given"; what() joins them.
+// A file that was read but whose content is not valid. Each problem is one whole line,
+// "FILE: /json/pointer: what is wrong, what is allowed, what was given"; what() joins them.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<std::string> problems);

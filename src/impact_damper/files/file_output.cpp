@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 // A handler of signals may look at it at any time; empty: no file is being written.
 std::array<char, PATH_MAX> unfinished{};
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+[[noreturn]] void reject(const fs::path& file, const std::string& why) {
   throw IoError(file.string() + ": cannot be written: " + why);
 }
 
@@ -34,11 +34,11 @@ using Stream = std::unique_ptr<std::FILE, Close>;
 
 void write_directly(const fs::path& place, const char* mode, const fs::path& named, std::string_view text) {
   Stream stream(std::fopen(place.c_str(), mode));
-  if (!stream) refuse(named, std::strerror(errno));
+  if (!stream) reject(named, std::strerror(errno));
   const bool written = std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size();
-  if (!written || std::fflush(stream.get()) != 0) refuse(named, std::strerror(errno));
+  if (!written || std::fflush(stream.get()) != 0) reject(named, std::strerror(errno));
   // Some file systems find out only now.
-  if (std::fclose(stream.release()) != 0) refuse(named, std::strerror(errno));
+  if (std::fclose(stream.release()) != 0) reject(named, std::strerror(errno));
 }
 
 bool holds(const fs::path& file, std::string_view text) {
@@ -81,12 +81,12 @@ void remove_abandoned(const fs::path& place) {
 void require_writable(const fs::path& file) {
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
-  if (fs::is_directory(status)) refuse(file, "is a directory");
+  if (fs::is_directory(status)) reject(file, "is a directory");
   fs::path folder = file.parent_path();
   if (folder.empty()) folder = ".";
   const fs::path& place = fs::exists(status) ? file : folder;
-  if (::access(place.c_str(), W_OK) != 0) refuse(file, std::strerror(errno));
-  if (!fs::exists(status) && !fs::is_directory(folder)) refuse(file, std::strerror(ENOTDIR));
+  if (::access(place.c_str(), W_OK) != 0) reject(file, std::strerror(errno));
+  if (!fs::exists(status) && !fs::is_directory(folder)) reject(file, std::strerror(ENOTDIR));
 }
 
 bool write_file(const fs::path& file, std::string_view text) {
@@ -98,13 +98,13 @@ bool write_file(const fs::path& file, std::string_view text) {
     return true;
   }
   const fs::path place = fs::exists(status) ? fs::canonical(file, error) : fs::absolute(file, error);
-  if (error) refuse(file, error.message());
+  if (error) reject(file, error.message());
   remove_abandoned(place);
   if (fs::exists(status) && ::access(place.c_str(), R_OK) == 0 && holds(place, text)) return false;
 
   const fs::path temporary = place.parent_path() / (head_of_temporary(place) + std::to_string(::getpid()) +
                                                     std::string(tail_of_temporary));
-  if (temporary.native().size() >= unfinished.size()) refuse(file, std::strerror(ENAMETOOLONG));
+  if (temporary.native().size() >= unfinished.size()) reject(file, std::strerror(ENAMETOOLONG));
   std::memcpy(unfinished.data(), temporary.c_str(), temporary.native().size() + 1);
   try {
     fs::remove(temporary, error);
@@ -113,7 +113,7 @@ bool write_file(const fs::path& file, std::string_view text) {
     fs::rename(temporary, place);
   } catch (const fs::filesystem_error& failed) {
     remove_unfinished_file();
-    refuse(file, failed.code().message());
+    reject(file, failed.code().message());
   } catch (const IoError&) {
     remove_unfinished_file();
     throw;
@@ -130,7 +130,7 @@ void remove_unfinished_file() noexcept {
 void write_standard_output(std::string_view text) {
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0) refuse("standard output", std::strerror(errno));
+  if (!written || std::fflush(stdout) != 0) reject("standard output", std::strerror(errno));
 }
 
 }  // namespace impact_damper

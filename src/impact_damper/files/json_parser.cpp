@@ -57,7 +57,7 @@ class Builder : public nlohmann::json_sax<Json> {
     Level& level = stack_.back();
     level.key = name;
     const auto [place, added] = level.value->get_ref<Json::object_t&>().try_emplace(name);
-    if (!added) problems_.add(pointer(), "duplicate key, admitted is one value for each key");
+    if (!added) problems_.add(pointer(), "duplicate key, allowed is one value for each key");
     level.next = &place->second;
     return true;
   }
@@ -78,8 +78,8 @@ class Builder : public nlohmann::json_sax<Json> {
     std::string key;
   };
 
-  bool too_many(const std::string& what, std::size_t admitted) {
-    problems_.add({}, "too many " + what + ", admitted are " + std::to_string(admitted));
+  bool too_many(const std::string& what, std::size_t allowed) {
+    problems_.add({}, "too many " + what + ", allowed are " + std::to_string(allowed));
     return false;
   }
   bool count_part() {
@@ -101,7 +101,7 @@ class Builder : public nlohmann::json_sax<Json> {
 
   bool open(Json empty) {
     if (stack_.size() == deepest) {
-      problems_.add({}, "nested too deeply, admitted are " + std::to_string(deepest) + " levels");
+      problems_.add({}, "nested too deeply, allowed are " + std::to_string(deepest) + " levels");
       return false;
     }
     if (!count_part()) return false;
@@ -171,7 +171,7 @@ void JsonProblems::throw_if_any_or_unknown() const {
       const auto meant = nearest(item.key(), known);
       all.add(opened.pointer + '/' + json_token(item.key()),
               meant ? "unknown key, did you mean \"" + std::string(*meant) + "\"?"
-                    : "unknown key, admitted are: " + list(known));
+                    : "unknown key, allowed are: " + list(known));
     }
   }
   all.throw_if_any();
@@ -180,7 +180,7 @@ void JsonProblems::throw_if_any_or_unknown() const {
 bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
   // The parser takes it for the end of the text, whatever stands behind it.
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
-    problems.add({}, place_in(text, nul + 1) + ": a NUL, admitted in no JSON text");
+    problems.add({}, place_in(text, nul + 1) + ": a NUL, allowed in no JSON text");
     return false;
   }
   Builder builder(text, root, problems);

@@ -44,11 +44,11 @@ std::string described(const Json& value) {
   return "nothing";
 }
 
-// Each read_into says whether `value` is admitted, and only then writes the target.
+// Each read_into says whether `value` is allowed, and only then writes the target.
 bool read_into(double& target, const Json& value, const NumberRange& range) {
   if (!value.is_number()) return false;
   const double number = value.get<double>();
-  if (!range.admits(number)) return false;
+  if (!range.allows(number)) return false;
   target = number;
   return true;
 }
@@ -65,20 +65,20 @@ bool read_into(std::optional<double>& target, const Json& value, const NumberRan
 }
 
 bool read_into(std::int64_t& target, const Json& value, const NumberRange& range) {
-  // Whatever is not negative is kept as unsigned by the parser, so the upper half must be refused here.
+  // Whatever is not negative is kept as unsigned by the parser, so the upper half must be rejected here.
   if (!value.is_number_integer()) return false;
   if (value.is_number_unsigned() &&
       value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
     return false;
   }
   const auto number = value.get<std::int64_t>();
-  if (!range.admits(static_cast<double>(number))) return false;
+  if (!range.allows(static_cast<double>(number))) return false;
   target = number;
   return true;
 }
 
 bool read_into(std::string& target, const Json& value, const TextRule& rule) {
-  if (!value.is_string() || !rule.admits(value.get_ref<const std::string&>())) return false;
+  if (!value.is_string() || !rule.allows(value.get_ref<const std::string&>())) return false;
   target = value.get_ref<const std::string&>();
   return true;
 }
@@ -89,7 +89,7 @@ bool read_into(bool& target, const Json& value) {
   return true;
 }
 
-// What is admitted, in words, by the type of the target.
+// What is allowed, in words, by the type of the target.
 std::string wanted(const double&, const NumberRange& range, const Json&) {
   return range.describe("a number");
 }
@@ -100,13 +100,13 @@ std::string wanted(const std::int64_t&, const NumberRange& range, const Json& gi
   std::string words = range.describe("a whole number");
   if (!given.is_number_float()) return words;
   const auto number = given.get<double>();  // 3.0 and 3e0 are whole, but not written so
-  const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63 && range.admits(number);
+  const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63 && range.allows(number);
   return is_whole ? words + ", written without point or exponent" : words;
 }
 std::string wanted(const std::string&, const TextRule& rule, const Json&) { return rule.describe(); }
 
-[[noreturn]] void refuse_length(const std::string& name, const FileKind& kind, const std::string& given) {
-  throw InputError({name + ": too long, admitted are " + std::to_string(kind.most_bytes) + " bytes for a " +
+[[noreturn]] void reject_length(const std::string& name, const FileKind& kind, const std::string& given) {
+  throw InputError({name + ": too long, allowed are " + std::to_string(kind.most_bytes) + " bytes for a " +
                     std::string(kind.name) + ", got " + given});
 }
 
@@ -122,7 +122,7 @@ bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) !=
 
 }  // namespace
 
-bool TextRule::admits(std::string_view text) const {
+bool TextRule::allows(std::string_view text) const {
   const auto length = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
   if (length < least || length > most) return false;
   if (!is_name) return std::none_of(text.begin(), text.end(), is_control);
@@ -149,7 +149,7 @@ std::string read_text(const std::filesystem::path& file, const FileKind& kind) {
   std::string text;
   if (stream) {
     const auto size = std::filesystem::file_size(file, unknown);
-    if (!unknown && size > kind.most_bytes) refuse_length(name, kind, std::to_string(size));
+    if (!unknown && size > kind.most_bytes) reject_length(name, kind, std::to_string(size));
     // A pipe has no size, and a file may grow while it is read. Growing by doubling would need three times as
     // much memory; what is reserved and not written takes none.
     std::vector<char> part(1 << 16);
@@ -159,7 +159,7 @@ std::string read_text(const std::filesystem::path& file, const FileKind& kind) {
       stream.read(part.data(), static_cast<std::streamsize>(part.size()));
       text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
     }
-    if (text.size() > kind.most_bytes) refuse_length(name, kind, "more");
+    if (text.size() > kind.most_bytes) reject_length(name, kind, "more");
   }
   if (stream.bad() || !stream.is_open()) {
     throw IoError(name + ": cannot be read: " + std::strerror(errno ? errno : EIO));
@@ -220,11 +220,11 @@ bool ObjectReader::require(std::string_view key) {
   return false;
 }
 
-void ObjectReader::refuse(std::string_view key, std::string_view what) {
+void ObjectReader::reject(std::string_view key, std::string_view what) {
   problems_->add(pointer_to(key), what);
 }
 
-void ObjectReader::refuse(std::string_view key, std::size_t element, std::string_view what) {
+void ObjectReader::reject(std::string_view key, std::size_t element, std::string_view what) {
   problems_->add(pointer_to(key) + '/' + std::to_string(element), what);
 }
 
@@ -239,7 +239,7 @@ std::vector<std::string> ObjectReader::keys() {
 }
 
 bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {
-  refuse(key, "must be " + wanted + ", got " + described(given));
+  reject(key, "must be " + wanted + ", got " + described(given));
   return false;
 }
 
@@ -270,7 +270,7 @@ bool ObjectReader::optional(std::string_view key, std::string& target, TextRule 
 
 bool ObjectReader::too_long(std::string_view key, std::size_t most, const Json& array) {
   if (array.size() <= most) return false;
-  refuse(key, "must have at most " + std::to_string(most) + " elements, got " + std::to_string(array.size()));
+  reject(key, "must have at most " + std::to_string(most) + " elements, got " + std::to_string(array.size()));
   return true;
 }
 
@@ -284,7 +284,7 @@ bool ObjectReader::array(std::string_view key, std::vector<Element>& target, con
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (read_into(elements[i], (*value)[i], rule)) continue;
     all_read = false;
-    refuse(key, i, "must be " + wanted(elements[i], rule, (*value)[i]) + ", got " + described((*value)[i]));
+    reject(key, i, "must be " + wanted(elements[i], rule, (*value)[i]) + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
   return all_read;
@@ -312,7 +312,7 @@ bool ObjectReader::optional(std::string_view key, std::vector<std::string>& targ
   for (std::size_t i = 1; i < texts.size(); ++i) {
     const auto here = texts.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::find(texts.begin(), here, *here) == here) continue;
-    refuse(key, i, "must differ from those before it, got the string " + in_quotes(*here));
+    reject(key, i, "must differ from those before it, got the string " + in_quotes(*here));
     return false;
   }
   if (value) target = std::move(texts);
@@ -332,7 +332,7 @@ std::optional<std::size_t> ObjectReader::word(std::string_view key,
   const auto meant = value->is_string() && words.size() > at_a_glance
                          ? nearest(value->get_ref<const std::string&>(), words)
                          : std::nullopt;
-  refuse(key, meant ? "unknown, did you mean " + in_quotes(*meant) + "? Got " + described(*value)
+  reject(key, meant ? "unknown, did you mean " + in_quotes(*meant) + "? Got " + described(*value)
                     : "must be one of " + list + ", got " + described(*value));
   return std::nullopt;
 }
@@ -340,13 +340,13 @@ std::optional<std::size_t> ObjectReader::word(std::string_view key,
 std::optional<ObjectReader> ObjectReader::optional_object(std::string_view key) {
   const Json* const value = find(key);
   if (!value || value->is_null()) return std::nullopt;
-  if (!value->is_object()) refuse(key, "must be an object, got " + described(*value));
+  if (!value->is_object()) reject(key, "must be an object, got " + described(*value));
   return ObjectReader(problems_, pointer_to(key), value->is_object() ? value : nullptr);
 }
 
 ObjectReader ObjectReader::required_object(std::string_view key) {
   if (const auto object = optional_object(key)) return *object;
-  if (require(key)) refuse(key, "must be an object, got null");
+  if (require(key)) reject(key, "must be an object, got null");
   return {problems_, pointer_to(key), nullptr};
 }
 
@@ -355,7 +355,7 @@ std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, s
   const Json* const value = find(key);
   if (!value) return objects;
   if (!value->is_array()) {
-    refuse(key, "must be an array, got " + described(*value));
+    reject(key, "must be an array, got " + described(*value));
     return objects;
   }
   if (too_long(key, most, *value)) return objects;

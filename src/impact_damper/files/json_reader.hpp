@@ -10,7 +10,7 @@
 //   }
 //   document.finish();  // throws InputError with all that was wrong, unknown keys included
 //
-// What is too long is refused before it takes memory: the file by its kind, a text and an array by the rule
+// What is too long is rejected before it takes memory: the file by its kind, a text and an array by the rule
 // they are read with, all of a file together by the parser (json_parser.hpp).
 //
 // A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
@@ -32,23 +32,23 @@
 
 namespace impact_damper {
 
-// A kind of file, and how long the longest admitted is.
+// A kind of file, and how long the longest allowed is.
 struct FileKind {
   std::string_view name;  // "scene"
   std::size_t most_bytes;
 };
 
 // The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and InputError
-// if it is longer than its kind admits: before reading it where its size is known, else on reading so much.
+// if it is longer than its kind allows: before reading it where its size is known, else on reading so much.
 std::string read_text(const std::filesystem::path& file);
 std::string read_text(const std::filesystem::path& file, const FileKind& kind);
 
-// Which texts are admitted: all are of one line, without control characters. Lengths are in characters.
+// Which texts are allowed: all are of one line, without control characters. Lengths are in characters.
 struct TextRule {
   std::size_t least = 0, most = 4000;
   bool is_name = false;  // ASCII letters, digits, '-', '_' and '.', the first of them a letter or digit
 
-  bool admits(std::string_view text) const;
+  bool allows(std::string_view text) const;
   std::string describe() const;
 };
 inline constexpr TextRule some_text{1};
@@ -63,7 +63,7 @@ class ObjectReader {
  public:
   // Reads the field `key` into `target`, which keeps its default if the key is missing. Integers are
   // JSON integers: neither 3.0 nor 3e0. Every element of an array obeys `range`. Where the target is
-  // optional, null means absent. False if there is a value and it is not admitted.
+  // optional, null means absent. False if there is a value and it is not valid.
   bool optional(std::string_view key, double& target, NumberRange range = {});
   bool optional(std::string_view key, std::int64_t& target, NumberRange range = {});
   bool optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
@@ -81,18 +81,18 @@ class ObjectReader {
     return require(key) && optional(key, target, range...);
   }
 
-  // One of the words name_of(value) gives for the `admitted` values.
+  // One of the words name_of(value) gives for the `allowed` values.
   template <typename Enum>
-  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
+  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
     std::vector<std::string_view> words;
-    for (const Enum value : admitted) words.push_back(name_of(value));
+    for (const Enum value : allowed) words.push_back(name_of(value));
     const std::optional<std::size_t> index = word(key, words);
-    if (index) target = admitted.begin()[*index];
+    if (index) target = allowed.begin()[*index];
     return index || !has(key);
   }
   template <typename Enum>
-  bool required(std::string_view key, Enum& target, std::initializer_list<Enum> admitted) {
-    return require(key) && optional(key, target, admitted);
+  bool required(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
+    return require(key) && optional(key, target, allowed);
   }
   // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
@@ -112,9 +112,9 @@ class ObjectReader {
   bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
 
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
-  // is admitted and what was given. For checks that the reader cannot do.
-  void refuse(std::string_view key, std::string_view what);
-  void refuse(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
+  // is allowed and what was given. For checks that the reader cannot do.
+  void reject(std::string_view key, std::string_view what);
+  void reject(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
   // Reports the field as missing unless it is there. True if it is there.
   bool require(std::string_view key);
   const std::string& pointer() const { return pointer_; }
@@ -138,7 +138,7 @@ class ObjectReader {
 class JsonDocument {
  public:
   // Reads and parses `file`. Throws IoError if it cannot be read, InputError for what cannot be gone on with:
-  // a file longer than its kind admits, what is not JSON (with line and column), text behind the value, too
+  // a file longer than its kind allows, what is not JSON (with line and column), text behind the value, too
   // much of it. A duplicate key is a problem among the others.
   static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
   // The same for a text in memory; `name` stands for the file in messages.

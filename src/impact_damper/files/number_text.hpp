@@ -9,7 +9,7 @@
 namespace impact_damper {
 
 // The shortest decimal text that reads back as exactly `value`; a negative zero is "-0.0", which a
-// JSON reader does not mistake for the integer 0. `value` may be nan or inf, which JSON does not admit.
+// JSON reader does not mistake for the integer 0. `value` may be nan or inf, which JSON does not allow.
 std::string number_text(double value);
 void append_number(std::string& text, double value);
 void append_number(std::string& text, std::int64_t value);

@@ -21,7 +21,7 @@ namespace impact_damper {
 inline constexpr std::string_view run_schema = "impact-damper/run/1";
 
 // Read, a file takes a few times its length in memory, so that has a limit: all that the default budgets
-// admit and the longest history, however long their numbers are.
+// allow and the longest history, however long their numbers are.
 inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
 // A file ends with these, and the digest between them.
@@ -43,7 +43,7 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 // The run out of a file or a text, strictly: every key known and given, columns of a section equally
 // long, times ascending, sums equal to their parts, units that go together, and the digest that of the
 // content. The units are for other programs: what is read stays dimensionless. Throws IoError if `file`
-// cannot be read, InputError naming everything that is not admitted.
+// cannot be read, InputError naming everything that is not valid.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(const std::string& name, const std::string& text);
 

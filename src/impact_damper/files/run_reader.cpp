@@ -23,7 +23,7 @@ class Columns {
     if (!object_.required(name, column, range)) return false;
     if (!length_) length_ = column.size();
     if (column.size() == *length_) return true;
-    object_.refuse(name, "must be as long as the section's first column, " + std::to_string(*length_) +
+    object_.reject(name, "must be as long as the section's first column, " + std::to_string(*length_) +
                              ", got a length of " + std::to_string(column.size()));
     return false;
   }
@@ -39,7 +39,7 @@ class Columns {
     if (!read(name, column, at_least(0))) return false;
     const auto drop = std::is_sorted_until(column.begin(), column.end());
     if (drop == column.end()) return true;
-    object_.refuse(
+    object_.reject(
         name, static_cast<std::size_t>(drop - column.begin()),
         "must not be below the one before it, " + number_text(*(drop - 1)) + ", got " + number_text(*drop));
     return false;
@@ -134,7 +134,7 @@ Contacts read_contacts(ObjectReader object) {
   columns.read("wall", contacts.wall);
   for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
     if (contacts.begin[i] <= contacts.end[i]) continue;
-    object.refuse("end", i,
+    object.reject("end", i,
                   "must not be before its begin, " + number_text(contacts.begin[i]) + ", got " +
                       number_text(contacts.end[i]));
     break;
@@ -146,7 +146,7 @@ Contacts read_contacts(ObjectReader object) {
 void check_sum(ObjectReader& object, std::string_view name, double sum) {
   double given = 0;
   if (object.required(name, given) && given != sum) {
-    object.refuse(name, "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
+    object.reject(name, "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
   }
 }
 
@@ -198,7 +198,7 @@ void check_units(ObjectReader object) {
   const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
     constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
     if (std::abs(given - wanted) <= rounding * std::abs(wanted)) return;
-    object.refuse(
+    object.reject(
         name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
   };
   must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
@@ -215,15 +215,15 @@ Scene read_full_scene(ObjectReader& object) {
   return read_scene_fields(object);
 }
 
-// What the engine would refuse of the scene: a run of it cannot have been.
+// What the engine would reject of the scene: a run of it cannot have been.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   if (!problems_of(run.scene).empty()) return;
-  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).admits(run.scene.y0)) {
-    scene.refuse("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
+  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).allows(run.scene.y0)) {
+    scene.reject("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
                            number_text(run.scene.y0));
   }
   if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && cem->time_step) {
-    for (const Problem& problem : problems_of(run.scene, *cem)) engine.refuse(problem.field, problem.message);
+    for (const Problem& problem : problems_of(run.scene, *cem)) engine.reject(problem.field, problem.message);
   }
 }
 
@@ -257,7 +257,7 @@ Run read_whole(JsonDocument document, bool sealed) {
   if (const auto section = object.optional_object("energy")) run.energy = read_ledger(*section);
   if (const auto section = object.optional_object("history")) run.history = read_history(*section);
   if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
-    object.refuse("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
+    object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
                                 " impacts, got " + std::to_string(run.energy->impact_loss.size()));
   }
   ObjectReader made_by = object.required_object("provenance");  // who made the file, not what is in it
@@ -268,7 +268,7 @@ Run read_whole(JsonDocument document, bool sealed) {
   made_by.require("sha256");
   document.finish();
   if (!sealed) {  // says nothing new beside other problems
-    made_by.refuse(
+    made_by.reject(
         "sha256",
         "must be the digest of the content, got another one: the file was altered or laid out anew "
         "since it was written; make the run again");

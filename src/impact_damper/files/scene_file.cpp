@@ -44,7 +44,7 @@ SceneInUnits read_unit_fields(ObjectReader& object) {
   }
   for (const Problem& problem : problems_of(scene))
     if (std::ranges::find(unreadable, problem.field) == unreadable.end())
-      object.refuse(problem.field, problem.message);
+      object.reject(problem.field, problem.message);
   return scene;
 }
 
@@ -62,7 +62,7 @@ SceneFile read_whole(JsonDocument document) {
   if (!without_units.empty()) {
     for (const SceneField& field : scene_fields) object.has(field.name);
     object.has("until_time"), object.has("until_amplitude");
-    object.refuse("",
+    object.reject("",
                   "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
   }
   document.finish();
@@ -72,7 +72,7 @@ SceneFile read_whole(JsonDocument document) {
 }
 
 // A run given for a scene would be a list of problems, or too long.
-void refuse_run(const std::filesystem::path& file) {
+void reject_run(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return;  // a pipe is read once
   constexpr std::size_t enough = 100;                            // the schema is the first key of a run
@@ -93,13 +93,13 @@ Scene read_scene_fields(ObjectReader& object) {
   for (const Problem& problem : problems_of(scene)) {
     // A stop that was given but could not be read is not missing as well.
     const bool given = problem.field == "until_time" && !(time_is_read && amplitude_is_read);
-    if (!given) object.refuse(problem.field, problem.message);
+    if (!given) object.reject(problem.field, problem.message);
   }
   return scene;
 }
 
 SceneFile read_scene_file(const std::filesystem::path& file) {
-  refuse_run(file);
+  reject_run(file);
   return read_whole(JsonDocument::read(file, scene_kind));
 }
 

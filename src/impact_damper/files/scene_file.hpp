@@ -29,7 +29,7 @@ struct SceneFile {
   std::string description;
 };
 
-// Throws IoError if `file` cannot be read, InputError naming everything in it that is not admitted.
+// Throws IoError if `file` cannot be read, InputError naming everything in it that is not valid.
 SceneFile read_scene_file(const std::filesystem::path& file);
 SceneFile parse_scene_file(const std::string& name, const std::string& text);
 // The same where nobody asks for units.

@@ -85,15 +85,15 @@ std::size_t character_length(std::string_view text) {
 
 }  // namespace
 
-bool NumberRange::admits(double value) const {
-  return (least_is_admitted ? value >= least : value > least) && value <= most;
+bool NumberRange::allows(double value) const {
+  return (least_is_allowed ? value >= least : value > least) && value <= most;
 }
 
 std::string NumberRange::describe(std::string_view kind) const {
   std::string text(kind);
   const bool bounded_below = least > std::numeric_limits<double>::lowest();
   const bool bounded_above = most < std::numeric_limits<double>::max();
-  if (bounded_below) text += (least_is_admitted ? " >= " : " > ") + number_text(least);
+  if (bounded_below) text += (least_is_allowed ? " >= " : " > ") + number_text(least);
   if (bounded_below && bounded_above) text += " and";
   if (bounded_above) text += " <= " + number_text(most);
   return text;

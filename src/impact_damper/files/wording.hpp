@@ -1,4 +1,4 @@
-// The words in which bad input is refused, the same for files and command lines.
+// The words in which bad input is rejected, the same for files and command lines.
 #pragma once
 
 #include <limits>
@@ -9,13 +9,13 @@
 
 namespace impact_damper {
 
-// Which numbers are admitted, both limits included unless least_is_admitted is false. NaN never is.
+// Which numbers are allowed, both limits included unless least_is_allowed is false. NaN never is.
 struct NumberRange {
   double least = std::numeric_limits<double>::lowest();
   double most = std::numeric_limits<double>::max();
-  bool least_is_admitted = true;
+  bool least_is_allowed = true;
 
-  bool admits(double value) const;
+  bool allows(double value) const;
   std::string describe(std::string_view kind) const;  // "a number" -> "a number >= 0 and <= 1"
 };
 inline NumberRange within(double least, double most) { return {least, most}; }

@@ -38,7 +38,7 @@ Record read_record(ObjectReader& scene) {
     } else if (word == "history") {
       history = true;
     } else {
-      scene.refuse("record", i,
+      scene.reject("record", i,
                    "must be one of half_cycles, impacts, contacts, energy, history, got the string " +
                        in_quotes(word));
     }
@@ -50,14 +50,14 @@ Record read_record(ObjectReader& scene) {
     item.required("length", window.length, amplitudes);
     item.required("count", window.count, within(2, double(most_samples)));
     if (is_read && !(window.amplitude < before)) {
-      item.refuse("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
+      item.reject("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
                                    number_text(window.amplitude));
     }
     if (is_read) before = window.amplitude;
     record.history_below.push_back(window);
   }
   if (history == record.history_below.empty()) {
-    scene.refuse("history_below", "must be given if, and only if, history is recorded");
+    scene.reject("history_below", "must be given if, and only if, history is recorded");
   }
   return record;
 }
@@ -71,7 +71,7 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
       std::int64_t half_cycles = curve.loss_factor.half_cycles;
       item.optional("half_cycles", half_cycles, within(10, 18));
       if (half_cycles % 2 != 0) {
-        item.refuse("half_cycles",
+        item.reject("half_cycles",
                     "must be even, so that one peak is the middle one, got " + std::to_string(half_cycles));
       }
       curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
@@ -106,7 +106,7 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
   const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase;
   const bool drawn_only = figure.table == TableKind::drawing;
   if (single ? count != 1 : drawn_only ? count != 0 : count == 0) {
-    item.refuse("curves", "must be " +
+    item.reject("curves", "must be " +
                               std::string(single       ? "one curve"
                                           : drawn_only ? "empty"
                                                        : "at least one curve") +
@@ -114,7 +114,7 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
                               std::to_string(count));
   }
   if ((count > 1) != item.has("varied")) {
-    item.refuse("varied", "must be given if, and only if, there are several curves, got " +
+    item.reject("varied", "must be given if, and only if, there are several curves, got " +
                               std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -122,18 +122,18 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
     const CatalogueScene* scene = find_scene(catalogue, name);
     if (!scene) {
       if (!name.empty())
-        item.refuse("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
+        item.reject("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
       continue;
     }
     if (const char* missing = missing_record(figure.table, scene->record)) {
-      item.refuse("curves", i,
+      item.reject("curves", i,
                   "needs \"" + std::string(missing) + "\" in the scene's record, which " + name + " lacks");
     }
     const auto opens_window = [&](const AmplitudeWindow& window) {
       return window.amplitude == figure.window;
     };
     if (figure.window && std::ranges::none_of(scene->record.history_below, opens_window)) {
-      item.refuse("window", "must be the amplitude of a history window of scene " + name + ", got " +
+      item.reject("window", "must be the amplitude of a history window of scene " + name + ", got " +
                                 number_text(*figure.window));
     }
   }
@@ -142,7 +142,7 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
 Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   Figure figure;
   if (item.required("figure", figure.number, a_number) && find_figure(catalogue, figure.number))
-    item.refuse("figure", "must be given once, got the string " + in_quotes(figure.number));
+    item.reject("figure", "must be given once, got the string " + in_quotes(figure.number));
   item.required("title", figure.title, some_text);
   item.required("script", figure.script, a_name);
   item.optional("claims", figure.claims, a_name, 100);
@@ -164,7 +164,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
       item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta), ordinates);
     if (item.has("range") && item.optional("range", figure.range, amplitudes) &&
         !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
-      item.refuse("range", "must be two amplitudes, the lower first, got " +
+      item.reject("range", "must be two amplitudes, the lower first, got " +
                                (figure.range.size() == 2
                                     ? number_text(figure.range[0]) + " and " + number_text(figure.range[1])
                                     : std::to_string(figure.range.size())));
@@ -187,7 +187,7 @@ Catalogue read_whole(JsonDocument document) {
   for (ObjectReader item : root.required_objects("scenes", 1000)) {
     CatalogueScene scene;
     if (item.required("scene", scene.name, a_name) && find_scene(catalogue, scene.name))
-      item.refuse("scene", "must be given once, got the string " + in_quotes(scene.name));
+      item.reject("scene", "must be given once, got the string " + in_quotes(scene.name));
     scene.record = read_record(item);
     catalogue.scenes.push_back(scene);
   }

@@ -47,7 +47,7 @@ struct FigureCurve {
   std::string scene;
   // loss_factor tables only:
   LossFactorOptions loss_factor;  // its window of averaging
-  std::int64_t ensemble = 0;      // minutely different releases whose spread is shown with it; 0 for none
+  std::int64_t ensemble = 0;      // perturbed initial conditions whose spread is shown; 0 for none
 };
 
 struct Figure {

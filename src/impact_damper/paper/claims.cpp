@@ -21,7 +21,7 @@ Interval read_interval(ObjectReader& object, std::string_view key) {
   if (ends.size() != 2 || (!ends[0] && !ends[1]) || (ends[0] && ends[1] && !(*ends[0] <= *ends[1]))) {
     std::string given;
     for (const auto& end : ends) given += (given.empty() ? "" : ", ") + (end ? number_text(*end) : "null");
-    object.refuse(
+    object.reject(
         key, "must be [least, most], at least one of them a number, least <= most, got [" + cut(given) + "]");
     return {};
   }
@@ -43,7 +43,7 @@ MeasureCall read_measure(ObjectReader object) {
     const bool is_read = object.required("scenes", call.scenes, a_name, measure.most_scenes);
     const std::size_t count = call.scenes.size();
     if (is_read && count < measure.least_scenes)
-      object.refuse("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
+      object.reject("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
                                   std::to_string(measure.most_scenes) + " scenes, got " +
                                   std::to_string(count));
   }
@@ -51,18 +51,18 @@ MeasureCall read_measure(ObjectReader object) {
     double value = 0;
     if (!object.required(number, value)) continue;
     const MeasureNumber& rule = measure_number(number);
-    if (rule.admits(value)) {
+    if (rule.allows(value)) {
       call.numbers[std::string(number)] = value;
     } else {
       const char* const kind = rule.multiple_of == 0   ? "a number"
                                : rule.multiple_of == 1 ? "a whole number"
                                                        : "an even number";
-      object.refuse(number, "must be " + rule.range.describe(kind) + ", got " + number_text(value));
+      object.reject(number, "must be " + rule.range.describe(kind) + ", got " + number_text(value));
     }
   }
   const auto from = call.numbers.find("from"), to = call.numbers.find("to");
   if (from != call.numbers.end() && to != call.numbers.end() && !(from->second < to->second)) {
-    object.refuse(
+    object.reject(
         "to", "must be above \"from\", " + number_text(from->second) + ", got " + number_text(to->second));
   }
   return call;
@@ -72,37 +72,37 @@ constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict
                            Verdict::derived};
 
 // By the kind of what is printed, or a value or range with a tolerance of its own.
-Admitted read_admitted(ObjectReader& object) {
-  Admitted admitted;
+Allowed read_allowed(ObjectReader& object) {
+  Allowed allowed;
   if (object.has("kind")) {
     std::vector<std::string_view> names;
     for (const PrintedKind& kind : printed_kinds()) names.push_back(kind.name);
     const auto index = object.word("kind", names);
     std::vector<std::string> digits;
     const bool is_read = object.optional("digits", digits, TextRule{1, 20}, 2);
-    if (!index || !is_read) return admitted;
+    if (!index || !is_read) return allowed;
     try {
-      return admitted_by(printed_kinds()[*index], digits);
+      return allowed_by(printed_kinds()[*index], digits);
     } catch (const std::invalid_argument& problem) {
-      object.refuse("digits", problem.what());
+      object.reject("digits", problem.what());
     }
-    return admitted;
+    return allowed;
   }
   if (object.has("value") == object.has("range")) {
-    object.refuse("value", R"(one of it, "range" and "kind" must be given, got )" +
+    object.reject("value", R"(one of it, "range" and "kind" must be given, got )" +
                                std::string(object.has("value") ? "both" : "none"));
   }
   if (object.has("value")) {
     double value = 0;
     object.optional("value", value);
-    admitted.printed = {value, value};
+    allowed.printed = {value, value};
   } else {
-    admitted.printed = read_interval(object, "range");
+    allowed.printed = read_interval(object, "range");
   }
-  object.required("tolerance", admitted.below, at_least(0));
-  admitted.above = admitted.below;
-  object.required("reason", admitted.reason, some_text);
-  return admitted;
+  object.required("tolerance", allowed.below, at_least(0));
+  allowed.above = allowed.below;
+  object.required("reason", allowed.reason, some_text);
+  return allowed;
 }
 
 void read_words(ObjectReader& object, Claim& claim) {
@@ -111,11 +111,11 @@ void read_words(ObjectReader& object, Claim& claim) {
     for (const std::string& name : also->keys()) {
       claim.also[name] = read_measure(also->required_object(name));
       names.insert(name);
-      if (!a_name.admits(name)) also->refuse(name, "its key must be " + a_name.describe());
+      if (!a_name.allows(name)) also->reject(name, "its key must be " + a_name.describe());
     }
   }
   if (!object.optional("words", claim.words, some_text)) return;
-  if (const auto problem = problem_of_words(claim.words, names)) object.refuse("words", *problem);
+  if (const auto problem = problem_of_words(claim.words, names)) object.reject("words", *problem);
 }
 
 Claim read_claim(ObjectReader& object) {
@@ -125,7 +125,7 @@ Claim read_claim(ObjectReader& object) {
   object.required("statement", claim.statement, some_text);
   object.required("printed", claim.printed, some_text);
   object.optional("source", claim.source, {Source::paper, Source::ours});
-  claim.admitted = read_admitted(object);
+  claim.allowed = read_allowed(object);
   claim.measure = read_measure(object.required_object("measure"));
   read_words(object, claim);
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
@@ -149,27 +149,44 @@ Claim read_claim(ObjectReader& object) {
   }
   const bool corrected = object.has("corrected");
   if ((claim.recorded == Verdict::corrected) != corrected) {
-    object.refuse("corrected", "must be given if, and only if, the verdict is \"corrected\", got " +
+    object.reject("corrected", "must be given if, and only if, the verdict is \"corrected\", got " +
                                    std::string(corrected ? "it" : "none") + " with " +
                                    in_quotes(name_of(claim.recorded)));
   }
   return claim;
 }
 
-std::vector<Claim> read_document(JsonDocument document) {
+OpenStatement read_open_statement(ObjectReader& object) {
+  OpenStatement statement;
+  object.required("id", statement.id, a_name);
+  object.required("section", statement.section, some_text);
+  object.required("statement", statement.statement, some_text);
+  object.required("printed", statement.printed, some_text);
+  object.required("explanation", statement.explanation, some_text);
+  return statement;
+}
+
+ClaimsFile read_document(JsonDocument document) {
   ObjectReader root = document.root();
   root.word("schema", {schema});
   root.require("schema");
-  std::vector<Claim> claims;
+  ClaimsFile file;
   std::set<std::string> ids;
-  for (ObjectReader object : root.required_objects("claims", 10000)) {
-    claims.push_back(read_claim(object));
-    const std::string& id = claims.back().id;
+  const auto once = [&](ObjectReader& object, const std::string& id) {
     if (!id.empty() && !ids.insert(id).second)
-      object.refuse("id", "must be given once, got the string " + in_quotes(id));
+      object.reject("id", "must be given once, got the string " + in_quotes(id));
+  };
+  constexpr std::size_t most = 10000;
+  for (ObjectReader object : root.required_objects("claims", most)) {
+    file.claims.push_back(read_claim(object));
+    once(object, file.claims.back().id);
+  }
+  for (ObjectReader object : root.optional_objects("open", most)) {
+    file.open.push_back(read_open_statement(object));
+    once(object, file.open.back().id);
   }
   document.finish();
-  return claims;
+  return file;
 }
 
 }  // namespace
@@ -198,11 +215,15 @@ std::string_view name_of(Source source) {
   return {};
 }
 
-std::vector<Claim> read_claims(const std::filesystem::path& file) {
+ClaimsFile read_claims_file(const std::filesystem::path& file) {
   return read_document(JsonDocument::read(file, claims_kind));
 }
-std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
+ClaimsFile parse_claims_file(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));
+}
+std::vector<Claim> read_claims(const std::filesystem::path& file) { return read_claims_file(file).claims; }
+std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
+  return parse_claims_file(name, text).claims;
 }
 
 Verdict recorded_for(const Claim& claim, std::string_view engine) {
@@ -216,8 +237,8 @@ Verdict judge(const Claim& claim, double ours) {
     return !(interval.least && !(ours >= *interval.least - below)) &&
            !(interval.most && !(ours <= *interval.most + above));
   };
-  const Admitted& admitted = claim.admitted;
-  if (lies_in(admitted.printed, admitted.below, admitted.above))
+  const Allowed& allowed = claim.allowed;
+  if (lies_in(allowed.printed, allowed.below, allowed.above))
     return claim.recorded == Verdict::derived ? Verdict::derived : Verdict::reproduced;
   if (claim.corrected && lies_in(*claim.corrected, 0, 0)) return Verdict::corrected;
   return Verdict::not_reproduced;

@@ -21,6 +21,12 @@
 // one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as
 // "derived" has an "explanation": no engine enters its number, which confirms a derivation and measures
 // nothing.
+//
+// What the paper states and nothing here measures yet stands beside the claims, is listed with them and
+// counts as none of them:
+//
+//    "open": [{"id": "several-dampers", "section": "...", "statement": "...", "printed": "...",
+//              "explanation": "..."}]           why it is open
 #pragma once
 
 #include <filesystem>
@@ -51,7 +57,7 @@ struct MeasureCall {
 struct Claim {
   std::string id, section, statement, printed;
   Source source = Source::paper;
-  Admitted admitted;
+  Allowed allowed;
   MeasureCall measure;
   std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the words show
   std::string words = "{}";                              // our result, a template of words.hpp
@@ -65,16 +71,29 @@ struct Claim {
   std::map<std::string, Otherwise, std::less<>> with_engine;  // by the engine's name
 };
 
+// A statement of the paper that has no measure yet, and so no verdict.
+struct OpenStatement {
+  std::string id, section, statement, printed, explanation;
+};
+
+struct ClaimsFile {
+  std::vector<Claim> claims;
+  std::vector<OpenStatement> open;
+};
+
 // The verdict recorded for runs of that engine.
 Verdict recorded_for(const Claim& claim, std::string_view engine);
 
-// Throws IoError if the file cannot be read, InputError naming everything that is not admitted: unknown
+// Throws IoError if the file cannot be read, InputError naming everything that is not valid: unknown
 // measures and measure parameters and duplicate ids among it.
 inline constexpr FileKind claims_kind{"claims file", 1 << 22};
+ClaimsFile read_claims_file(const std::filesystem::path& file);
+ClaimsFile parse_claims_file(const std::string& name, const std::string& text);
+// The claims alone.
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 
-// The verdict that `ours`, the median of an ensemble, gives: if it lies in the admitted interval widened by
+// The verdict that `ours`, the median of an ensemble, gives: if it lies in the allowed interval widened by
 // the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
 // lies in the corrected interval; else not reproduced. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);

@@ -26,17 +26,17 @@ bool is_path(std::string_view text) {
   if (text.size() > 200) return false;
   for (;;) {
     const std::size_t slash = text.find('/');
-    if (!a_name.admits(text.substr(0, slash))) return false;
+    if (!a_name.allows(text.substr(0, slash))) return false;
     if (slash == std::string_view::npos) return true;
     text.remove_prefix(slash + 1);
   }
 }
 
 bool read_text_of(ObjectReader& object, std::string_view key, std::string& target,
-                  bool (*admits)(std::string_view), const std::string& admitted) {
+                  bool (*allows)(std::string_view), const std::string& allowed) {
   if (!object.required(key, target, some_text)) return false;
-  if (admits(target)) return true;
-  object.refuse(key, "must be " + admitted + ", got the string " + in_quotes(target));
+  if (allows(target)) return true;
+  object.reject(key, "must be " + allowed + ", got the string " + in_quotes(target));
   return false;
 }
 
@@ -73,7 +73,7 @@ void read_cited_figure(ObjectReader& item, CitedFigure& figure, const std::strin
   const std::string wanted =
       stamped.sha256.substr(0, stamped_digits) + ' ' + std::string(dot) + ' ' + version;
   if (figure.stamp != wanted)
-    item.refuse("stamp",
+    item.reject("stamp",
                 "must be " + in_quotes(wanted) +
                     ", as the SHA-256 of its table (or its script, without a table) begins, got the string " +
                     in_quotes(figure.stamp));
@@ -92,7 +92,7 @@ Manifest read_cited(JsonDocument document) {
   software.required("year", manifest.year, within(1000, 9999));
   if (software.required("authors", manifest.authors, some_text, std::size_t{1000}) &&
       manifest.authors.empty())
-    software.refuse("authors", "must name at least one, got none");
+    software.reject("authors", "must name at least one, got none");
   ObjectReader paper = root.required_object("paper");
   paper.required("title", manifest.paper_title, some_text);
   paper.required("note", manifest.paper_note, some_text);
@@ -101,7 +101,7 @@ Manifest read_cited(JsonDocument document) {
     CitedFigure figure;
     if (item.required("figure", figure.number, TextRule{1, 8, true}) &&
         std::ranges::count(manifest.figures, figure.number, &CitedFigure::number) > 0)
-      item.refuse("figure", "must be given once, got the string " + in_quotes(figure.number));
+      item.reject("figure", "must be given once, got the string " + in_quotes(figure.number));
     read_cited_figure(item, figure, manifest.version);
     manifest.figures.push_back(figure);
   }
@@ -138,7 +138,7 @@ std::optional<Stamp> parse_stamp(std::string_view text) {
   if (text.starts_with(dot)) text.remove_prefix(dot.size());
   without_blanks();
   if (text.empty()) return stamp;
-  if (!a_name.admits(text)) return std::nullopt;
+  if (!a_name.allows(text)) return std::nullopt;
   stamp.version = text;
   return stamp;
 }

@@ -58,7 +58,7 @@ struct Manifest {
   std::vector<CitedFigure> figures;
 };
 
-// Throws IoError if the file cannot be read, InputError naming everything that is not admitted: a figure
+// Throws IoError if the file cannot be read, InputError naming everything that is not valid: a figure
 // given twice and a stamp that its table does not have among it.
 inline constexpr FileKind manifest_kind{"manifest", 1 << 20};
 Manifest read_manifest(const std::filesystem::path& file);

@@ -38,8 +38,8 @@ const std::vector<MeasureNumber>& measure_numbers() {
   return table;
 }
 
-bool MeasureNumber::admits(double value) const {
-  return range.admits(value) && (multiple_of == 0 || std::fmod(value, multiple_of) == 0);
+bool MeasureNumber::allows(double value) const {
+  return range.allows(value) && (multiple_of == 0 || std::fmod(value, multiple_of) == 0);
 }
 
 const MeasureNumber& measure_number(std::string_view name) {

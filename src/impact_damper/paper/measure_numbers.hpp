@@ -14,7 +14,7 @@ struct MeasureNumber {
   int multiple_of;  // 1: a whole number, 3 and 3.0 alike; 2: an even one; 0: any
   std::string_view meaning;
 
-  bool admits(double value) const;
+  bool allows(double value) const;
 };
 const std::vector<MeasureNumber>& measure_numbers();
 

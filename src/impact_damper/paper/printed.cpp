@@ -69,28 +69,28 @@ std::optional<double> last_digit(std::string_view digits) {
   return parse_number(unit.starts_with('.') ? '0' + unit : unit);
 }
 
-Admitted admitted_by(const PrintedKind& kind, const std::vector<std::string>& digits) {
+Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digits) {
   if (digits.size() != kind.digits)
     throw std::invalid_argument("must be " + std::to_string(kind.digits) + " numbers as printed, got " +
                                 std::to_string(digits.size()));
-  Admitted admitted{.printed = kind.interval, .reason = std::string(kind.reason)};
-  if (digits.empty()) return admitted;
+  Allowed allowed{.printed = kind.interval, .reason = std::string(kind.reason)};
+  if (digits.empty()) return allowed;
   const double first = value_of(digits.front()), last = value_of(digits.back());
   if (!(first <= last)) throw std::invalid_argument("must ascend");
-  admitted.printed = {first, last};
+  allowed.printed = {first, last};
   if (kind.name == "number") {
-    admitted.below = admitted.above = *last_digit(digits[0]) / 2;
+    allowed.below = allowed.above = *last_digit(digits[0]) / 2;
   } else if (kind.name == "approximate" || kind.name == "range") {
-    admitted.below = about(digits.front());
-    admitted.above = about(digits.back());
+    allowed.below = about(digits.front());
+    allowed.above = about(digits.back());
   } else if (kind.name == "at_least") {
-    admitted.printed.most = none;
-    admitted.below = *last_digit(digits[0]) / 2;
+    allowed.printed.most = none;
+    allowed.below = *last_digit(digits[0]) / 2;
   } else if (kind.name == "at_most") {
-    admitted.printed.least = none;
-    admitted.above = *last_digit(digits[0]) / 2;
+    allowed.printed.least = none;
+    allowed.above = *last_digit(digits[0]) / 2;
   }
-  return admitted;
+  return allowed;
 }
 
 }  // namespace impact_damper

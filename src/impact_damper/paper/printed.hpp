@@ -31,15 +31,15 @@ const std::vector<PrintedKind>& printed_kinds();
 // text is not digits with at most one point among them, or all of them are zero.
 std::optional<double> last_digit(std::string_view digits);
 
-// What a printed value admits: the value (or both ends of the range) before the tolerance, the tolerance at
+// What a printed value allows: the value (or both ends of the range) before the tolerance, the tolerance at
 // each end, and its reason.
-struct Admitted {
+struct Allowed {
   Interval printed;
   double below = 0, above = 0;  // tolerances, >= 0
   std::string reason;
 };
 // `digits` as many as the kind takes, each with a last_digit(), a range ascending; std::invalid_argument
 // else.
-Admitted admitted_by(const PrintedKind& kind, const std::vector<std::string>& digits);
+Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digits);
 
 }  // namespace impact_damper

@@ -118,6 +118,38 @@ void add_decay_block(const Figure& figure, const FigureRun& source, const std::s
                    {legend, "peak amplitude of the half cycle, by epsilon", rows.amplitude}}});
 }
 
+// With A eta / nu constant the amplitude falls on a straight line, dA/dt = -rate nu. The rate of each curve
+// is its chord's, from the first peak to the first that is not above Figure::down_to; the line has the mean
+// of the rates and begins at the mean of the first peaks.
+void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table) {
+  TableBlock law{.name = "law",
+                 .notes = {"one row for each curve, from its first peak to the first that is not above " +
+                           number_text(*figure.down_to)},
+                 .columns = {{"mass ratio", "nu = m/M", {}}, {"rate", "average of -dA/dt / nu", {}}}};
+  double begin = 0, amplitude = 0, rate = 0;  // sums, then means
+  for (const FigureRun* source : sources) {
+    const HalfCycles& rows = half_cycles_of(figure, *source);
+    const auto end = static_cast<std::size_t>(
+        std::ranges::find_if(rows.amplitude, [&](double a) { return a <= *figure.down_to; }) -
+        rows.amplitude.begin());
+    if (end == 0) return;  // it begins there: no chord
+    const double nu = source->run.scene.mass_ratio;
+    law.columns[0].values.push_back(nu);
+    law.columns[1].values.push_back((rows.amplitude[0] - rows.amplitude[end]) /
+                                    (nu * (rows.peak_time[end] - rows.peak_time[0])));
+    begin += nu * rows.peak_time[0];
+    amplitude += rows.amplitude[0];
+    rate += law.columns[1].values.back();
+  }
+  for (double* sum : {&begin, &amplitude, &rate}) *sum /= static_cast<double>(sources.size());
+  table.blocks.push_back(std::move(law));
+  table.blocks.push_back(
+      {.name = "line",
+       .notes = {"dA/dt = -rate nu with the mean of the rates"},
+       .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
+                   {"dA/dt = −" + rounded_text(rate, 2) + " ν", "amplitude, by epsilon", {amplitude, 0}}}});
+}
+
 }  // namespace
 
 InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why) {
@@ -173,6 +205,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& 
           add_loss_block(figure, figure.curves[i], *sources[i], number, legend, threads, table);
         }
       }
+      if (figure.table == TableKind::decay && figure.down_to) add_law_blocks(figure, sources, table);
       if (!figure.range.empty()) add_spread_block(figure, table);
       if (figure.table == TableKind::loss_factor) add_loss_theory_blocks(figure, sources, table);
       break;

@@ -23,7 +23,8 @@ using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks
-//   decay        "curve-1" ... in the order of the figure's curves (time, amplitude)
+//   decay        "curve-1" ... in the order of the figure's curves (time, amplitude); with Figure::down_to
+//                "law" (mass ratio, average of -dA/dt / nu down to there), "line" (nu t, amplitude)
 //   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1"
 //                ...; "band-1" ... (amplitude, least, greatest) for curves with an ensemble, which is
 //                simulated here with the run's own scene and engine; "second-1" ... in the second ordinate,

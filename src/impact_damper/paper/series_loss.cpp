@@ -109,7 +109,7 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
 
 double largest_amplitude(const Run& run) { return std::ranges::max(run.half_cycles->amplitude); }
 
-// The run's own scene and engine, minutely differently released.
+// The run's own scene and engine, with perturbed initial conditions.
 std::vector<Run> neighbours(const FigureCurve& curve, const Run& run, const Threads& threads) {
   EnsembleOptions options;
   options.members = curve.ensemble;

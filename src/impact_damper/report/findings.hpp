@@ -58,7 +58,7 @@ struct MotionWindow {
 struct Findings {
   Subject subject;
   Run run;                  // half cycles, impacts, contacts, energy; history in the windows below
-  std::vector<Run> others;  // minutely different releases: half cycles
+  std::vector<Run> others;  // perturbed initial conditions: half cycles
 
   std::optional<double> first_amplitude;  // of the first half cycle with a peak; the others if there is one
   double last_amplitude = 0;

@@ -97,16 +97,16 @@ std::string engine_sentence(const Findings& findings) {
       text += "until the amplitude was below the one asked for";
       break;
     case StopReason::impact_budget:
-      text += "until the admitted number of impacts was used up (<code>--max-impacts</code>)";
+      text += "until the allowed number of impacts was used up (<code>--max-impacts</code>)";
       break;
     case StopReason::half_cycle_budget:
-      text += "until the admitted number of half cycles was used up (<code>--max-half-cycles</code>)";
+      text += "until the allowed number of half cycles was used up (<code>--max-half-cycles</code>)";
       break;
     case StopReason::time_budget:
-      text += "until the admitted time was used up (<code>--max-time</code>)";
+      text += "until the allowed time was used up (<code>--max-time</code>)";
       break;
     case StopReason::step_budget:
-      text += "until the admitted number of steps was used up (<code>--max-steps</code>)";
+      text += "until the allowed number of steps was used up (<code>--max-steps</code>)";
       break;
   }
   return text + ".</p>\n";

@@ -1,5 +1,5 @@
 // Somebody's program that uses the library. Compiled and linked in ways that take away what results rest on:
-// it prints why the library refuses, and ends as the library's own program would.
+// it prints why the library does not run, and ends as the library's own program would.
 #include <cstdio>
 
 #include "impact_damper/simulate.hpp"
