@@ -1,6 +1,6 @@
 #include "arguments.hpp"
 
-#include <algorithm>
+#include <CLI/App.hpp>
 
 #include "impact_damper/files/number_text.hpp"
 
@@ -11,6 +11,8 @@ bool Arguments::given(const std::string& option) const { return app_.count(optio
 std::vector<std::string> Arguments::texts(const std::string& option) const {
   return app_.get_option(option)->results();
 }
+
+std::vector<std::string> Arguments::more() const { return app_.remaining(); }
 
 std::optional<std::string> Arguments::text(const std::string& option) const {
   if (!given(option)) return std::nullopt;
@@ -114,36 +116,6 @@ void Arguments::reject(const std::string& option, const std::string& what) {
 
 void Arguments::finish() const {
   if (!problems_.empty()) throw UsageError(problems_);
-}
-
-std::string swallowed_options(const CLI::App& command) {
-  const std::vector<const CLI::Option*> options = command.get_options();
-  const auto is_option = [&](const std::string& value) {
-    const std::string name = value.substr(0, value.find('='));
-    return name.starts_with('-') &&
-           std::any_of(options.begin(), options.end(),
-                       [&](const CLI::Option* option) { return option->check_name(name); });
-  };
-  std::string lines;
-  for (const CLI::Option* option : options) {
-    for (const std::string& value : option->results()) {
-      if (!is_option(value)) continue;
-      if (!lines.empty()) lines += '\n';
-      lines += option->get_name() + ": needs a value, got the option " + cut(value);
-    }
-  }
-  return lines;
-}
-
-void add_threads_option(CLI::App& app) {
-  app.add_option("--threads",
-                 "how many simulate at once; default one for each processor, same results with any")
-      ->type_name("N");
-}
-
-void add_scenes_option(CLI::App& app) {
-  app.add_option("--scenes", "folder of the scenes that runs are named after; default data/scenes")
-      ->type_name("FOLDER");
 }
 
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }

@@ -1,10 +1,9 @@
 // What was given on the command line, checked: every problem is found and named in one go.
 //
-// Options are declared without a type (`app.add_option("--x0", help)`), because the parser's own conversion
-// lets nan pass and saturates large integers; their text is converted here.
+// The parser only takes text apart: its own conversion lets nan pass and saturates large integers. Values are
+// converted here.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -16,6 +15,10 @@
 
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/files/json_reader.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace impact_damper::cli {
 
@@ -45,7 +48,8 @@ class Arguments {
     return index ? allowed.begin()[*index] : otherwise;
   }
   bool given(const std::string& option) const;
-  bool flag(const std::string& option);  // given, once and without a value
+  std::vector<std::string> more() const;  // arguments behind those that are named
+  bool flag(const std::string& option);   // given, once and without a value
   // Rejects an output that is one of these files, which would be lost with it.
   void reject_overwriting(const std::string& option, const std::optional<std::string>& output,
                           const std::vector<std::filesystem::path>& inputs);
@@ -70,15 +74,8 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
 // The same for a command whose output has one form: `what` it writes, "the verdicts as JSON".
 void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output, const std::string& what);
 
-// Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
-std::string swallowed_options(const CLI::App& command);
-
 // --threads N, of every command that simulates more than one scene.
-void add_threads_option(CLI::App& app);
 Threads threads_of(Arguments& arguments);
-
-// --scenes FOLDER, of every command that reads runs: where the scenes are that they are named after.
-void add_scenes_option(CLI::App& app);
 
 // The numbers A:B:N of `text`, for options that ask for samples: two finite numbers and a count.
 struct Triple {

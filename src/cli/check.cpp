@@ -45,19 +45,18 @@ constexpr std::array<Reader, 5> readers{
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
 
 // Not an option with many values: that would take "[]" for a list of none.
-std::vector<std::string> files_of(const CLI::App& app, Arguments& arguments) {
+std::vector<std::string> files_of(Arguments& arguments) {
   std::vector<std::string> files;
   if (const auto first = arguments.file("FILE")) files.push_back(*first);
-  for (const std::string& more : app.remaining()) {
+  for (const std::string& more : arguments.more()) {
     if (more.starts_with('-')) throw UsageError("unknown argument " + in_quotes(more));
     files.push_back(more);
   }
   return files;
 }
 
-int check(const CLI::App& app) {
-  Arguments arguments(app);
-  const std::vector<std::string> files = files_of(app, arguments);
+int check(Arguments& arguments) {
+  const std::vector<std::string> files = files_of(arguments);
   const fs::path scenes = arguments.file("--scenes").value_or(project_file("data/scenes"));
   std::vector<std::string_view> kinds;
   kinds.reserve(readers.size());
@@ -86,21 +85,21 @@ int check(const CLI::App& app) {
 
 }  // namespace
 
-Command check_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("check", "Read files strictly and say all that is wrong with them.");
-  app->add_option("KIND", "what they are")->type_name("scene|run|catalogue|claims|manifest");
-  app->add_option("FILE", "one or several")->type_name("");
-  add_scenes_option(*app);
-  app->allow_extras();
-  app->footer(
+Command check_command() {
+  Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
+  command.options = {{"KIND", "scene|run|catalogue|claims|manifest", "what they are"},
+                     {"FILE", "", "one or several"},
+                     scenes_option()};
+  command.takes_more = true;
+  command.footer =
       "The same is checked whenever a file is read, but for this: a run must agree with itself, and with\n"
       "the scene that it is named after, if --scenes has one. data/schema/ holds JSON Schemas of all these\n"
       "kinds.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
-      "  impact-damper check run mine.json");
-  return {app, [app] { return check(*app); }};
+      "  impact-damper check run mine.json";
+  command.act = check;
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -139,7 +139,7 @@ Manifest built_in() {
   return manifest;
 }
 
-int cite(Arguments arguments) {
+int cite(Arguments& arguments) {
   const std::string file =
       arguments.file("--manifest").value_or(project_file("data/reference/manifest.json"));
   const std::optional<std::string> typed = arguments.text("--stamp");
@@ -189,16 +189,14 @@ int cite(Arguments arguments) {
 
 }  // namespace
 
-Command cite_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("cite", "Say how to cite the program, and what a figure was made from.");
-  app->add_option("--figure", "what figure NUMBER of the manifest was made from, with which\ncommands")
-      ->type_name("NUMBER");
-  app->add_option("--stamp", "the same for the figure that carries this in its lower right corner")
-      ->type_name("TEXT");
-  app->add_option("--manifest", "what the figures were made from; default data/reference/manifest.json")
-      ->type_name("FILE");
-  app->footer(
+Command cite_command() {
+  Command command{.name = "cite",
+                  .description = "Say how to cite the program, and what a figure was made from."};
+  command.options = {
+      {"--figure", "NUMBER", "what figure NUMBER of the manifest was made from, with which\ncommands"},
+      {"--stamp", "TEXT", "the same for the figure that carries this in its lower right corner"},
+      {"--manifest", "FILE", "what the figures were made from; default data/reference/manifest.json"}};
+  command.footer =
       "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers "
       "(SWHID) of "
       "the\nsource tree and of the table; what a figure was made from stands above it as a comment. A stamp "
@@ -210,8 +208,9 @@ Command cite_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper cite >> references.bib\n"
       "  impact-damper cite --figure 8\n"
-      "  impact-damper cite --stamp \"1a2b3c4d · 0.1.0\"");
-  return {app, [app] { return cite(Arguments(*app)); }};
+      "  impact-damper cite --stamp \"1a2b3c4d · 0.1.0\"";
+  command.act = cite;
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -1,28 +1,56 @@
 // The program's subcommands: one function and one file each.
 //
-// A command adds itself to the program and says what to do once its arguments are parsed: return 0, or 1
-// if a check failed; throw UsageError (exit code 2), InputError (3), NumericalError (4), IoError (5).
-// To add one: declare it here, list it in main.cpp, add its file to CMakeLists.txt.
+// A command says what it is as data: name, options and what it does with them. Only main.cpp and
+// arguments.cpp see the parser, CLI11, whose headers take ten seconds to compile in each file that includes
+// them. To add a command: declare it here, list it in main.cpp, add its file to CMakeLists.txt.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <functional>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
 
 namespace impact_damper::cli {
 
+struct Option {
+  enum class Takes { value, repeated_value, nothing };
+
+  std::string name{};  // "--runs", "-o,--output"; of a positional argument without dashes, "FILE"
+  std::string type{};  // of the value, "FILE", or the words it is one of, "json|csv"
+  std::string help{};
+  std::string group{};  // its heading in --help; empty: "Options"
+  Takes takes = Takes::value;
+};
+using Options = std::vector<Option>;
+
 struct Command {
-  CLI::App* arguments = nullptr;
-  std::function<int()> act;
+  std::string name{}, description{};
+  Options options{};
+  std::string footer{};     // below the options in --help
+  bool takes_more = false;  // arguments behind those that are named: Arguments::more()
+  // 0, or 1 if a check failed. Throws UsageError (exit code 2), InputError (3), NumericalError (4), IoError
+  // (5).
+  std::function<int(Arguments&)> act{};
 };
 
-Command check_command(CLI::App& program);
-Command cite_command(CLI::App& program);
-Command figures_command(CLI::App& program);
-Command generate_command(CLI::App& program);
-Command report_command(CLI::App& program);
-Command run_command(CLI::App& program);
-Command scenes_command(CLI::App& program);
-Command verify_command(CLI::App& program);
-Command series_command(CLI::App& program);
+using Commands = std::vector<Command>;
+
+Command check_command();
+Command cite_command();
+Command figures_command();
+// `program`: what is said above the subcommands. Both must live as long as the command.
+Command generate_command(const Command& program, const Commands& commands);
+Command report_command();
+Command run_command();
+Command scenes_command();
+Command series_command();
+Command verify_command();
+
+// Options that several commands have.
+Option threads_option();
+Option scenes_option();  // where the scenes are that runs are named after
+Options scene_options();
+Options engine_options();
 
 }  // namespace impact_damper::cli

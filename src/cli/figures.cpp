@@ -28,21 +28,20 @@ int list_figures(const std::string& file) {
 
 }  // namespace
 
-Command figures_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("figures", "List the figures: table, script, scenes and title of each.");
-  app->add_option("CATALOGUE", "default figures/catalogue.json")->type_name("");
-  app->footer(
+Command figures_command() {
+  Command command{.name = "figures",
+                  .description = "List the figures: table, script, scenes and title of each."};
+  command.options = {{"CATALOGUE", "", "default figures/catalogue.json"}};
+  command.footer =
       "Tables are made by impact-damper series, pictures by figures/draw; make figures does it all.\n\n"
       "Example:\n"
-      "  impact-damper figures");
-  return {app, [app] {
-            Arguments arguments(*app);
-            const std::string file =
-                arguments.file("CATALOGUE").value_or(project_file("figures/catalogue.json"));
-            arguments.finish();
-            return list_figures(file);
-          }};
+      "  impact-damper figures";
+  command.act = [](Arguments& arguments) {
+    const std::string file = arguments.file("CATALOGUE").value_or(project_file("figures/catalogue.json"));
+    arguments.finish();
+    return list_figures(file);
+  };
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -12,25 +12,32 @@
 namespace impact_damper::cli {
 namespace {
 
-// What is said of one option.
+// An option with its names taken apart.
 struct Told {
   std::vector<std::string> shorts, longs;  // without dashes; neither for a positional
   std::string positional, type, meaning;
   bool takes_value = false;
 };
 
-std::vector<Told> options_of(const CLI::App& app) {
+std::vector<Told> options_of(const Command& command) {
   std::vector<Told> all;
-  for (const CLI::Option* option : app.get_options()) {
-    all.push_back({option->get_snames(), option->get_lnames(),
-                   option->get_positional() ? option->get_name(true) : std::string(), option->get_type_name(),
-                   option->get_description(), option->get_items_expected_max() > 0});
+  all.reserve(command.options.size());
+  for (const Option& option : command.options) {
+    Told told{{}, {}, {}, option.type, option.help, option.takes != Option::Takes::nothing};
+    for (std::size_t begin = 0; begin < option.name.size();) {
+      const std::size_t end = std::min(option.name.find(',', begin), option.name.size());
+      const std::string name = option.name.substr(begin, end - begin);
+      if (name.starts_with("--"))
+        told.longs.push_back(name.substr(2));
+      else if (name.starts_with('-'))
+        told.shorts.push_back(name.substr(1));
+      else
+        told.positional = name;
+      begin = end + 1;
+    }
+    all.push_back(told);
   }
   return all;
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& program) {
-  return program.get_subcommands([](const CLI::App*) { return true; });
 }
 
 std::vector<std::string> names_of(const Told& option) {
@@ -92,9 +99,9 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-std::string roff_options(const CLI::App& app) {
+std::string roff_options(const Command& command) {
   std::string text;
-  for (const Told& option : options_of(app)) {
+  for (const Told& option : options_of(command)) {
     const std::vector<std::string> names = names_of(option);
     text += ".TP\n.B " + roff(names.empty() ? option.positional : joined(names, ", "));
     if (option.takes_value && !option.type.empty()) text += " \\fI" + roff(option.type) + "\\fP";
@@ -104,47 +111,47 @@ std::string roff_options(const CLI::App& app) {
 }
 
 // As it is printed, line by line.
-std::string roff_footer(const CLI::App& app) { return ".PP\n.nf\n" + roff(app.get_footer()) + "\n.fi\n"; }
+std::string roff_footer(const Command& command) { return ".PP\n.nf\n" + roff(command.footer) + "\n.fi\n"; }
 
-std::string man_page(const CLI::App& program) {
-  const std::string& name = program.get_name();
+std::string man_page(const Command& program, const Commands& commands) {
+  const std::string& name = program.name;
   std::string text = R"(.TH IMPACT\-DAMPER 1 "" )" +
                      roff('"' + name + ' ' + std::string(provenance().version) + '"') + "\n.nh\n";
-  text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.get_description()) + "\n.SH SYNOPSIS\n";
-  for (const CLI::App* command : commands_of(program)) {
-    text += ".B " + roff(name + " " + command->get_name()) + "\n";
-    for (const Told& option : options_of(*command))
+  text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.description) + "\n.SH SYNOPSIS\n";
+  for (const Command& command : commands) {
+    text += ".B " + roff(name + " " + command.name) + "\n";
+    for (const Told& option : options_of(command))
       if (!option.positional.empty()) text += "\\fI" + roff(option.positional) + "\\fP\n";
     text += "[\\fIOPTIONS\\fP]\n.br\n";
   }
   text += ".SH OPTIONS\n" + roff_options(program) + roff_footer(program);
-  for (const CLI::App* command : commands_of(program)) {
-    text += ".SH " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n";
-    text += roff_options(*command) + roff_footer(*command);
+  for (const Command& command : commands) {
+    text += ".SH " + roff(command.name) + "\n" + roff(command.description) + "\n";
+    text += roff_options(command) + roff_footer(command);
   }
   return text;
 }
 
 // Where the program's words are not wanted, readline completes file names (complete -o default).
-std::string bash_completion(const CLI::App& program) {
-  std::string commands, values, words;
-  for (const CLI::App* command : commands_of(program)) {
-    commands += " " + command->get_name();
+std::string bash_completion(const Command& program, const Commands& commands) {
+  std::string names_of_commands, values, words;
+  for (const Command& command : commands) {
+    names_of_commands += " " + command.name;
     std::string names, first;
-    for (const Told& option : options_of(*command)) {
+    for (const Told& option : options_of(command)) {
       const std::vector<std::string> each = names_of(option);
       for (const std::string& name : each) {
         names += " " + name;
         if (choices(option).empty()) continue;
-        values += "    " + single_quoted(command->get_name() + " " + name) +
+        values += "    " + single_quoted(command.name + " " + name) +
                   ") words=" + single_quoted(joined(choices(option), " ")) + " ;;\n";
       }
       if (each.empty() && first.empty()) first = joined(choices(option), " ");
     }
-    words += "    " + command->get_name() + ") options=" + single_quoted(names.substr(1)) +
+    words += "    " + command.name + ") options=" + single_quoted(names.substr(1)) +
              (first.empty() ? "" : " first=" + single_quoted(first)) + " ;;\n";
   }
-  for (const Told& option : options_of(program)) commands += " " + joined(names_of(option), " ");
+  for (const Told& option : options_of(program)) names_of_commands += " " + joined(names_of(option), " ");
   return "# bash completion for impact-damper, by: impact-damper generate bash\n"
          "_impact_damper() {\n"
          "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} "
@@ -162,7 +169,7 @@ std::string bash_completion(const CLI::App& program) {
          values +
          "    *)\n"
          "      if [ \"$COMP_CWORD\" -eq 1 ]; then words=" +
-         single_quoted(commands.substr(1)) +
+         single_quoted(names_of_commands.substr(1)) +
          "\n"
          "      elif [[ $word == -* ]]; then words=$options\n"
          "      elif [ \"$COMP_CWORD\" -eq 2 ]; then words=$first\n"
@@ -173,20 +180,19 @@ std::string bash_completion(const CLI::App& program) {
          "complete -o default -F _impact_damper impact-damper\n";
 }
 
-std::string zsh_completion(const CLI::App& program) {
+std::string zsh_completion(const Command& program, const Commands& commands) {
   // _arguments takes brackets and colons for its own; the text stands in single quotes.
   const auto described = [](const std::string& text) { return escaped(brief(text), "[]:\\", "\\"); };
-  std::string commands, cases;
-  for (const CLI::App* command : commands_of(program)) {
-    commands += "    " +
-                single_quoted(command->get_name() + ":" + escaped(command->get_description(), ":\\", "\\")) +
-                "\n";
-    cases += "    " + command->get_name() + ")\n      _arguments";
+  std::string described_commands, cases;
+  for (const Command& command : commands) {
+    described_commands +=
+        "    " + single_quoted(command.name + ":" + escaped(command.description, ":\\", "\\")) + "\n";
+    cases += "    " + command.name + ")\n      _arguments";
     const auto add = [&cases](const std::string& argument) {
       cases += " \\\n        ";
       cases += single_quoted(argument);
     };
-    for (const Told& option : options_of(*command)) {
+    for (const Told& option : options_of(command)) {
       const std::vector<std::string> words = choices(option);
       std::string value = option.type == "FOLDER" ? "_files -/" : "_files";
       if (!words.empty()) value = "(" + joined(words, " ") + ")";
@@ -214,7 +220,7 @@ std::string zsh_completion(const CLI::App& program) {
          "  local context state state_descr line curcontext=$curcontext\n"
          "  typeset -A opt_args\n"
          "  local -a commands=(\n" +
-         commands +
+         described_commands +
          "  )\n"
          "  _arguments -C" +
          own +
@@ -235,7 +241,7 @@ std::string zsh_completion(const CLI::App& program) {
          "fi\n";
 }
 
-std::string fish_completion(const CLI::App& program) {
+std::string fish_completion(const Command& program, const Commands& commands) {
   const auto fish_quoted = [](const std::string& text) { return "'" + escaped(text, "'\\", "\\") + "'"; };
   const auto line = [&](const std::string& when, const Told& option) {
     std::string text = "complete -c impact-damper -n " + fish_quoted(when);
@@ -250,41 +256,42 @@ std::string fish_completion(const CLI::App& program) {
   };
   std::string text = "# fish completion for impact-damper, by: impact-damper generate fish\n";
   for (const Told& option : options_of(program)) text += line("__fish_use_subcommand", option);
-  for (const CLI::App* command : commands_of(program)) {
-    const std::string name = command->get_name();
+  for (const Command& command : commands) {
+    const std::string name = command.name;
     text += "complete -c impact-damper -n __fish_use_subcommand -f -a " + name + " -d " +
-            fish_quoted(command->get_description()) + "\n";
-    for (const Told& option : options_of(*command))
+            fish_quoted(command.description) + "\n";
+    for (const Told& option : options_of(command))
       if (option.positional.empty() || !choices(option).empty())
         text += line("__fish_seen_subcommand_from " + name, option);
   }
   return text;
 }
 
-int generate(const CLI::App& program, Arguments arguments) {
+int generate(const Command& program, const Commands& commands, Arguments& arguments) {
   const std::vector<std::string_view> kinds{"man", "bash", "zsh", "fish"};
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (!arguments.given("KIND")) arguments.reject("KIND", "must be given: man, bash, zsh or fish");
   arguments.finish();
-  write_standard_output(*kind == 0   ? man_page(program)
-                        : *kind == 1 ? bash_completion(program)
-                        : *kind == 2 ? zsh_completion(program)
-                                     : fish_completion(program));
+  write_standard_output(*kind == 0   ? man_page(program, commands)
+                        : *kind == 1 ? bash_completion(program, commands)
+                        : *kind == 2 ? zsh_completion(program, commands)
+                                     : fish_completion(program, commands));
   return 0;
 }
 
 }  // namespace
 
-Command generate_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("generate", "Print the man page, or a shell's completions, of this program.");
-  app->add_option("KIND", "man, bash, zsh or fish")->type_name("man|bash|zsh|fish");
-  app->footer(
+Command generate_command(const Command& program, const Commands& commands) {
+  Command command{.name = "generate",
+                  .description = "Print the man page, or a shell's completions, of this program."};
+  command.options = {{"KIND", "man|bash|zsh|fish", "man, bash, zsh or fish"}};
+  command.footer =
       "make install puts all four in place.\n\n"
       "Examples:\n"
       "  impact-damper generate man | man -l -\n"
-      "  . <(impact-damper generate bash)");
-  return {app, [app, &program] { return generate(program, Arguments(*app)); }};
+      "  . <(impact-damper generate bash)";
+  command.act = [&](Arguments& arguments) { return generate(program, commands, arguments); };
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -4,7 +4,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -82,32 +81,85 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
   return arguments;
 }
 
-}  // namespace
+// Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
+std::string swallowed_options(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  const auto is_option = [&](const std::string& value) {
+    const std::string name = value.substr(0, value.find('='));
+    return name.starts_with('-') &&
+           std::any_of(options.begin(), options.end(),
+                       [&](const CLI::Option* option) { return option->check_name(name); });
+  };
+  std::string lines;
+  for (const CLI::Option* option : options) {
+    for (const std::string& value : option->results()) {
+      if (!is_option(value)) continue;
+      if (!lines.empty()) lines += '\n';
+      lines += option->get_name() + ": needs a value, got the option " + cut(value);
+    }
+  }
+  return lines;
+}
 
-// NOLINTNEXTLINE(bugprone-exception-escape): without memory for a message there is none
-int main(int argc, char** argv) {
-  cli::end_cleanly();
-  CLI::App program{
-      "The impact damped simple harmonic oscillator: simulate it, and hold the results against the paper.",
-      "impact-damper"};
-  program.set_version_flag("-v,--version", "impact-damper " + std::string(provenance().version) + " (" +
-                                               std::string(provenance().commit) + ")");
-  program.get_formatter()->column_width(36);
-  program.require_subcommand(0, 1);
-  program.footer(
+// What is said above the subcommands.
+cli::Command whole_program() {
+  using Takes = cli::Option::Takes;
+  cli::Command program{.name = "impact-damper",
+                       .description =
+                           "The impact damped simple harmonic oscillator: simulate it, and hold the results "
+                           "against the paper."};
+  program.options = {
+      {.name = "-h,--help", .help = "Print this help message and exit", .takes = Takes::nothing},
+      {.name = "-v,--version",
+       .help = "Display program version information and exit",
+       .takes = Takes::nothing}};
+  program.footer =
       "impact-damper SUBCOMMAND --help, or help SUBCOMMAND, says more about each.\n\n"
       "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
       "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
       "is.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content "
       "is\n"
-      "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.");
+      "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.";
+  return program;
+}
 
-  const std::array commands{
-      cli::run_command(program),    cli::report_command(program), cli::scenes_command(program),
-      cli::verify_command(program), cli::series_command(program), cli::figures_command(program),
-      cli::check_command(program),  cli::cite_command(program),   cli::generate_command(program),
-  };
+void add_options(CLI::App& app, const cli::Command& command) {
+  for (const cli::Option& each : command.options) {
+    if (each.name == "-h,--help" || each.name == "-v,--version") continue;  // the parser's own
+    CLI::Option* const option = each.takes == cli::Option::Takes::nothing
+                                    ? app.add_flag(each.name, each.help)
+                                    : app.add_option(each.name, each.help);
+    if (each.takes != cli::Option::Takes::nothing) option->type_name(each.type);
+    if (each.takes == cli::Option::Takes::repeated_value) option->expected(1)->take_all();
+    if (!each.group.empty()) option->group(each.group);
+  }
+  app.footer(command.footer);
+  app.allow_extras(command.takes_more);
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(bugprone-exception-escape): without memory for a message there is none
+int main(int argc, char** argv) {
+  cli::end_cleanly();
+  const cli::Command about = whole_program();
+  cli::Commands commands{cli::run_command(),    cli::report_command(), cli::scenes_command(),
+                         cli::verify_command(), cli::series_command(), cli::figures_command(),
+                         cli::check_command(),  cli::cite_command()};
+  commands.push_back(cli::generate_command(about, commands));
+  for (cli::Command& command : commands)
+    command.options.insert(command.options.begin(), about.options.front());
+
+  CLI::App program{about.description, about.name};
+  program.set_help_flag(about.options[0].name, about.options[0].help);
+  program.set_version_flag(about.options[1].name, about.name + " " + std::string(provenance().version) +
+                                                      " (" + std::string(provenance().commit) + ")");
+  program.get_formatter()->column_width(36);
+  program.require_subcommand(0, 1);
+  program.footer(about.footer);
+  for (const cli::Command& command : commands)
+    add_options(*program.add_subcommand(command.name, command.description), command);
 
   const auto head = [&] {
     const auto parsed = program.get_subcommands();
@@ -127,16 +179,17 @@ int main(int argc, char** argv) {
       write_standard_output(text.str());
       return code;
     }
-    const std::string swallowed = cli::swallowed_options(command_of());
+    const std::string swallowed = swallowed_options(command_of());
     if (!swallowed.empty()) throw cli::UsageError(swallowed);
     for (const cli::Command& command : commands) {
-      if (!command.arguments->parsed()) continue;
+      if (command_of().get_name() != command.name) continue;
       require_arithmetic();  // tables and verdicts are computed as well, without an engine
-      return command.act();
+      cli::Arguments arguments(command_of());
+      return command.act(arguments);
     }
     throw cli::UsageError("a subcommand must be given, see impact-damper --help");
   } catch (const CLI::ExtrasError&) {
-    const std::string swallowed = cli::swallowed_options(command_of());
+    const std::string swallowed = swallowed_options(command_of());
     return fail(usage, head(), swallowed.empty() ? unknown_arguments(program, command_of()) : swallowed);
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), option = text.substr(0, text.find(':'));

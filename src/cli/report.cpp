@@ -62,8 +62,7 @@ std::string page_of(const Findings& findings, const std::vector<Drawing>& drawin
   return page_html(findings, drawings, svgs, frame, parts);
 }
 
-int report(const CLI::App& app) {
-  Arguments arguments(app);
+int report(Arguments& arguments) {
   const SceneFile file = scene_of(arguments);
   const Engine engine = engine_of(arguments);
   EnsembleOptions ensemble;
@@ -111,29 +110,32 @@ int report(const CLI::App& app) {
 
 }  // namespace
 
-Command report_command(CLI::App& program) {
-  CLI::App* const app = program.add_subcommand(
-      "report",
-      "Simulate a scene and write a page about it: decay, loss factor, regimes, energy, predictability.");
-  add_scene_options(*app);
-  add_engine_options(*app);
+Command report_command() {
+  Command command{
+      .name = "report",
+      .description =
+          "Simulate a scene and write a page about it: decay, loss factor, regimes, energy, predictability."};
+  command.options = scene_options();
+  const Options engine = engine_options();
+  command.options.insert(command.options.end(), engine.begin(), engine.end());
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    app->add_option(name, help)->type_name(type)->group("Output");
+    command.options.push_back({name, type, help, "Output"});
   };
   add("--members", "N",
       "perturbed initial conditions that are simulated, the scene's own\namong them; 1 to 100, default 16");
   add("--figures", "FOLDER", "write each figure there as well, as SVG");
   add("-o,--output", "FILE", "write the page there instead of to stdout");
-  add_threads_option(*app);
-  app->footer(
+  command.options.push_back(threads_option());
+  command.footer =
       "The page is one HTML file that needs no other and no network. The scene is that of impact-damper "
       "run;\n"
       "given in kilograms, newtons per metre and millimetres, the page speaks in both. gnuplot must be "
       "there.\n\n"
       "Examples:\n"
       "  impact-damper report --scene data/examples/mast.json -o mast.html\n"
-      "  impact-damper report --mass-ratio 0.05 --x0 3 --until-amplitude 0.05 -o mine.html");
-  return {app, [app] { return report(*app); }};
+      "  impact-damper report --mass-ratio 0.05 --x0 3 --until-amplitude 0.05 -o mine.html";
+  command.act = report;
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -123,8 +123,7 @@ void warn_of_missing_samples(const Run& run, const Record& record) {
             << " samples asked for\n";
 }
 
-int run(const CLI::App& app) {
-  Arguments arguments(app);
+int run(Arguments& arguments) {
   const SceneFile scene_file = scene_of(arguments);
   const Scene& scene = scene_file.scene;
   const std::optional<Scales>& scales = scene_file.scales;
@@ -164,41 +163,39 @@ int run(const CLI::App& app) {
   return 0;
 }
 
-void add_output_options(CLI::App& app) {
-  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    return app.add_option(name, help)->type_name(type)->group("Output");
+Options output_options() {
+  Options options;
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& help,
+                       Option::Takes takes = Option::Takes::value) {
+    options.push_back({name, type, help, "Output", takes});
   };
   add("--record", "LIST",
       "what to record, with commas between: half_cycles (default),\n"
       "impacts, contacts, energy, history");
   add("--history", "T0:T1:N",
       "record the motion at N equally spaced times from T0 to T1, both\nincluded, in seconds beside a scene "
-      "in units; may be repeated, in\norder of time")
-      ->expected(1)
-      ->take_all();
+      "in units; may be repeated, in\norder of time",
+      Option::Takes::repeated_value);
   add("--history-below", "A:LENGTH:N",
       "the same over LENGTH, from the end of the first half cycle below\n"
-      "amplitude A on, in seconds and mm beside a scene in units; may be\nrepeated, with descending A")
-      ->expected(1)
-      ->take_all();
+      "amplitude A on, in seconds and mm beside a scene in units; may be\nrepeated, with descending A",
+      Option::Takes::repeated_value);
   add("--format", "NAME",
       "json (default), a run file; or csv, the one section that is\n"
       "recorded (half_cycles, impacts, contacts or history) as a table");
-  const std::string in_si =
-      "csv of a scene in units: columns in SI, as their names say (time_s,\namplitude_m)";
-  app.add_flag("--si", in_si)->group("Output");
+  add("--si", "", "csv of a scene in units: columns in SI, as their names say (time_s,\namplitude_m)",
+      Option::Takes::nothing);
   add("-o,--output", "FILE", "write the run there instead of to stdout");
+  return options;
 }
 
 }  // namespace
 
-Command run_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("run", "Simulate a scene and write what happens as a run file.");
-  add_scene_options(*app);
-  add_engine_options(*app);
-  add_output_options(*app);
-  app->footer(
+Command run_command() {
+  Command command{.name = "run", .description = "Simulate a scene and write what happens as a run file."};
+  for (const Options& options : {scene_options(), engine_options(), output_options()})
+    command.options.insert(command.options.end(), options.begin(), options.end());
+  command.footer =
       "A scene is a primary mass on a spring, and a secondary mass that travels between the walls\n"
       "of a cavity in it. Everything is dimensionless: lengths by the free travel between the\n"
       "walls, times by 1/Omega_n = sqrt(M/K), velocities by their quotient, forces by the force\n"
@@ -218,8 +215,9 @@ Command run_command(CLI::App& program) {
       "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not valid, 3 "
       "the scene\n"
       "file's content is not valid, 4 numerical failure, 5 the scene file cannot be read or\n"
-      "the run cannot be written.");
-  return {app, [app] { return run(*app); }};
+      "the run cannot be written.";
+  command.act = run;
+  return command;
 }
 
 }  // namespace impact_damper::cli

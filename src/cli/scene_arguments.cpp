@@ -172,9 +172,19 @@ void reject_as_options(const std::invalid_argument& problems) {
   throw UsageError(text);
 }
 
-void add_scene_options(CLI::App& app) {
+Option threads_option() {
+  return {"--threads", "N",
+          "how many simulate at once; default one for each processor, same results with any"};
+}
+
+Option scenes_option() {
+  return {"--scenes", "FOLDER", "folder of the scenes that runs are named after; default data/scenes"};
+}
+
+Options scene_options() {
+  Options options;
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    app.add_option(name, help)->type_name(type)->group("Scene");
+    options.push_back({name, type, help, "Scene"});
   };
   add("--scene", "FILE",
       "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; options given beside it win, "
@@ -189,14 +199,16 @@ void add_scene_options(CLI::App& app) {
   add("--until-amplitude", "A",
       "stop at the end of the first half cycle below this amplitude;\n"
       "a number > 0. One of the two stops, or both, must be given");
+  return options;
 }
 
-void add_engine_options(CLI::App& app) {
+Options engine_options() {
+  Options options;
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    return app.add_option(name, help)->type_name(type)->group("Engine");
+    options.push_back({name, type, help, "Engine"});
   };
   const auto add_flag = [&](const std::string& name, const std::string& help) {
-    app.add_flag(name, help)->group("Engine");
+    options.push_back({name, "", help, "Engine", Option::Takes::nothing});
   };
   add("--engine", "exact|restitution|cem",
       "exact (default): compliant walls in closed form, no time step;\n"
@@ -239,6 +251,7 @@ void add_engine_options(CLI::App& app) {
   add("--max-steps", "N",
       "stop after so many steps, of the searches for events or, with\n"
       "cem, of time; a whole number >= 1, default 10000000,\nwith cem 300000000");
+  return options;
 }
 
 }  // namespace impact_damper::cli

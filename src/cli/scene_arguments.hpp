@@ -4,15 +4,12 @@
 
 #include <stdexcept>
 
-#include "arguments.hpp"
+#include "commands.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper::cli {
-
-void add_scene_options(CLI::App& app);
-void add_engine_options(CLI::App& app);
 
 // The scene of --scene and the options beside it, which win; what is not valid is noted in `arguments`.
 // Throws InputError and IoError about the file.

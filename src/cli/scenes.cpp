@@ -54,22 +54,21 @@ int list_scenes(const fs::path& folder) {
 
 }  // namespace
 
-Command scenes_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("scenes", "List the scenes of a folder, each with its numbers.");
-  app->add_option("FOLDER", "folder of scene files (*.json); default data/scenes")->type_name("");
-  app->footer(
+Command scenes_command() {
+  Command command{.name = "scenes", .description = "List the scenes of a folder, each with its numbers."};
+  command.options = {{"FOLDER", "", "folder of scene files (*.json); default data/scenes"}};
+  command.footer =
       "Columns are the keys of a dimensionless scene file; a scene in units is listed as what it makes\n"
       "(impact-damper run --help).\n\n"
       "Examples:\n"
       "  impact-damper scenes\n"
-      "  impact-damper scenes my/scenes");
-  return {app, [app] {
-            Arguments arguments(*app);
-            const std::string folder = arguments.file("FOLDER").value_or(project_file("data/scenes"));
-            arguments.finish();
-            return list_scenes(folder);
-          }};
+      "  impact-damper scenes my/scenes";
+  command.act = [](Arguments& arguments) {
+    const std::string folder = arguments.file("FOLDER").value_or(project_file("data/scenes"));
+    arguments.finish();
+    return list_scenes(folder);
+  };
+  return command;
 }
 
 }  // namespace impact_damper::cli

@@ -68,7 +68,7 @@ void load(const Figure& figure, const SceneRuns& folders, FigureRuns& runs) {
   }
 }
 
-int make_tables(Arguments arguments) {
+int make_tables(Arguments& arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.reject("--runs", "must be given: the folder of run files");
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
@@ -119,23 +119,20 @@ int make_tables(Arguments arguments) {
 
 }  // namespace
 
-Command series_command(CLI::App& program) {
-  CLI::App* const app = program.add_subcommand("series", "Make from run files the tables that figures draw.");
-  app->add_option("--catalogue", "which figure draws what; default figures/catalogue.json")
-      ->type_name("FILE");
-  app->add_option("--runs", "where the runs are, each SCENE.json by the scene's name")->type_name("FOLDER");
-  add_scenes_option(*app);
-  app->add_option("--figure",
-                  "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all")
-      ->type_name("NUMBER")
-      ->expected(1)
-      ->take_all();
-  app->add_option("-o,--output", "file, or folder for figNN.dat or figNN.csv; default standard output")
-      ->type_name("PLACE");
-  app->add_option("--format", "gnuplot (default), what the figures are drawn from, or csv")
-      ->type_name("NAME");
-  add_threads_option(*app);
-  app->footer(
+Command series_command() {
+  Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
+  command.options = {
+      {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
+      {"--runs", "FOLDER", "where the runs are, each SCENE.json by the scene's name"},
+      scenes_option(),
+      {.name = "--figure",
+       .type = "NUMBER",
+       .help = "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all",
+       .takes = Option::Takes::repeated_value},
+      {"-o,--output", "PLACE", "file, or folder for figNN.dat or figNN.csv; default standard output"},
+      {"--format", "NAME", "gnuplot (default), what the figures are drawn from, or csv"},
+      threads_option()};
+  command.footer =
       "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
       "numbers.\n"
       "With --format csv the same numbers are tidy CSV (RFC 4180, lines end with LF) under\n"
@@ -147,8 +144,9 @@ Command series_command(CLI::App& program) {
       "Examples:\n"
       "  impact-damper series --runs build/runs/exact --figure 8\n"
       "  impact-damper series --runs build/runs/exact -o build/series/exact\n"
-      "  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv");
-  return {app, [app] { return make_tables(Arguments(*app)); }};
+      "  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv";
+  command.act = make_tables;
+  return command;
 }
 
 }  // namespace impact_damper::cli

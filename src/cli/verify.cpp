@@ -219,7 +219,7 @@ void check_runs(const SceneRuns& folders, const std::vector<Claim>& claims) {
   }
 }
 
-int verify(Arguments arguments) {
+int verify(Arguments& arguments) {
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
   ensemble.threads = threads_of(arguments);
@@ -282,21 +282,19 @@ int verify(Arguments arguments) {
 
 }  // namespace
 
-Command verify_command(CLI::App& program) {
-  CLI::App* const app =
-      program.add_subcommand("verify", "Hold the runs against everything the paper reports, claim by claim.");
-  app->add_option("--claims", "what the paper reports; default data/claims.json")->type_name("FILE");
-  app->add_option("--runs", "folder of run files, SCENE.json each; default build/runs/exact")
-      ->type_name("FOLDER");
-  add_scenes_option(*app);
-  app->add_option("--catalogue", "check that the claims its figures rest on exist")->type_name("FILE");
-  app->add_option("--members",
-                  "releases in each ensemble, the run file's own among them;\n1 to 100, default 16")
-      ->type_name("N");
-  app->add_option("-o,--output", "write the verdicts as JSON")->type_name("FILE");
-  app->add_option("--markdown", "write the table, with every explanation, as Markdown")->type_name("FILE");
-  add_threads_option(*app);
-  app->footer(
+Command verify_command() {
+  Command command{.name = "verify",
+                  .description = "Hold the runs against everything the paper reports, claim by claim."};
+  command.options = {
+      {"--claims", "FILE", "what the paper reports; default data/claims.json"},
+      {"--runs", "FOLDER", "folder of run files, SCENE.json each; default build/runs/exact"},
+      scenes_option(),
+      {"--catalogue", "FILE", "check that the claims its figures rest on exist"},
+      {"--members", "N", "releases in each ensemble, the run file's own among them;\n1 to 100, default 16"},
+      {"-o,--output", "FILE", "write the verdicts as JSON"},
+      {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
+      threads_option()};
+  command.footer =
       "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
       "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
       "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
@@ -305,8 +303,9 @@ Command verify_command(CLI::App& program) {
       "of another scene or engine than the others is rejected.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
-      "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
-  return {app, [app] { return verify(Arguments(*app)); }};
+      "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md";
+  command.act = verify;
+  return command;
 }
 
 }  // namespace impact_damper::cli
