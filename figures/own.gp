@@ -14,6 +14,7 @@ if (in_units) {
 # A narrow axis is not worth logarithms.
 is_wide(low, high) = high > 3 * low
 unit_x = 1; unit_y = 1
+set minussign
 # Over less than two decades a logarithmic axis is marked at 1, 2 and 5 of each, or it had but a number or two.
 marks(name, low, high) = high / low >= 100 ? "" : sprintf("set %stics (%s); ", name, marks_of(floor(log10(low)), log10(high)))
 marks_of(decade, end) = sprintf("%g, %g, %g", 10.0 ** decade, 2 * 10.0 ** decade, 5 * 10.0 ** decade).\

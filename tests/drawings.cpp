@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 using namespace impact_damper;
 
@@ -153,18 +153,18 @@ TEST_CASE("numbers are rounded for reading and keep their digits for programs") 
   CHECK(number_html(-2.5e-12) == R"(<data value="-2.5e-12">−2.5×10<sup>−12</sup></data>)");
   CHECK(number_html(999.6) == R"(<data value="999.6">1000</data>)");
   CHECK(number_html(1e100) == R"(<data value="1e+100">1×10<sup>100</sup></data>)");
-  CHECK(Speech(std::nullopt).length(6) == "<data value=\"6\">6</data>\u00a0ε");
-  CHECK(Speech(Scales{2, 50, 4}).length(6) ==
+  CHECK(Quantities(std::nullopt).length(6) == "<data value=\"6\">6</data>\u00a0ε");
+  CHECK(Quantities(Scales{2, 50, 4}).length(6) ==
         "<data value=\"24\">24</data>\u00a0mm (<data value=\"6\">6</data>\u00a0ε)");
-  CHECK(Speech(Scales{2, 50, 4}).length(0.01) ==
+  CHECK(Quantities(Scales{2, 50, 4}).length(0.01) ==
         "<data value=\"40\">40</data>\u00a0µm (<data value=\"0.01\">0.01</data>\u00a0ε)");
-  CHECK(Speech(Scales{2, 50, 4}).velocity(0.5) ==
+  CHECK(Quantities(Scales{2, 50, 4}).velocity(0.5) ==
         "<data value=\"0.01\">0.01</data>\u00a0m/s (<data value=\"0.5\">0.5</data>\u00a0εΩ)");
-  CHECK(Speech(Scales{2, 50, 4}).force(0.5) ==
+  CHECK(Quantities(Scales{2, 50, 4}).force(0.5) ==
         "<data value=\"0.1\">0.1</data>\u00a0N (<data value=\"0.5\">0.5</data>\u00a0Kε)");
-  CHECK(Speech(Scales{2, 50, 4}).duration(0.5) ==
+  CHECK(Quantities(Scales{2, 50, 4}).duration(0.5) ==
         "<data value=\"100\">100</data>\u00a0ms (<data value=\"0.5\">0.5</data>\u00a0/Ω)");
-  CHECK(Speech(std::nullopt).frequency(0.5) == "<data value=\"0.5\">0.5</data>\u00a0Ω");
+  CHECK(Quantities(std::nullopt).frequency(0.5) == "<data value=\"0.5\">0.5</data>\u00a0Ω");
   CHECK(without_tags(number_html(0.5) + " m") == "0.5 m");
   CHECK(escaped("<\"a&b\">") == "&lt;&quot;a&amp;b&quot;&gt;");
 }

@@ -43,6 +43,8 @@ for each in alone:
     numbers = {key: each[key] for key in ("ours", "low", "high")}
     assert all_three["also"][each["claim"].replace("-", "_")] == numbers, (all_three, each)
 assert len({all_three["ours"]} | {each["ours"] for each in alone}) == 3, "three measures give three numbers"
+for each in [all_three, *alone, *all_three["also"].values()]:
+    assert each["low"] < each["ours"] < each["high"], each  # of five decays that differ
 shown = [float(number) for number in re.findall(r"(?:^|and )([\d.]+)", all_three["words"])]
 for number, each in zip(shown, [all_three, *alone], strict=True):
     assert abs(number - each["ours"]) < 1e-3 * number, all_three

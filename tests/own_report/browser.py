@@ -62,7 +62,7 @@ class Report(unittest.TestCase):
         })()""")
         self.page.moves(x, y)
         told = self.page.does('document.querySelector("#figure-decay .reading").textContent')
-        self.assertRegex(told, r"t = [\d.]+, A = [\d.]+")
+        self.assertRegex(told, r"time in s = [\d.]+, peak amplitude in mm = [\d.]+")
         names = self.page.does('[...document.querySelectorAll(".switches button")].map(b => b.textContent)')
         self.assertIn("loose mass", names)
         self.assertEqual([name for name in names if re.match("gnuplot", name)], [])

@@ -3,9 +3,11 @@ reading of a run of the same scene gives.
 
     scenes.py PROGRAM EXAMPLE FOLDER
 """
+import html
 import json
 import math
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -37,8 +39,9 @@ SCENES = {
     "lossless": (["--restitution", "1", "--until-time", "100"], {"loss": "nothing is ever lost"},
                  ["decay", "phase", "begin", "prediction"]),
     "three half cycles": (["--until-time", "10"], {"loss": "too short for that"}, ["decay", "phase", "begin", "prediction"]),
-    "slip of the units": (["--scene", "slip.json"], {"header": "is the free travel given in millimetres?"},
+    "slip of the units": (["--scene", "slip.json"], {"header": "is the clearance given in millimetres?"},
                           ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "small and quick": (["--scene", "blade.json"], {"decay": "µm"}, ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "at rest": (["--x0", "0", "--until-time", "5"], {"regimes": "Without half cycles"}, ["begin"]),
     "begins in a wall": (["--x0", "1", "--y0", "1.2", "--until-time", "80"], {"energy": "impacts were counted", "header": "outside its cavity", "loads": "in which the run begins"},
                          ["decay", "loss", "phase", "begin", "prediction"]),
@@ -191,6 +194,50 @@ def response(page, run, scales):
             holds(page, "response", max(map(amplitude, around)) * length, f"worst amplitude with the mass {mass}", 1e-6)
 
 
+# How many of a unit make a second, a millimetre or a hertz.
+UNITS = {"s": 1, "ms": 1e3, "mm": 1, "µm": 1e3, "m": 1e-3, "Hz": 1, "kHz": 1e-3}
+
+
+def axis(figure, given, noun, symbol, end, margin, scale):
+    """An axis measures what it says, in a unit that fits, and ends at `end`, a dimensionless number, or up to `margin` above."""
+    name, low, high = given[:3]
+    factor = 1
+    if scale is None:
+        check(name == symbol, f"{figure}: an axis is called {name}, not {symbol}")
+    else:
+        told, _, unit = name.rpartition(" in ")
+        check(told == noun and unit in UNITS, f"{figure}: an axis is called {name}, not {noun} in its unit")
+        factor = scale * UNITS.get(unit, math.nan)
+        check(high < 100 if unit in ("ms", "µm") else 0.1 <= high < 1e4, f"{figure}: an axis goes to {high} {unit}")
+    check(end * factor * (1 - 1e-6) <= high <= end * factor * margin * (1 + 1e-6), f"{figure}: {name} goes to {high}, not {end * factor}")
+
+
+def compare_axes(name, text, run, scales):
+    """What the axes of the drawings measure is what the run holds, in units where the scene is."""
+    drawn = {figure: json.loads(html.unescape(said))["axes"] for figure, said in re.findall(
+        r'id="figure-(\w+)">(?:(?!</figure>).)*?<metadata>(.*?)</metadata>', text, re.S)}
+    seconds, millimetres = scales[:2] if scales else (None, None)
+    rows = run["half_cycles"]
+    if "decay" in drawn:
+        only, = drawn["decay"]
+        axis(f"{name}: decay", only["x"], "time", "t", max(rows["peak_time"]), 1, seconds)
+        axis(f"{name}: decay", only["y"], "peak amplitude", "A", max(rows["amplitude"]), 1.3, millimetres)
+    if "loss" in drawn:
+        axis(f"{name}: loss", drawn["loss"][0]["x"], "peak amplitude", "A", rows["amplitude"][1], 1.2, millimetres)
+    if "begin" in drawn:
+        above, below = drawn["begin"]
+        end = min(4 * math.pi if rows["amplitude"] else run["end_time"], run["end_time"])
+        axis(f"{name}: motion", above["x"], "time", "t", 0.98 * end, 1.04, seconds)  # the last sample before the end
+        axis(f"{name}: motion", above["y"], "relative displacement", "y", 1.14, 2, millimetres)
+        check(above["x"][:3] == below["x"][:3], f"{name}: motion: two axes of time")
+
+
+def in_page(length, scales):
+    """A length as a page gives it: in units in millimetres, below a tenth of one in micrometres."""
+    value = length * (scales[1] if scales else 1)
+    return 1e3 * value if scales and value < 0.1 else value
+
+
 def compare(page, run, scales):
     """The numbers of the page against those of a run, read anew. `scales` are (s, mm, J), or nothing."""
     rows, energy = run["half_cycles"], run["energy"]
@@ -234,7 +281,7 @@ def compare(page, run, scales):
     if "loss" in drawn:
         eta, amplitude = best_damping(rows)
         holds(page, "loss", eta, "largest loss factor", 1e-6)  # the two ways of fitting round differently
-        holds(page, "loss", amplitude * (scales[1] if scales else 1), "its amplitude", 1e-6)
+        holds(page, "loss", in_page(amplitude, scales), "its amplitude", 1e-6)
     if rows["impacts"] and energy["impact_loss"]:
         holds(page, "regimes", max(rows["impacts"]), "most impacts in a half cycle")
         for count, (first, last) in windows(rows["impacts"]).items():
@@ -254,6 +301,8 @@ folder.mkdir(parents=True)
 given = json.loads(example.read_text())
 (folder / "slip.json").write_text(json.dumps({**given, "clearance": given["clearance"] / 1000, "until_seconds": 10,
                                               "description": "1 < 2 & \"3\" {{title}}"}))
+(folder / "blade.json").write_text(json.dumps({"mass": 0.05, "stiffness": 2e6, "secondary_mass": 0.002, "clearance": 0.01,
+                                               "restitution": 0.6, "initial_displacement": 0.06, "until_millimetres": 0.0002}))
 forced = {**given, "exciting_force": 10, "exciting_frequency": 3.18, "until_seconds": 60}
 del forced["until_millimetres"]
 (folder / "forced.json").write_text(json.dumps(forced))
@@ -286,6 +335,7 @@ for name, (options, words, drawn) in SCENES.items():
         mass, stiffness, length = scene["mass"], scene["stiffness"], scene["clearance"]
         scales = (math.sqrt(mass / stiffness), length, stiffness * length * length * 1e-6)
     compare(page, run, scales)
+    compare_axes(name, text, run, scales)
 
     before = file.stat().st_mtime_ns
     call("report", *options, "--members", MEMBERS, "--threads", "1", "-o", file.name)

@@ -71,13 +71,13 @@ std::optional<Drawing> decay(const Findings& findings) {
       drawing_of(findings, "decay", findings.forced() ? "Amplitude over time" : "Decay of the amplitude");
   drawing.table.blocks.push_back(
       {.name = "curve",
-       .columns = {{"time", "time of the peak, by 1/Omega_n", rows.peak_time},
-                   {"peak amplitude", "of the half cycle, by epsilon", rows.amplitude}}});
+       .columns = {{"time", "time of the peak, in units of 1/Omega_n", rows.peak_time},
+                   {"peak amplitude", "of the half cycle, in units of epsilon", rows.amplitude}}});
   if (findings.others.empty()) return drawing;
   TableBlock band{
       .name = "band",
-      .columns = {{"time", "time of the peak, by 1/Omega_n", {}},
-                  {"least", "amplitude of the ensemble, by epsilon", {}},
+      .columns = {{"time", "time of the peak, in units of 1/Omega_n", {}},
+                  {"least", "amplitude of the ensemble, in units of epsilon", {}},
                   {std::to_string(findings.others.size() + 1) + " releases", "greatest amplitude", {}}}};
   for (std::size_t row = 0; row < findings.spread.size(); ++row) {
     double least = rows.amplitude[row], greatest = least;
@@ -97,7 +97,7 @@ std::optional<Drawing> decay(const Findings& findings) {
 TableBlock loss_band(const Findings& findings) {
   TableBlock block{
       .name = "band-1",
-      .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+      .columns = {{"amplitude", "peak amplitude A, in units of epsilon", {}},
                   {"least", "eta of the ensemble", {}},
                   {std::to_string(findings.others.size() + 1) + " releases", "greatest eta", {}}}};
   if (findings.losses_of_others.empty()) return block;
@@ -147,18 +147,19 @@ std::optional<Drawing> response(const Findings& findings) {
   if (findings.response.points.size() < least_points) return std::nullopt;
   const Scene& scene = findings.subject.scene;
   Drawing drawing = drawing_of(findings, "response", "Amplitude over frequency");
-  TableBlock curve{.name = "curve",
-                   .columns = {{"frequency", "of the force, by Omega_n", {}},
-                               {"with the damper", "mean amplitude in the last quarter, by epsilon", {}}}};
+  TableBlock curve{
+      .name = "curve",
+      .columns = {{"frequency", "of the force, in units of Omega_n", {}},
+                  {"with the damper", "mean amplitude in the last quarter, in units of epsilon", {}}}};
   for (const ResponsePoint& point : findings.response.points) {
     curve.columns[0].values.push_back(point.frequency);
     curve.columns[1].values.push_back(point.amplitude.mean);
   }
   drawing.table.blocks.push_back(std::move(curve));
   const auto linear = [&](const std::string& name, const std::string& legend, double mass) {
-    TableBlock block{
-        .name = name,
-        .columns = {{"frequency", "of the force, by Omega_n", {}}, {legend, "amplitude, by epsilon", {}}}};
+    TableBlock block{.name = name,
+                     .columns = {{"frequency", "of the force, in units of Omega_n", {}},
+                                 {legend, "amplitude, in units of epsilon", {}}}};
     for (const double frequency : drawn_frequencies(findings.response)) {
       const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
       if (!std::isfinite(amplitude)) continue;
@@ -171,7 +172,7 @@ std::optional<Drawing> response(const Findings& findings) {
   linear("empty", "box empty", 1);
   drawing.table.blocks.push_back(
       {.name = "given",
-       .columns = {{"frequency", "that the scene gives, by Omega_n", {scene.force_frequency}},
+       .columns = {{"frequency", "that the scene gives, in units of Omega_n", {scene.force_frequency}},
                    {"frequency given",
                     "its amplitude of the damped motion",
                     {findings.response.worst().amplitude.mean}}}});
@@ -187,9 +188,10 @@ std::optional<Drawing> loss(const Findings& findings) {
   figure.table = TableKind::loss_factor;
   figure.ordinate = LossOrdinate::eta;
   const auto block = [&](const std::string& block_name, const std::string& legend, const LossFactor& loss) {
-    drawing.table.blocks.push_back({.name = block_name,
-                                    .columns = {{"amplitude", "peak amplitude A, by epsilon", loss.amplitude},
-                                                {legend, "eta = -2 d ln A/dt, per radian", loss.eta}}});
+    drawing.table.blocks.push_back(
+        {.name = block_name,
+         .columns = {{"amplitude", "peak amplitude A, in units of epsilon", loss.amplitude},
+                     {legend, "eta = -2 d ln A/dt, per radian", loss.eta}}});
   };
   block("curve-1", "simulated", findings.loss);
   if (!findings.loss_after_failure.eta.empty())
@@ -201,7 +203,7 @@ std::optional<Drawing> loss(const Findings& findings) {
         {.name = "fold",
          .columns = {
              {"amplitude",
-              "below it one impact per half cycle cannot go on, by epsilon",
+              "below it one impact per half cycle cannot go on, in units of epsilon",
               {fold_amplitude(e)}},
              {"impacts fail", "least loss factor drawn", {*std::ranges::min_element(findings.loss.eta)}}}});
   FigureRun source{"given", findings.run};
@@ -237,7 +239,7 @@ std::optional<Drawing> prediction(const Findings& findings) {
   if (findings.others.empty() || findings.spread.size() < least_points) return std::nullopt;
   Drawing drawing = drawing_of(findings, "prediction", "How far releases part");
   TableBlock curve{.name = "curve",
-                   .columns = {{"time", "time of the peak, by 1/Omega_n", {}},
+                   .columns = {{"time", "time of the peak, in units of 1/Omega_n", {}},
                                {"spread", "of the releases' amplitudes, percent of their median", {}}}};
   for (std::size_t row = 0; row < findings.spread.size(); ++row) {
     // Equal to the last bit: below all that a logarithmic axis shows.

@@ -6,7 +6,7 @@
 #include "impact_damper/files/provenance.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/report/page_parts.hpp"
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 namespace impact_damper {
 namespace {

@@ -7,7 +7,7 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/motion/elementary.hpp"
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 namespace impact_damper {
 namespace {
@@ -29,43 +29,43 @@ constexpr double far_too_much = 0.5;
 std::string as_viscous(double eta) { return "a viscous damping ratio of " + percent_html(eta / 2); }
 
 std::string fall_in_short(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   constexpr double hardly = 0.999;
   const double first = *findings.first_amplitude, last = findings.last_amplitude;
-  const std::string from = "From an amplitude of " + speech.length(first) + " the motion ";
+  const std::string from = "From an amplitude of " + quantities.length(first) + " the motion ";
   if (findings.falls.size() > 1)
-    return from + "falls to a tenth within " + speech.time(findings.falls[1].time - findings.first_peak) +
+    return from + "falls to a tenth within " + quantities.time(findings.falls[1].time - findings.first_peak) +
            ". ";
   if (!(last < hardly * first)) return from + "hardly falls within this run. ";
-  return from + "falls to " + speech.length(last) + " by the end of the run. ";
+  return from + "falls to " + quantities.length(last) + " by the end of the run. ";
 }
 
 std::string steady_sentence(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (!findings.steady)
     return "The run is too short to speak of a steady motion: it has " +
            count_html(std::ssize(findings.run.half_cycles->amplitude)) + " half cycles.";
   const SteadyAmplitude& steady = *findings.steady;
-  const std::string least = speech.length(steady.least), greatest = speech.length(steady.greatest);
+  const std::string least = quantities.length(steady.least), greatest = quantities.length(steady.greatest);
   std::string text = "In the last quarter of the run the amplitude ";
   text += without_tags(least) == without_tags(greatest)
-              ? "is " + speech.length(steady.mean) + ". "
-              : "lies between " + least + " and " + greatest + ", " + speech.length(steady.mean) +
+              ? "is " + quantities.length(steady.mean) + ". "
+              : "lies between " + least + " and " + greatest + ", " + quantities.length(steady.mean) +
                     " on average. ";
   if (!steady.settled) text += "It is not settled: it still changes from quarter to quarter of the run. ";
   return text;
 }
 
 std::string falls_table(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   HtmlTable table{
       .caption = "When the amplitude first was below a part of the first one, counted from the first peak",
       .heads = {"Below", "that is", "within"},
       .rows = {}};
   if (!findings.others.empty()) table.heads.emplace_back("of all releases");
-  const auto since = [&](double time) { return speech.time(time - findings.first_peak); };
+  const auto since = [&](double time) { return quantities.time(time - findings.first_peak); };
   for (const Fall& fall : findings.falls) {
-    table.rows.push_back({part_in_words(fall.part), speech.length(fall.amplitude), since(fall.time)});
+    table.rows.push_back({part_in_words(fall.part), quantities.length(fall.amplitude), since(fall.time)});
     if (findings.others.empty()) continue;
     table.rows.back().push_back(fall.times ? range_html(since(fall.times->low), since(fall.times->high))
                                            : "not all get there");
@@ -74,7 +74,7 @@ std::string falls_table(const Findings& findings) {
 }
 
 std::string best_sentences(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const BestDamping& best = *findings.best;
   const double zeta = findings.subject.scene.damping_ratio;
   const LogarithmicFit fit;
@@ -83,13 +83,14 @@ std::string best_sentences(const Findings& findings) {
       "through the logarithm of 3 to " +
       count_html(fit.most_half_cycles + 1) + " successive peaks, no more than lie within a factor of " +
       number_html(fit.factor) + " of each other. Before impacts fail it is largest, " +
-      number_html(best.eta) + ", at an amplitude of " + speech.length(best.amplitude) +
+      number_html(best.eta) + ", at an amplitude of " + quantities.length(best.amplitude) +
       ": the primary mass is damped there as by " + as_viscous(best.eta) + ". ";
   if (zeta > 0) text += "Its own damping accounts for η = 2ζ = " + number_html(2 * zeta) + " of that. ";
   if (best.etas && best.etas->low < best.etas->high)
     text += "Over all releases it is " +
             range_html(number_html(best.etas->low), number_html(best.etas->high)) + ", at " +
-            range_html(speech.length(best.amplitudes->low), speech.length(best.amplitudes->high)) + ". ";
+            range_html(quantities.length(best.amplitudes->low), quantities.length(best.amplitudes->high)) +
+            ". ";
   const bool failed = findings.failure.first_missed || findings.failure.for_good;
   if (!failed && best.amplitude == findings.loss.amplitude.back())
     text += "It is found at the end of the run: further down the damping may be better still. ";
@@ -97,7 +98,7 @@ std::string best_sentences(const Findings& findings) {
 }
 
 std::string theory_sentences(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
   const double e = scene.restitution;
   if (e == 1)
@@ -109,7 +110,7 @@ std::string theory_sentences(const Findings& findings) {
   std::string text =
       "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
       "amplitude of " +
-      speech.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the clearance";
+      quantities.length(peak_loss_amplitude(e)) + ", (1 − <i>e</i>)/(1 + <i>e</i>)/π of the clearance";
   if (eta < far_too_much) text += ", with η = " + number_html(eta);
   text += ". ";
   const BestDamping& best = *findings.best;
@@ -120,12 +121,12 @@ std::string theory_sentences(const Findings& findings) {
             number_html(best.eta) +
             ": it holds for a steady amplitude, behind which a heavier loose mass lags. ";
   return text + "The best amplitude is " + percent_html(peak_loss_amplitude(e) / fold_amplitude(e) - 1) +
-         " above " + speech.length(fold_amplitude(e)) +
+         " above " + quantities.length(fold_amplitude(e)) +
          ", where this motion ceases: below, impacts fail and only the primary mass's own damping is left.";
 }
 
 std::string clearance_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
   if (!(scene.restitution > 0 && scene.restitution < 1)) return "";
   const Tolerances tolerances;
@@ -138,7 +139,7 @@ std::string clearance_html(const Findings& findings) {
       " lower, the clearance " + percent(tolerances.clearance) + " wider and the amplitude " +
       percent(tolerances.amplitude) +
       " smaller than thought, all at once. This scene's clearance is right for " +
-      speech.length(rule.amplitude) + ".";
+      quantities.length(rule.amplitude) + ".";
   HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
                   .heads = {"Clearance", "amplitude", "impacts fail at", "margin"},
                   .rows = {}};
@@ -156,14 +157,14 @@ std::string clearance_html(const Findings& findings) {
 }
 
 // "is 125 mm (12.5 ε)", or that there is no bound.
-std::string amplitude_or_none(const Speech& speech, double amplitude) {
-  return std::isfinite(amplitude) ? speech.length(amplitude) : "without bound";
+std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
+  return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
 }
 
 }  // namespace
 
 std::string summary_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (!findings.first_amplitude)
     return paragraph_html(
         "The primary mass never swings through its position of rest within this run, so there is no "
@@ -172,24 +173,24 @@ std::string summary_html(const Findings& findings) {
   if (!findings.forced())
     text = fall_in_short(findings);
   else if (findings.steady)
-    text = "Under the exciting force the amplitude is in the end " + speech.length(findings.steady->mean) +
-           " on average. ";
+    text = "Under the exciting force the amplitude is in the end " +
+           quantities.length(findings.steady->mean) + " on average. ";
   if (findings.steady && !findings.response.empty()) {
     const Scene& scene = findings.subject.scene;
     const double force = scene.force_amplitude, zeta = scene.damping_ratio;
     const double locked = 1 + scene.mass_ratio;
     const ResponsePoint& worst = findings.response.worst();
     text += "With the loose mass locked to its box it would be " +
-            amplitude_or_none(speech, linear_response(force, locked, zeta, scene.force_frequency)) +
-            ". At its worst frequency, " + speech.frequency(worst.frequency) + ", the same force " +
+            amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) +
+            ". At its worst frequency, " + quantities.frequency(worst.frequency) + ", the same force " +
             (worst.amplitude.settled ? "holds" : "drives") + " the damped mass at " +
             (worst.amplitude.settled ? "" : "an amplitude that is not settled yet, ") +
-            speech.length(worst.amplitude.mean) + "; with the loose mass locked the worst is " +
-            amplitude_or_none(speech, worst_linear_response(force, locked, zeta).amplitude) + ". ";
+            quantities.length(worst.amplitude.mean) + "; with the loose mass locked the worst is " +
+            amplitude_or_none(quantities, worst_linear_response(force, locked, zeta).amplitude) + ". ";
   }
   if (findings.best)
-    text += "It is damped best at an amplitude of " + speech.length(findings.best->amplitude) + ", as by " +
-            as_viscous(findings.best->eta) + ". ";
+    text += "It is damped best at an amplitude of " + quantities.length(findings.best->amplitude) +
+            ", as by " + as_viscous(findings.best->eta) + ". ";
   const double impacts = findings.energy_to_impacts(), lost = impacts + findings.run.energy->viscous_work;
   if (findings.run.impacts->time.empty())
     text += "There is no impact at all.";
@@ -199,7 +200,7 @@ std::string summary_html(const Findings& findings) {
 }
 
 std::string decay_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (!findings.first_amplitude)
     return paragraph_html("The run holds not one whole half cycle: there is no amplitude to follow.");
   if (findings.forced()) return paragraph_html(steady_sentence(findings));
@@ -210,7 +211,7 @@ std::string decay_html(const Findings& findings) {
           ? falls_table(findings)
           : paragraph_html(
                 "Within this run the amplitude does not fall to half of its first value; it ends at " +
-                speech.length(findings.last_amplitude) + ", " + percent_html(1 / fallen) + " of it.");
+                quantities.length(findings.last_amplitude) + ", " + percent_html(1 / fallen) + " of it.");
   if (time > 0 && std::isfinite(fallen) && fallen > 1)
     html += paragraph_html(
         "Over the whole run the amplitude fell as that of an oscillator with a viscous damping ratio of " +
@@ -249,7 +250,7 @@ std::string energy_html(const Findings& findings) {
                   .heads = {"What"},
                   .rows = {}};
   if (scales) table.heads.emplace_back("J");
-  table.heads.insert(table.heads.end(), {"by Kε²", "share"});
+  table.heads.insert(table.heads.end(), {"in units of Kε²", "share"});
   const auto row = [&](const std::string& what, double energy) {
     table.rows.push_back({what});
     if (scales) table.rows.back().push_back(number_html(energy * scales->energy(), 4));
@@ -277,22 +278,23 @@ std::string energy_html(const Findings& findings) {
 }
 
 std::string response_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
   if (findings.response.empty())
     return paragraph_html("There are too few half cycles to speak of a steady motion at any frequency.");
   const double force = scene.force_amplitude, zeta = scene.damping_ratio, given = scene.force_frequency;
   const ResponsePoint& worst = findings.response.worst();
   HtmlTable table{.caption = "Amplitude under the same force, at the frequency given and at the worst one",
-                  .heads = {"", "at " + speech.frequency(given), "at its worst frequency", "that is at"},
+                  .heads = {"", "at " + quantities.frequency(given), "at its worst frequency", "that is at"},
                   .rows = {}};
   table.rows.push_back({"with the damper",
-                        findings.steady ? speech.length(findings.steady->mean) : "too short a run",
-                        speech.length(worst.amplitude.mean), speech.frequency(worst.frequency)});
+                        findings.steady ? quantities.length(findings.steady->mean) : "too short a run",
+                        quantities.length(worst.amplitude.mean), quantities.frequency(worst.frequency)});
   const auto linear = [&](const std::string& what, double mass) {
     const WorstResponse most = worst_linear_response(force, mass, zeta);
-    table.rows.push_back({what, amplitude_or_none(speech, linear_response(force, mass, zeta, given)),
-                          amplitude_or_none(speech, most.amplitude), speech.frequency(most.frequency)});
+    table.rows.push_back({what, amplitude_or_none(quantities, linear_response(force, mass, zeta, given)),
+                          amplitude_or_none(quantities, most.amplitude),
+                          quantities.frequency(most.frequency)});
   };
   linear("the loose mass locked to its box", 1 + scene.mass_ratio);
   linear("the box empty", 1);
@@ -303,19 +305,19 @@ std::string response_html(const Findings& findings) {
       "the shift. ";
   std::string made =
       "With the damper each frequency is a run of its own, from the scene's release, of " +
-      speech.time(findings.response.time) +
+      quantities.time(findings.response.time) +
       "; the amplitude is the mean over the last quarter of its half cycles. Another release may "
       "lead to another steady motion. ";
   if (worst.amplitude.greatest > 1.02 * worst.amplitude.mean)
-    made +=
-        "At the worst frequency the largest half cycle has " + speech.length(worst.amplitude.greatest) + ". ";
+    made += "At the worst frequency the largest half cycle has " +
+            quantities.length(worst.amplitude.greatest) + ". ";
   if (!worst.amplitude.settled)
     made += "There the amplitude is not settled within that time: it may become larger, or smaller. ";
   return paragraph_html(text) + table_html(table) + paragraph_html(made);
 }
 
 std::string loads_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
   if (!findings.loads)
     return paragraph_html("There is no impact in this run, so there is nothing for the walls to bear.");
@@ -327,7 +329,7 @@ std::string loads_html(const Findings& findings) {
   const auto row = [&](const std::string& what, const std::string& value) {
     table.rows.push_back({what, value});
   };
-  row("Largest impact speed, relative", speech.velocity(loads.speed));
+  row("Largest impact speed, relative", quantities.velocity(loads.speed));
   constexpr double per_hour = 3600;
   const double rate = loads.impacts / loads.time;
   row(findings.forced() ? "Impacts, in the last quarter of the run" : "Impacts, on average over the run",
@@ -335,9 +337,9 @@ std::string loads_html(const Findings& findings) {
              : number_html(2 * std::numbers::pi * rate) + " in a period 2π/Ω");
   std::string text;
   if (loads.contact) {
-    row("Largest force of a wall, in that impact", speech.force(loads.contact->force));
-    row("Duration of a contact",
-        loads.contact->duration ? speech.duration(*loads.contact->duration) : "the mass does not rebound");
+    row("Largest force of a wall, in that impact", quantities.force(loads.contact->force));
+    row("Duration of a contact", loads.contact->duration ? quantities.duration(*loads.contact->duration)
+                                                         : "the mass does not rebound");
     text =
         "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
         "duration as "
@@ -358,12 +360,12 @@ std::string loads_html(const Findings& findings) {
         "force. ";
   }
   if (loads.initial_force > 0)
-    row("Force of the wall in which the run begins", speech.force(loads.initial_force));
+    row("Force of the wall in which the run begins", quantities.force(loads.initial_force));
   return table_html(table) + paragraph_html(text);
 }
 
 std::string prediction_html(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (findings.others.empty())
     return paragraph_html(
         "Only one release was simulated (<code>--members 1</code>), so nothing can be said about how far "
@@ -381,8 +383,8 @@ std::string prediction_html(const Findings& findings) {
   const std::string agreement =
       *findings.lost_row == 0
           ? "Not even their first amplitudes agree within " + percent_html(lost_spread)
-          : "Up to an amplitude of " + speech.length(rows.amplitude[*findings.lost_row - 1]) + ", " +
-                speech.time(rows.peak_time[*findings.lost_row - 1]) +
+          : "Up to an amplitude of " + quantities.length(rows.amplitude[*findings.lost_row - 1]) + ", " +
+                quantities.time(rows.peak_time[*findings.lost_row - 1]) +
                 " after the release, they agree within " + percent_html(lost_spread);
   return paragraph_html(
       text + agreement +

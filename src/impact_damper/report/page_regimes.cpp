@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "impact_damper/report/page_parts.hpp"
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 namespace impact_damper {
 namespace {
@@ -19,49 +19,51 @@ std::string impacts_counted(const Findings& findings) {
 }
 
 std::string regime_table(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   HtmlTable table{.caption = "Regimes found, by the amplitudes between which each lasts",
                   .heads = {"Regime", "from", "to", "half cycles"},
                   .rows = {}};
   if (findings.sticking_ends && !findings.forced()) {
     const std::vector<double>& amplitudes = findings.run.half_cycles->amplitude;
     const auto last = std::ranges::find(amplitudes, *findings.sticking_ends);
-    table.rows.push_back({"bounces that end stuck to a wall", speech.length(*findings.first_amplitude),
-                          speech.length(*findings.sticking_ends), count_html(last - amplitudes.begin() + 1)});
+    table.rows.push_back({"bounces that end stuck to a wall", quantities.length(*findings.first_amplitude),
+                          quantities.length(*findings.sticking_ends),
+                          count_html(last - amplitudes.begin() + 1)});
   }
   for (const RegularWindow& window : findings.windows)
-    table.rows.push_back({impacts_in_words(window.impacts), speech.length(window.upper),
-                          speech.length(window.lower),
+    table.rows.push_back({impacts_in_words(window.impacts), quantities.length(window.upper),
+                          quantities.length(window.lower),
                           count_html(static_cast<std::int64_t>(window.last - window.first + 1))});
   return table.rows.empty() ? "" : table_html(table);
 }
 
 std::string sticking_sentence(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (!(findings.stuck_time > 0)) return "The loose mass never sticks to a wall. ";
   std::string share = "The loose mass is stuck to a wall for " +
                       percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
   if (findings.forced()) return share;
   if (findings.sticking_ends)
-    return share + "Down to an amplitude of " + speech.length(*findings.sticking_ends) +
+    return share + "Down to an amplitude of " + quantities.length(*findings.sticking_ends) +
            " its bounces on a wall die out before the primary mass has come back, half cycle after half "
            "cycle; there sticking ends. ";
   return share + "It does so only now and then, or to the end of the run. ";
 }
 
 std::string failure_sentence(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   if (findings.forced()) return "";
   const auto& [missed, for_good] = findings.failure;
   if (missed) {
-    const std::string text = "Impacts begin to fail at an amplitude of " + speech.length(*missed) +
+    const std::string text = "Impacts begin to fail at an amplitude of " + quantities.length(*missed) +
                              ": from there on a half cycle may pass without one";
     if (!for_good) return text + ". ";
-    return text + (for_good == missed ? ", and they do not recover. "
-                                      : ", and below " + speech.length(*for_good) + " they do not recover. ");
+    return text + (for_good == missed
+                       ? ", and they do not recover. "
+                       : ", and below " + quantities.length(*for_good) + " they do not recover. ");
   }
   if (for_good)
-    return "From an amplitude of " + speech.length(*for_good) +
+    return "From an amplitude of " + quantities.length(*for_good) +
            " on, to the end of the run, there are fewer impacts than half cycles. ";
   return "Impacts do not begin to fail within this run. ";
 }
@@ -79,14 +81,14 @@ std::string strikes(const Findings& findings, const MotionWindow& window) {
 
 std::string motion_html(const Findings& findings) {
   if (!findings.begin) return paragraph_html("The run ends where it begins: there is no motion to show.");
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const std::vector<double>& time = findings.run.history->time;
-  std::string text =
-      "In the first " + speech.time(time[findings.begin->last]) + " " + strikes(findings, *findings.begin);
+  std::string text = "In the first " + quantities.time(time[findings.begin->last]) + " " +
+                     strikes(findings, *findings.begin);
   if (findings.chosen)
     text += (findings.forced() ? "At the end, from " : "About the best damping, from ") +
-            speech.time(time[findings.chosen->first]) + " to " + speech.time(time[findings.chosen->last]) +
-            ", " + strikes(findings, *findings.chosen);
+            quantities.time(time[findings.chosen->first]) + " to " +
+            quantities.time(time[findings.chosen->last]) + ", " + strikes(findings, *findings.chosen);
   return paragraph_html(text);
 }
 

@@ -7,7 +7,7 @@
 #include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/files/scene_file.hpp"
 #include "impact_damper/report/page_parts.hpp"
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 namespace impact_damper {
 namespace {
@@ -50,7 +50,7 @@ std::string scene_table(const Subject& subject) {
   table.scale("Primary mass", "M", scales.mass, "kg");
   table.scale("Stiffness", "K", scales.stiffness, "N/m");
   table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
-  table.scale("Free travel of the loose mass", "ε", scales.length, "mm");
+  table.scale("Clearance of the loose mass", "ε", scales.length, "mm");
   table.row("Loose mass", "ν", scene.mass_ratio, scales.mass, "kg");
   table.row("Restitution", "e", scene.restitution, 1, "");
   table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
@@ -71,7 +71,7 @@ std::string scene_table(const Subject& subject) {
 }
 
 std::string engine_sentence(const Findings& findings) {
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   std::string text = "<p>";
   switch (findings.subject.engine.index()) {
     case 0:
@@ -86,9 +86,9 @@ std::string engine_sentence(const Findings& findings) {
       text +=
           "The walls are springs with dampers, and the motion is followed by central differences with a "
           "fixed step of " +
-          number_html(std::get<Cem>(findings.run.engine).time_step.value_or(0)) + " by 1/Ω.";
+          number_html(std::get<Cem>(findings.run.engine).time_step.value_or(0)) + " in units of 1/Ω.";
   }
-  text += " It was followed for " + speech.time(findings.run.end_time) + ", ";
+  text += " It was followed for " + quantities.time(findings.run.end_time) + ", ";
   switch (findings.run.stop_reason) {
     case StopReason::time:
       text += "the time that was asked for";
@@ -117,18 +117,18 @@ std::string engine_sentence(const Findings& findings) {
 // Numbers that are valid, but more often a slip than meant: a length in metres, a mass in grams.
 std::string warnings_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
-  const Speech speech(findings.subject.scales);
+  const Quantities quantities(findings.subject.scales);
   const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
   std::vector<std::string> looks;
   for (std::string caution : cautions_of(scene, findings.subject.scales)) {
     if (caution.starts_with("the ")) caution[0] = 'T';
     looks.push_back(caution + (caution.ends_with('?') ? "" : "."));
   }
-  if (speech.in_units() && reach > 1000)
-    looks.push_back("The primary mass begins with an amplitude of about " + speech.length(reach) +
-                    ": is the free travel given in millimetres?");
-  if (speech.in_units() && reach > 0 && reach < 1e-3)
-    looks.push_back("The free travel is " + number_html(1 / reach) +
+  if (quantities.in_units() && reach > 1000)
+    looks.push_back("The primary mass begins with an amplitude of about " + quantities.length(reach) +
+                    ": is the clearance given in millimetres?");
+  if (quantities.in_units() && reach > 0 && reach < 1e-3)
+    looks.push_back("The clearance is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
   if (scene.wall_stiffness < 100 && !std::holds_alternative<Restitution>(findings.subject.engine))
     looks.push_back(
@@ -146,14 +146,17 @@ std::string warnings_html(const Findings& findings) {
 std::string scene_html(const Findings& findings) {
   const std::string scales =
       findings.subject.scales
-          ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths by the free travel "
-            "ε, times in "
-            "periods 2π/Ω of the primary mass on its spring, velocities by εΩ, energies by Kε².</p>\n"
-          : "<p>Lengths are in free travels ε of the loose mass, times <i>t</i> in 1/Ω, Ω = √(K/M) being the "
-            "primary mass's "
-            "natural frequency, velocities in εΩ, energies in Kε². A scene file may give masses in kilograms "
-            "and lengths in "
-            "millimetres instead; this page then speaks of both.</p>\n";
+          ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths in units of the "
+            "clearance ε, times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
+            "εΩ, "
+            "energies in units of Kε².</p>\n"
+          : "<p>Lengths are in units of the clearance ε of the loose mass, times <i>t</i> in units of 1/Ω, Ω "
+            "= √(K/M) "
+            "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
+            "Kε². A "
+            "scene file may give masses in kilograms and lengths in millimetres instead; this page then "
+            "gives "
+            "both.</p>\n";
   return scene_table(findings.subject) + scales + engine_sentence(findings);
 }
 

@@ -21,9 +21,9 @@ std::string percent_html(double part);  // of 1: "12.3 %"
 // What is read of HTML: equal for numbers that differ in digits not shown.
 std::string without_tags(const std::string& html);
 
-class Speech {
+class Quantities {
  public:
-  explicit Speech(const std::optional<Scales>& scales) : scales_(scales) {}
+  explicit Quantities(const std::optional<Scales>& scales) : scales_(scales) {}
 
   bool in_units() const { return scales_.has_value(); }
   const Scales& scales() const { return *scales_; }
@@ -35,7 +35,7 @@ class Speech {
   std::string force(double value) const;     // "28.8 N (0.18 Kε)"
   std::string energy(double value) const;    // "28.8 J (18 Kε²)"
   std::string frequency(double value) const;  // "3.12 Hz (0.98 Ω)"
-  std::string duration(double value) const;   // of a contact: "0.32 ms (0.0064 by 1/Ω)"
+  std::string duration(double value) const;   // of a contact: "0.32 ms (0.0064 /Ω)"
 
  private:
   std::string both(double value, double scale, std::string_view unit, std::string_view by) const;

@@ -1,4 +1,4 @@
-#include "impact_damper/report/speech.hpp"
+#include "impact_damper/report/quantities.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -78,42 +78,42 @@ std::string count_html(std::int64_t count) { return data_html(std::to_string(cou
 
 std::string percent_html(double part) { return number_html(100 * part) + no_break + "%"; }
 
-std::string Speech::both(double value, double scale, std::string_view unit, std::string_view by) const {
+std::string Quantities::both(double value, double scale, std::string_view unit, std::string_view by) const {
   std::string plain = number_html(value) + no_break + std::string(by);
   if (!scales_) return plain;
   return number_html(value * scale) + no_break + std::string(unit) + " (" + plain + ')';
 }
 
-std::string Speech::length(double value) const {
+std::string Quantities::length(double value) const {
   constexpr double small = 0.1;  // mm
   const double scale = scales_ ? scales_->length : 1;
   if (value != 0 && std::abs(value * scale) < small) return both(value, 1e3 * scale, "µm", "ε");
   return both(value, scale, "mm", "ε");
 }
 
-std::string Speech::time(double value) const {
+std::string Quantities::time(double value) const {
   const std::string periods = number_html(value / (2 * std::numbers::pi)) + " periods";
   if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
   return number_html(value * scales_->time()) + no_break + "s (" + periods + ')';
 }
 
-std::string Speech::velocity(double value) const {
+std::string Quantities::velocity(double value) const {
   return both(value, scales_ ? scales_->velocity() / 1000 : 1, "m/s", "εΩ");
 }
 
-std::string Speech::force(double value) const {
+std::string Quantities::force(double value) const {
   return both(value, scales_ ? scales_->force() : 1, "N", "Kε");
 }
 
-std::string Speech::frequency(double value) const {
+std::string Quantities::frequency(double value) const {
   return both(value, scales_ ? scales_->frequency() : 1, "Hz", "Ω");
 }
 
-std::string Speech::duration(double value) const {
+std::string Quantities::duration(double value) const {
   return both(value, scales_ ? 1000 * scales_->time() : 1, "ms", "/Ω");
 }
 
-std::string Speech::energy(double value) const {
+std::string Quantities::energy(double value) const {
   return both(value, scales_ ? scales_->energy() : 1, "J", "Kε²");
 }
 
