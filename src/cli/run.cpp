@@ -197,9 +197,9 @@ Command run_command() {
     command.options.insert(command.options.end(), options.begin(), options.end());
   command.footer =
       "A scene is a primary mass on a spring, and a secondary mass that travels between the walls\n"
-      "of a cavity in it. Everything is dimensionless: lengths in units of the clearance between the\n"
-      "walls, times in units of 1/Omega_n = sqrt(M/K), velocities of their quotient, forces of the force\n"
-      "that moves the primary spring by one clearance. A scene file may be given in units instead:\n"
+      "of a cavity in it. Everything is dimensionless: lengths are in units of the clearance between the\n"
+      "walls, times of 1/Omega_n = sqrt(M/K), forces of the force that moves the primary spring by one\n"
+      "clearance. A scene file may be given in units instead:\n"
       "mass and secondary_mass in kg, stiffness in N/m, clearance in mm, with initial_displacement,\n"
       "until_millimetres and others; it is made dimensionless when it is read (all keys:\n"
       "data/schema/scene.schema.json). Its run file is dimensionless as well, and says in \"units\" what\n"

@@ -116,7 +116,7 @@ Engine engine_of(Arguments& arguments) {
   const bool stuck_as_in_paper = arguments.word("--stuck", {"contact", "paper"}) == std::size_t{1};
   engine.stuck_speed = arguments.number("--stuck-speed", above(0));
   if (arguments.given("--stuck-speed") && !stuck_as_in_paper)
-    arguments.refuse("--stuck-speed", "is an option of --stuck paper");
+    arguments.reject("--stuck-speed", "is an option of --stuck paper");
   if (stuck_as_in_paper && !engine.stuck_speed) engine.stuck_speed = usual_stuck_speed;
   engine.unstable = arguments.flag("--unstable");
   engine.calibration = calibration;

@@ -16,7 +16,7 @@ std::string rounded(double value) {
   char* const end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
   return {text, end};
 }
-// At most `value`, so that whoever types it in is not refused.
+// At most `value`, so that whoever types it in is not rejected.
 std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
 
 }  // namespace

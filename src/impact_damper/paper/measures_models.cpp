@@ -294,7 +294,7 @@ std::vector<Measure> model_measures() {
        {"mass_ratio", "restitution"},
        contact_frequency,
        "frequency of one contact of the exact engine, by the root of k"},
-      {"wall_overlap", 1, 1, {}, wall_overlap, "largest deformation of the wall, by the free travel"},
+      {"wall_overlap", 1, 1, {}, wall_overlap, "largest deformation of the wall, in units of the clearance"},
       {"step_limit",
        0,
        0,
