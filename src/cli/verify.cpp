@@ -196,6 +196,7 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const Ensemb
   table.ensembles = 20;
   table.unsettled = input.left_out = unsettled_claims(input, table.ensembles);
   const Power power(std::move(input));
+  if_interrupted_say("no table is made" + (json_file ? "; " + left_as_it_was(*json_file) : ""));
   std::mutex telling;
   auto told = std::chrono::steady_clock::now();
   table.rows = power.table([&](std::size_t done, std::size_t searches) {
