@@ -44,9 +44,9 @@ bool turns_some(const PowerRow& row) { return (row.up && row.up->turn) || (row.d
 
 std::string summary_text(const PowerTable& table) {
   const auto some = std::ranges::count_if(table.rows, turns_some);
-  return std::to_string(table.rows.size()) + " numbers, " + std::to_string(table.claims) +
-         " claims, engine " + table.engine + ", ensembles of " + std::to_string(table.members) + ": " +
-         std::to_string(some) + " numbers turn a verdict, " +
+  return std::to_string(table.rows.size()) + " numbers, " + std::to_string(table.claims) + " claims, " +
+         (table.engine.empty() ? "" : "engine " + table.engine + ", ") + "ensembles of " +
+         std::to_string(table.members) + ": " + std::to_string(some) + " numbers turn a verdict, " +
          std::to_string(table.rows.size() - static_cast<std::size_t>(some)) + " turn none\n";
 }
 

@@ -298,8 +298,12 @@ Command verify_command(CLI::App& program) {
       "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
       "is\n"
       "of another scene or engine than the others is refused.\n\n"
+      "With --power: one line for each number of the scenes, of the analysis and of what runs record, with "
+      "the\n"
+      "smallest change of it that turns a verdict, and the claims that it turns.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
+      "  impact-damper verify --power --markdown power.md\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md");
   return {app, [app] { return verify(Arguments(*app)); }};
 }
