@@ -106,6 +106,22 @@ TEST_CASE("measures of the loss factor are what they are for amplitudes that fal
   heavy.scene.mass_ratio = 4 * nu;
   CHECK(measured("mass_ratio_exponent", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(0.5));
   CHECK(measured("product_ratio", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(2));
+  // A eta is twice as much: the power 1/2 of 4, whatever mass ratio the scene names.
+  CHECK(measured("loss_ratio_exponent", {{"factor", 4}, {"from", 1}, {"to", 5}}, {heavy, even}) ==
+        doctest::Approx(0.5));
+  // What it has more is c, in each of twelve bins; 2 zeta A in them is that at the mean of its amplitudes.
+  const double from = 0.97, to = 5.03, zeta = 0.004;
+  double amplitudes = 0;
+  for (int bin = 0; bin < 12; ++bin) {
+    double sum = 0, points = 0;
+    for (int i = 6; i <= 54; ++i) {
+      const double a = 6 - 0.1 * i, place = 12 * std::log(a / from) / std::log(to / from);
+      if (place >= bin && place < bin + 1) sum += a, ++points;
+    }
+    amplitudes += sum / points;
+  }
+  CHECK(measured("added_loss_error", {{"damping_ratio", zeta}, {"from", from}, {"to", to}}, {heavy, even}) ==
+        doctest::Approx(12 * c / (2 * zeta * amplitudes) - 1));
 }
 
 TEST_CASE(
@@ -116,6 +132,32 @@ TEST_CASE(
   const double ratio = std::exp(0.02 * (89 - 21));
   CHECK(measured("product_half_range_percent", {{"from", 1}, {"to", 4}}, {run}) ==
         doctest::Approx(100 * (ratio - 1) / (ratio + 1)));
+}
+
+TEST_CASE("measures of the release are what they are, of the scene that is farthest from what is expected") {
+  const Run six = linear_decay(20, 6, 0.1), less = linear_decay(20, 5.9, 0.1),
+            more = linear_decay(20, 6.2, 0.1);
+  CHECK(measured("first_amplitude", {{"amplitude", 6}}, {six, less}) == 5.9);
+  CHECK(measured("first_amplitude", {{"amplitude", 6}}, {less, more, six}) == 6.2);
+  // From x = 5 the right wall is at 6, the left one at 5.
+  Run right = six, left = six;
+  add_impact(right, 1, 30, 3);
+  add_impact(left, 1, 30, -3);
+  add_impact(right, 2, 30, -3);
+  right.impacts->displacement.front() = left.impacts->displacement.front() = 5;
+  CHECK(measured("first_impact_place", {{"amplitude", 6}}, {right}) == 6);
+  CHECK(measured("first_impact_place", {{"amplitude", 6}}, {right, left}) == 5);
+  CHECK(std::isnan(measured("first_impact_place", {{"amplitude", 6}}, {right, six})));
+}
+
+TEST_CASE("what the impacts take out is compared with what the amplitudes lose") {
+  Run run = linear_decay(21, 6, 0.25);  // from 6 to 1: (36 - 1) / 2
+  run.scene.mass_ratio = 0.25;
+  run.scene.restitution = 0.5;
+  add_impact(run, 1, 30, 3);
+  add_impact(run, 2, 30, -4);
+  const double lost = 0.25 * 0.75 / 2.5 * 25;
+  CHECK(measured("impact_loss_error", {}, {run}) == doctest::Approx(lost / 17.5 - 1));
 }
 
 TEST_CASE("measures of the windows are what they are for impacts made by hand") {

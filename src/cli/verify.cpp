@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,9 +17,11 @@
 #include "impact_damper/paper/catalogue.hpp"
 #include "impact_damper/paper/claims.hpp"
 #include "impact_damper/paper/measures.hpp"
+#include "impact_damper/paper/power.hpp"
 #include "impact_damper/paper/scene_runs.hpp"
 #include "impact_damper/paper/words.hpp"
 #include "interruption.hpp"
+#include "power_table.hpp"
 #include "project_files.hpp"
 
 namespace impact_damper::cli {
@@ -219,6 +222,36 @@ void check_runs(const SceneRuns& folders, const std::vector<Claim>& claims) {
   }
 }
 
+// Which changes of a number turn a verdict, instead of the verdicts.
+int find_power(const SceneRuns& folders, std::vector<Claim> claims, const EnsembleOptions& ensemble,
+               const std::optional<std::string>& json_file, const std::optional<std::string>& markdown_file) {
+  PowerInput input{.claims = std::move(claims), .runs = {}, .ensemble = ensemble, .left_out = {}};
+  for (const Claim& claim : input.claims)
+    for (const std::string& scene : scenes_of(claim))
+      if (!input.runs.contains(scene)) input.runs[scene] = folders.read(scene);
+  PowerTable table;
+  if (!input.runs.empty()) table.engine = name_of(input.runs.begin()->second.engine);
+  table.members = ensemble.members;
+  table.claims = input.claims.size();
+  table.ensembles = 20;
+  table.unsettled = input.left_out = unsettled_claims(input, table.ensembles);
+  const Power power(std::move(input));
+  if_interrupted_say("no table is made" + (json_file ? "; " + left_as_it_was(*json_file) : ""));
+  std::mutex telling;
+  auto told = std::chrono::steady_clock::now();
+  table.rows = power.table([&](std::size_t done, std::size_t searches) {
+    const std::lock_guard lock(telling);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told < std::chrono::seconds(2)) return;
+    told = now;
+    std::cerr << "verify: " << done << " of " << searches << " searches" << std::endl;
+  });
+  if (json_file) write_file(*json_file, json_text(table));
+  if (markdown_file) write_file(*markdown_file, markdown_text(table));
+  write_standard_output(table_text(table));
+  return 0;
+}
+
 int verify(Arguments& arguments) {
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
@@ -228,6 +261,7 @@ int verify(Arguments& arguments) {
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
              markdown_file = arguments.file("--markdown");
+  const bool power = arguments.flag("--power");
   reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
   if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
@@ -247,6 +281,7 @@ int verify(Arguments& arguments) {
     if (file) require_writable(*file);
 
   check_runs(folders, claims);
+  if (power) return find_power(folders, claims, ensemble, verdicts_file, markdown_file);
   Runs runs(runs_folder, ensemble);
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
@@ -289,6 +324,10 @@ Command verify_command() {
       {"--claims", "FILE", "what the paper reports; default data/claims.json"},
       {"--runs", "FOLDER", "folder of run files, SCENE.json each; default build/runs/exact"},
       scenes_option(),
+      {.name = "--power",
+       .help =
+           "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
+       .takes = Option::Takes::nothing},
       {"--catalogue", "FILE", "check that the claims its figures rest on exist"},
       {"--members", "N", "releases in each ensemble, the run file's own among them;\n1 to 100, default 16"},
       {"-o,--output", "FILE", "write the verdicts as JSON"},
@@ -301,8 +340,12 @@ Command verify_command() {
       "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
       "is\n"
       "of another scene or engine than the others is rejected.\n\n"
+      "With --power: one line for each number of the scenes, of the analysis and of what runs record, with "
+      "the\n"
+      "smallest change of it that turns a verdict, and the claims that it turns.\n\n"
       "Examples:\n"
       "  impact-damper verify\n"
+      "  impact-damper verify --power --markdown power.md\n"
       "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md";
   command.act = verify;
   return command;

@@ -16,46 +16,47 @@ Spread once(double value) { return {value, value, value}; }
 
 // The secondary mass hovers at rest, out of reach of walls that move by less than half the travel: what is
 // left is a viscous oscillator.
-HalfCycles viscous_decay(double damping_ratio) {
+HalfCycles viscous_decay(const Runs& runs, double damping_ratio) {
   Scene scene;
   scene.damping_ratio = damping_ratio;
   scene.x0 = 0.4;
   scene.y0 = 0.1;
   scene.until_time = 200;
-  return *simulate(scene, Exact{}, Record{}).half_cycles;
+  return *runs.simulated(scene, Exact{}, Record{}).half_cycles;
 }
 
-Spread viscous_loss(Runs&, const MeasureCall& call) {
+Spread viscous_loss(Runs& runs, const MeasureCall& call) {
   const double zeta = number(call, "damping_ratio");
-  return once(spread_of(averaged_loss_factor(viscous_decay(zeta)).eta).median / (2 * zeta));
+  return once(spread_of(averaged_loss_factor(viscous_decay(runs, zeta), runs.analysis().loss).eta).median /
+              (2 * zeta));
 }
 
-Spread viscous_loss_per_cycle(Runs&, const MeasureCall& call) {
+Spread viscous_loss_per_cycle(Runs& runs, const MeasureCall& call) {
   const double zeta = number(call, "damping_ratio");
-  const std::vector<double> x = viscous_decay(zeta).amplitude;
+  const std::vector<double> x = viscous_decay(runs, zeta).amplitude;
   return once(2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * zeta));
 }
 
 // From the release up to half a unit of time, before any wall is met, nothing is lost.
-Spread flight_energy(const MeasureCall& call, double (*energy)(const Energy&)) {
+Spread flight_energy(const Runs& runs, const MeasureCall& call, double (*energy)(const Energy&)) {
   Scene scene;
   scene.x0 = number(call, "x0");
   scene.until_time = number(call, "until_time");
   Record record;
   record.energy = record.impacts = true;
-  const Run run = simulate(scene, Exact{}, record);
+  const Run run = runs.simulated(scene, Exact{}, record);
   if (!run.impacts->time.empty()) throw std::invalid_argument("until_time: a wall was met before it");
   return once(100 * std::abs(energy(run.energy->final) / energy(run.energy->initial) - 1));
 }
-Spread paper_energy_drift(Runs&, const MeasureCall& call) {
-  return flight_energy(call, [](const Energy& energy) { return energy.paper; });
+Spread paper_energy_drift(Runs& runs, const MeasureCall& call) {
+  return flight_energy(runs, call, [](const Energy& energy) { return energy.paper; });
 }
-Spread energy_drift(Runs&, const MeasureCall& call) {
-  return flight_energy(call, [](const Energy& energy) { return energy.total(); });
+Spread energy_drift(Runs& runs, const MeasureCall& call) {
+  return flight_energy(runs, call, [](const Energy& energy) { return energy.total(); });
 }
 
 // Halfway through a lossless impact nothing is lost either.
-Spread impact_energy(const MeasureCall& call, bool with_wall) {
+Spread impact_energy(const Runs& runs, const MeasureCall& call, bool with_wall) {
   Scene scene;
   scene.x0 = 0;
   scene.y0 = 0.5;
@@ -65,16 +66,20 @@ Spread impact_energy(const MeasureCall& call, bool with_wall) {
   scene.until_time = 0.5 + nominal_contact_time(scene) / 2;
   Record record;
   record.energy = true;
-  const EnergyLedger ledger = *simulate(scene, Exact{}, record).energy;
+  const EnergyLedger ledger = *runs.simulated(scene, Exact{}, record).energy;
   const double kept = ledger.final.kinetic + ledger.final.spring + (with_wall ? ledger.final.wall : 0);
   return once(100 * (1 - kept / ledger.initial.total()));
 }
-Spread impact_energy_without_wall(Runs&, const MeasureCall& call) { return impact_energy(call, false); }
-Spread impact_energy_with_wall(Runs&, const MeasureCall& call) { return impact_energy(call, true); }
+Spread impact_energy_without_wall(Runs& runs, const MeasureCall& call) {
+  return impact_energy(runs, call, false);
+}
+Spread impact_energy_with_wall(Runs& runs, const MeasureCall& call) {
+  return impact_energy(runs, call, true);
+}
 
 // A forced plastic scene of heavy secondary mass between compliant walls, finely sampled. The engine knows no
 // stuck motion: a mass that sticks is a contact that lasts, and obeys the equations of contact.
-Run stuck_run(const MeasureCall& call) {
+Run stuck_run(const Runs& runs, const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");
   scene.restitution = 0;
@@ -86,7 +91,7 @@ Run stuck_run(const MeasureCall& call) {
   Record record;
   record.contacts = true;
   record.history = {{0, 20, 20001}};
-  return simulate(scene, Exact{}, record);
+  return runs.simulated(scene, Exact{}, record);
 }
 
 // Every sample of the contacts, once the wall's own motion, which dies as exp(-sqrt(k/nu) t), is gone.
@@ -99,8 +104,8 @@ void for_each_stuck_sample(const Run& run, Visit visit) {
 }
 
 // The coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t) by least squares.
-Spread stuck_forcing(Runs&, const MeasureCall& call) {
-  const Run run = stuck_run(call);
+Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
+  const Run run = stuck_run(runs, call);
   const History& h = *run.history;
   double products = 0, squares = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
@@ -139,8 +144,8 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
 }
 
 // How far the stuck mass moves from its wall, by how far y'' = -x'' would carry it.
-Spread stuck_drift(Runs&, const MeasureCall& call) {
-  const Run run = stuck_run(call);
+Spread stuck_drift(Runs& runs, const MeasureCall& call) {
+  const Run run = stuck_run(runs, call);
   const History& h = *run.history;
   double moved = 0, predicted = 0;
   std::size_t contact = run.contacts->begin.size(), begin = 0;

@@ -12,8 +12,8 @@
 
 namespace impact_damper {
 
-Curve loss_curve(const Run& run, LossOrdinate which, double from, double to, int half_cycles) {
-  const LossFactor loss = averaged_loss_factor(half_cycles_of(run), {half_cycles});
+Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from, double to) {
+  const LossFactor loss = averaged_loss_factor(half_cycles_of(run), fit);
   const std::vector<double> y = ordinate(loss, run.scene, which);
   Curve curve;
   for (std::size_t i = 1; i < y.size(); ++i) {
@@ -33,53 +33,55 @@ double log_slope(const Curve& curve) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to) {
-  // Twelve bins, equal in ln A: wide enough to hold several half cycles of every run, narrow enough to see
-  // the structure of the curve.
-  constexpr int bins = 12;
+std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
+                                           int bins) {
   const double width = logarithm(to / from) / bins;
-  std::vector<double> spreads;
+  std::vector<std::vector<double>> all;
   for (int bin = 0; bin < bins; ++bin) {
     const double low = from * exponential(width * bin), high = from * exponential(width * (bin + 1));
-    double least = std::numeric_limits<double>::infinity(), most = -least, total = 0;
-    bool all = true;
+    std::vector<double> means;
     for (const Curve& curve : curves) {
       double mean = 0;
       int points = 0;
       for (std::size_t i = 0; i < curve.x.size(); ++i)
         if (curve.x[i] >= low && curve.x[i] < high) mean += curve.y[i], ++points;
-      all = all && points > 0;
-      if (points == 0) break;
-      mean /= points;
-      least = std::min(least, mean);
-      most = std::max(most, mean);
-      total += mean;
+      if (points > 0) means.push_back(mean / points);
     }
-    if (!all) continue;
+    if (means.size() == curves.size()) all.push_back(means);
+  }
+  return all;
+}
+
+std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
+  std::vector<double> spreads;
+  for (const std::vector<double>& means : bin_means(curves, from, to, bins)) {
+    double total = 0;
+    for (const double mean : means) total += mean;
+    const auto [least, most] = std::ranges::minmax(means);
     spreads.push_back(100 * (most - least) / (total / static_cast<double>(curves.size())));
   }
   return spreads;
 }
 
-double spread_percent(const std::vector<Curve>& curves, double from, double to) {
+double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
   double sum = 0;
-  const std::vector<double> spreads = bin_spreads_percent(curves, from, to);
+  const std::vector<double> spreads = bin_spreads_percent(curves, from, to, bins);
   for (const double spread : spreads) sum += spread;
   return sum / static_cast<double>(spreads.size());
 }
 
-double worst_spread_percent(const std::vector<Curve>& curves, double from, double to) {
-  const std::vector<double> spreads = bin_spreads_percent(curves, from, to);
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
+  const std::vector<double> spreads = bin_spreads_percent(curves, from, to, bins);
   return spreads.empty() ? std::nan("") : *std::ranges::max_element(spreads);
 }
 
 namespace {
 
-std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which, double from,
-                                   double to) {
+std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which,
+                                   const LossFactorOptions& fit, double from, double to) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Run* run : runs) {
-    for (const double y : loss_curve(*run, which, from, to).y) {
+    for (const double y : loss_curve(*run, which, fit, from, to).y) {
       least = std::min(least, y);
       most = std::max(most, y);
     }
@@ -87,15 +89,15 @@ std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdi
   return {least, most};
 }
 
-using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double);
+using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double, int);
 template <LossOrdinate which, SpreadOfCurves spread = spread_percent>
 Spread collapse(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     std::vector<Curve> curves;
     curves.reserve(group.size());
-    for (const Run* run : group) curves.push_back(loss_curve(*run, which, from, to));
-    return spread(curves, from, to);
+    for (const Run* run : group) curves.push_back(loss_curve(*run, which, runs.analysis().loss, from, to));
+    return spread(curves, from, to, runs.analysis().bins);
   });
 }
 
@@ -114,41 +116,44 @@ double mean(const std::vector<double>& values) {
 
 Spread product_mid_range(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] =
-        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, runs.analysis().loss,
+                                        number(call, "from"), number(call, "to"));
     return (least + most) / 2;
   });
 }
 
 Spread product_half_range(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] =
-        extremes(group, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, runs.analysis().loss,
+                                        number(call, "from"), number(call, "to"));
     return 100 * (most - least) / (most + least);
   });
 }
 
 Spread loss_slope(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return log_slope(
-        loss_curve(run, LossOrdinate::specific_secondary, number(call, "from"), number(call, "to")));
+    return log_slope(loss_curve(run, LossOrdinate::specific_secondary, runs.analysis().loss,
+                                number(call, "from"), number(call, "to")));
   });
 }
 
 Spread largest_loss(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call,
-                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).second; });
+  return over_members(runs, call, [&](const Run& run) {
+    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().loss)).second;
+  });
 }
 
 Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call,
-                      [&](const Run& run) { return highest(loss_curve(run, LossOrdinate::eta)).first; });
+  return over_members(runs, call, [&](const Run& run) {
+    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().loss)).first;
+  });
 }
 
 Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"),
-                              static_cast<int>(number(call, "averaged_over"))))
+    const LossFactorOptions fit{static_cast<int>(number(call, "averaged_over"))};
+    return highest(
+               loss_curve(run, LossOrdinate::amplitude_times, fit, number(call, "from"), number(call, "to")))
         .first;
   });
 }
@@ -157,7 +162,8 @@ Spread loss_near_span(Runs& runs, const MeasureCall& call) {
   const double eta = number(call, "eta"), factor = number(call, "factor");
   return over_members(runs, call, [&](const Run& run) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
-    const Curve curve = loss_curve(run, LossOrdinate::eta, number(call, "from"), number(call, "to"));
+    const Curve curve =
+        loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
       least = std::min(least, curve.x[i]);
@@ -171,8 +177,8 @@ Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     Curve points;
     for (const Run* run : group) {
-      const Curve curve =
-          loss_curve(*run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to"));
+      const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, runs.analysis().loss,
+                                     number(call, "from"), number(call, "to"));
       points.x.push_back(run->scene.mass_ratio);
       points.y.push_back(run->scene.mass_ratio * mean(curve.y));
     }
@@ -183,15 +189,51 @@ Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
 Spread product_ratio(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     const auto average = [&](const Run& run) {
-      return mean(loss_curve(run, LossOrdinate::amplitude_times, number(call, "from"), number(call, "to")).y);
+      return mean(loss_curve(run, LossOrdinate::amplitude_times, runs.analysis().loss, number(call, "from"),
+                             number(call, "to"))
+                      .y);
     };
     return average(*group[0]) / average(*group[1]);
   });
 }
 
+// A eta over A.
+Curve product_of_total_loss(const Runs& runs, const Run& run, const MeasureCall& call) {
+  Curve curve =
+      loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
+  for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= curve.x[i];
+  return curve;
+}
+
+// Neither the mass ratio nor the restitution of the scenes enters: what is compared with the factor is their
+// motion alone.
+Spread loss_ratio_exponent(Runs& runs, const MeasureCall& call) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    const double ratio = mean(product_of_total_loss(runs, *group[0], call).y) /
+                         mean(product_of_total_loss(runs, *group[1], call).y);
+    return logarithm(ratio) / logarithm(number(call, "factor"));
+  });
+}
+
+// Weighted with the amplitude, so that all bins count alike: the scatter of eta is as 1/A.
+Spread added_loss_error(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    const Curve damped = product_of_total_loss(runs, *group[0], call),
+                undamped = product_of_total_loss(runs, *group[1], call);
+    double added = 0, expected = 0;
+    for (const auto& means :
+         bin_means({damped, undamped, {damped.x, damped.x}}, from, to, runs.analysis().bins)) {
+      added += means[0] - means[1];
+      expected += 2 * number(call, "damping_ratio") * means[2];
+    }
+    return added / expected - 1;
+  });
+}
+
 Spread tail_loss_ratio(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const Curve all = loss_curve(run, LossOrdinate::eta);
+    const Curve all = loss_curve(run, LossOrdinate::eta, runs.analysis().loss);
     const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(number(call, "last")));
     const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
     return spread_of(tail).median / highest(all).second;
@@ -200,18 +242,18 @@ Spread tail_loss_ratio(Runs& runs, const MeasureCall& call) {
 
 Spread smoothing_ratio(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const auto top = [&](int half_cycles) {
-      return highest(loss_curve(run, LossOrdinate::eta, 0, everywhere, half_cycles)).second;
+    const auto top = [&](const LossFactorOptions& fit) {
+      return highest(loss_curve(run, LossOrdinate::eta, fit)).second;
     };
-    return top(18) / top(10);
+    return top(runs.analysis().smoother_loss) / top(runs.analysis().loss);
   });
 }
 
 // How wide the peak of eta is: ln of the ratio of the amplitudes around it down to half its height.
 Spread smoothing_width_ratio(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const auto width = [&](int half_cycles) {
-      const Curve curve = loss_curve(run, LossOrdinate::eta, 0, everywhere, half_cycles);
+    const auto width = [&](const LossFactorOptions& fit) {
+      const Curve curve = loss_curve(run, LossOrdinate::eta, fit);
       const auto top = std::ranges::max_element(curve.y);
       if (top == curve.y.end()) return std::nan("");
       auto first = top, last = top;
@@ -220,16 +262,17 @@ Spread smoothing_width_ratio(Runs& runs, const MeasureCall& call) {
       return logarithm(curve.x[static_cast<std::size_t>(first - curve.y.begin())] /
                        curve.x[static_cast<std::size_t>(last - curve.y.begin())]);
     };
-    return width(18) / width(10);
+    return width(runs.analysis().smoother_loss) / width(runs.analysis().loss);
   });
 }
 
 Spread single_impact_advantage(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const auto window = longest_window(regular_windows(run), 1);
+    const AnalysisOptions& analysis = runs.analysis();
+    const auto window = longest_window(regular_windows(run, analysis.regimes), 1);
     if (!window) return std::nan("");
-    return highest(loss_curve(run, LossOrdinate::eta, 0, window->upper)).second /
-           highest(loss_curve(run, LossOrdinate::eta, window->upper)).second;
+    return highest(loss_curve(run, LossOrdinate::eta, analysis.loss, 0, window->upper)).second /
+           highest(loss_curve(run, LossOrdinate::eta, analysis.loss, window->upper)).second;
   });
 }
 
@@ -348,6 +391,18 @@ std::vector<Measure> loss_measures() {
        {"from", "to"},
        product_ratio,
        "mean A eta_s / nu of the first scene by the second's"},
+      {"loss_ratio_exponent",
+       2,
+       2,
+       {"factor", "from", "to"},
+       loss_ratio_exponent,
+       "power of the factor that is the ratio of the mean A eta of the first scene to the second's"},
+      {"added_loss_error",
+       2,
+       2,
+       {"damping_ratio", "from", "to"},
+       added_loss_error,
+       "what the averaged eta of the first scene has more than the second's, divided by 2 zeta, less 1"},
       {"tail_loss_ratio",
        1,
        1,

@@ -22,18 +22,20 @@ double time_below(const Run& run, double amplitude) {
 }
 
 std::vector<Run> again(const Runs& runs, const Scene& scene, const Engine& engine) {
-  return simulate_ensemble(scene, engine, Record{}, runs.options());
+  return runs.simulated_ensemble(scene, engine, Record{});
 }
 
 // How far apart the curves of A eta_s / nu of two ensembles lie over [from, to], in percent, release by
 // release.
-Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs, double from, double to) {
+Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs,
+                    const AnalysisOptions& analysis, double from, double to) {
+  const auto curve = [&](const Run& run) {
+    return loss_curve(run, LossOrdinate::amplitude_times, analysis.loss, from, to);
+  };
   std::vector<double> values;
   values.reserve(ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(spread_percent({loss_curve(ours[i], LossOrdinate::amplitude_times, from, to),
-                                     loss_curve(theirs[i], LossOrdinate::amplitude_times, from, to)},
-                                    from, to));
+    values.push_back(spread_percent({curve(ours[i]), curve(theirs[i])}, from, to, analysis.bins));
   return spread_of(values);
 }
 
@@ -41,7 +43,7 @@ Spread models_difference(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
   const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
-  return curves_apart(ours, theirs, from, to);
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
 }
 
 Spread time_saved(Runs& runs, const MeasureCall& call) {
@@ -80,13 +82,13 @@ Spread later_release_difference(Runs& runs, const MeasureCall& call) {
   higher.until_time.reset();
   higher.until_amplitude = from / 2;
   const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
-  return curves_apart(ours, theirs, from, to);
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
 }
 
 // Share of the half cycles with an amplitude in [from, to] that belong to no regular window.
-double mixed_share(const Run& run, double from, double to) {
+double mixed_share(const Run& run, const RegimeOptions& regimes, double from, double to) {
   const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
-  const std::vector<RegularWindow> windows = regular_windows(run);
+  const std::vector<RegularWindow> windows = regular_windows(run, regimes);
   double rows = 0, mixed = 0;
   for (std::size_t row = 1; row < amplitude.size(); ++row) {
     if (!(amplitude[row] >= from && amplitude[row] <= to)) continue;
@@ -104,7 +106,8 @@ Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
   std::vector<double> values;
   values.reserve(ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(mixed_share(ours[i], from, to) / mixed_share(theirs[i], from, to));
+    values.push_back(mixed_share(ours[i], runs.analysis().regimes, from, to) /
+                     mixed_share(theirs[i], runs.analysis().regimes, from, to));
   return spread_of(values);
 }
 
@@ -114,7 +117,7 @@ Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
   Scene other = ours.front().scene;
   other.wall_stiffness = number(call, "stiffness");
   const std::vector<Run> theirs = again(runs, other, ours.front().engine);
-  return curves_apart(ours, theirs, from, to);
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
 }
 
 Spread zeta_error(Runs&, const MeasureCall& call) {
@@ -140,22 +143,22 @@ Scene single_impact_scene(const MeasureCall& call) {
   return scene;
 }
 
-Spread wall_restitution(Runs&, const MeasureCall& call) {
+Spread wall_restitution(Runs& runs, const MeasureCall& call) {
   Scene scene = single_impact_scene(call);
   Record record;
   record.contacts = true;
-  const Run contact = simulate(scene, Exact{}, record);
+  const Run contact = runs.simulated(scene, Exact{}, record);
   if (contact.contacts->end.empty()) return once(std::nan(""));
   const double end = contact.contacts->end.front();
   record.history = {{end, end + 1e-9, 2}};
-  return once(simulate(scene, Exact{}, record).history->w.back());
+  return once(runs.simulated(scene, Exact{}, record).history->w.back());
 }
 
-Spread contact_frequency(Runs&, const MeasureCall& call) {
+Spread contact_frequency(Runs& runs, const MeasureCall& call) {
   const Scene scene = single_impact_scene(call);
   Record record;
   record.contacts = true;
-  const Contacts contacts = *simulate(scene, Exact{}, record).contacts;
+  const Contacts contacts = *runs.simulated(scene, Exact{}, record).contacts;
   if (contacts.end.empty()) return once(std::nan(""));
   const double duration = contacts.end.front() - contacts.begin.front();
   return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
@@ -164,7 +167,7 @@ Spread contact_frequency(Runs&, const MeasureCall& call) {
 // Run once more by its own engine, the wall sampled finely through the contact that its fastest impact
 // begins.
 Spread wall_overlap(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [](const Run& run) {
+  return over_members(runs, call, [&](const Run& run) {
     if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
     const std::vector<double>& speed = run.impacts->relative_velocity;
     if (speed.empty()) return std::nan("");
@@ -176,7 +179,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
     scene.until_time = begin + nominal_contact_time(scene);
     Record record;
     record.history = {{begin, *scene.until_time, 201}};
-    const Run again = simulate(scene, run.engine, record);
+    const Run again = runs.simulated(scene, run.engine, record);
     double overlap = 0;
     for (const double y : again.history->y) overlap = std::max({overlap, -y, y - 1});
     return overlap;
@@ -185,7 +188,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
 
 // Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary
 // mass that swings by a hundredth of the travel, its secondary mass out of reach.
-bool is_stable(double h) {
+bool is_stable(const Runs& runs, double h) {
   Scene scene;
   scene.x0 = 0.01;
   scene.y0 = 0.5;
@@ -194,7 +197,7 @@ bool is_stable(double h) {
   cem.time_step = h;
   cem.unstable = true;
   try {
-    const std::vector<double> amplitude = simulate(scene, cem, Record{}).half_cycles->amplitude;
+    const std::vector<double> amplitude = runs.simulated(scene, cem, Record{}).half_cycles->amplitude;
     return std::ranges::none_of(amplitude, [&](double a) { return !(a < 10 * scene.x0); });
   } catch (const NumericalError&) {
     return false;  // beyond the largest number
@@ -202,11 +205,11 @@ bool is_stable(double h) {
 }
 
 // Largest step that stays bounded, by bisection. The highest mode is the primary mass's, of frequency 1.
-Spread step_limit(Runs&, const MeasureCall&) {
+Spread step_limit(Runs& runs, const MeasureCall&) {
   double low = 0.5, high = 8;
   while (high - low > 1e-6) {
     const double h = (low + high) / 2;
-    (is_stable(h) ? low : high) = h;
+    (is_stable(runs, h) ? low : high) = h;
   }
   return once(low);
 }
@@ -217,11 +220,11 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
   Scene scene = runs.file(call.scenes.front()).scene;
   scene.until_time = 30;
   scene.until_amplitude.reset();
-  const Run exact = simulate(scene, Exact{}, Record{});
+  const Run exact = runs.simulated(scene, Exact{}, Record{});
   const auto error = [&](double step) {
     Cem cem;
     cem.time_step = step;
-    const Run run = simulate(scene, cem, Record{});
+    const Run run = runs.simulated(scene, cem, Record{});
     double sum = 0;
     const std::size_t rows = std::min(run.half_cycles->amplitude.size(), exact.half_cycles->amplitude.size());
     for (std::size_t row = 0; row < rows; ++row)

@@ -49,9 +49,9 @@ double mean_impacts(const Run& run, const Rows& rows) {
   return sum / static_cast<double>(rows.last - rows.first);
 }
 
-std::vector<bool> sticks(const Run& run) {
+std::vector<bool> sticks(const Run& run, const RegimeOptions& regimes) {
   std::vector<bool> rows(half_cycles_of(run).amplitude.size(), false);
-  const Contacts stuck = stuck_contacts(run);
+  const Contacts stuck = stuck_contacts(run, regimes);
   for (std::size_t i = 0; i < stuck.begin.size(); ++i)
     for (std::size_t row = row_of(run, stuck.begin[i]); row < rows.size(); ++row) {
       if (row > 0 && run.half_cycles->zero_crossing[row - 1] >= stuck.end[i]) break;
@@ -61,27 +61,30 @@ std::vector<bool> sticks(const Run& run) {
 }
 
 Spread bounce_down_end(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [](const Run& run) {
-    if (const auto end = end_of_bounce_down(run)) return *end;
+  return over_members(runs, call, [&](const Run& run) {
+    if (const auto end = end_of_bounce_down(run, runs.analysis().regimes)) return *end;
     // No series of stuck half cycles has come to an end: either one still goes on or there was none.
-    return sticks(run).back() ? run.half_cycles->amplitude.back() : run.half_cycles->amplitude.front();
+    return sticks(run, runs.analysis().regimes).back() ? run.half_cycles->amplitude.back()
+                                                       : run.half_cycles->amplitude.front();
   });
 }
 
 Spread first_missed(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call,
-                      [](const Run& run) { return impact_failure(run).first_missed.value_or(std::nan("")); });
+  return over_members(runs, call, [&](const Run& run) {
+    return impact_failure(run, runs.analysis().regimes).first_missed.value_or(std::nan(""));
+  });
 }
 
 Spread failure_for_good(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call,
-                      [](const Run& run) { return impact_failure(run).for_good.value_or(std::nan("")); });
+  return over_members(runs, call, [&](const Run& run) {
+    return impact_failure(run, runs.analysis().regimes).for_good.value_or(std::nan(""));
+  });
 }
 
 Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [](const std::vector<const Run*>& group) {
-    return impact_failure(*group[0]).first_missed.value_or(std::nan("")) /
-           impact_failure(*group[1]).first_missed.value_or(std::nan(""));
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    return impact_failure(*group[0], runs.analysis().regimes).first_missed.value_or(std::nan("")) /
+           impact_failure(*group[1], runs.analysis().regimes).first_missed.value_or(std::nan(""));
   });
 }
 
@@ -92,7 +95,7 @@ Spread of_nearest_window(Runs& runs, const MeasureCall& call, Find find) {
   const double amplitude = number(call, "amplitude");
   return over_members(runs, call, [&](const Run& run) {
     double least = infinity, found = infinity;
-    for (const RegularWindow& window : regular_windows(run)) {
+    for (const RegularWindow& window : regular_windows(run, runs.analysis().regimes)) {
       if (static_cast<double>(window.impacts) != number(call, "impacts")) continue;
       const double distance = std::max({0.0, amplitude - window.upper, window.lower - amplitude});
       if (!(distance < least)) continue;
@@ -117,7 +120,7 @@ Spread window_lower(Runs& runs, const MeasureCall& call) {
 
 Spread windows_in_order(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const std::vector<RegularWindow> windows = regular_windows(run);
+    const std::vector<RegularWindow> windows = regular_windows(run, runs.analysis().regimes);
     double found = 0, below = infinity;
     for (std::int64_t count = static_cast<std::int64_t>(number(call, "most")); count >= 1; --count) {
       const auto window = longest_window(windows, count);
@@ -131,7 +134,7 @@ Spread windows_in_order(Runs& runs, const MeasureCall& call) {
 
 Spread mixed_gaps(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const std::vector<RegularWindow> windows = regular_windows(run);
+    const std::vector<RegularWindow> windows = regular_windows(run, runs.analysis().regimes);
     double gaps = 0;
     for (std::int64_t count = static_cast<std::int64_t>(number(call, "most")); count >= 2; --count) {
       const auto above = longest_window(windows, count), below = longest_window(windows, count - 1);
@@ -165,7 +168,7 @@ Spread impacts_ratio(Runs& runs, const MeasureCall& call) {
 
 Spread stuck_share(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const std::vector<bool> stuck = sticks(run);
+    const std::vector<bool> stuck = sticks(run, runs.analysis().regimes);
     double count = 0;
     const std::vector<std::size_t> rows = rows_between(run, number(call, "from"), number(call, "to"));
     for (const std::size_t row : rows) count += stuck[row];
@@ -174,9 +177,9 @@ Spread stuck_share(Runs& runs, const MeasureCall& call) {
 }
 
 Spread longest_stuck_series(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [](const Run& run) {
+  return over_members(runs, call, [&](const Run& run) {
     double longest = 0, series = 0;
-    for (const bool stuck : sticks(run)) {
+    for (const bool stuck : sticks(run, runs.analysis().regimes)) {
       series = stuck ? series + 1 : 0;
       longest = std::max(longest, series);
     }
@@ -226,7 +229,7 @@ double slope(const Curve& curve) {
 
 Spread stuck_degrees_slope(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    const StuckPhases stuck = stuck_phases(run);
+    const StuckPhases stuck = stuck_phases(run, runs.analysis().regimes);
     Curve curve;
     for (std::size_t i = 0; i < stuck.amplitude.size(); ++i) {
       const bool within =
@@ -256,6 +259,54 @@ Spread bounce_down_degrees_slope(Runs& runs, const MeasureCall& call) {
       curve.y.push_back(*last - *first);
     }
     return slope(curve);
+  });
+}
+
+double farthest_from(double centre, const std::vector<double>& values) {
+  return *std::ranges::max_element(values, [centre](double one, double other) {
+    return std::abs(one - centre) < std::abs(other - centre);
+  });
+}
+
+// What `find` says of each scene: of them the number that is farthest from a given one.
+template <class Find>
+Spread farthest_over_scenes(Runs& runs, const MeasureCall& call, double centre, Find find) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    std::vector<double> found;
+    for (const Run* run : group) {
+      found.push_back(find(*run));
+      if (std::isnan(found.back())) return found.back();
+    }
+    return farthest_from(centre, found);
+  });
+}
+
+Spread first_amplitude(Runs& runs, const MeasureCall& call) {
+  return farthest_over_scenes(runs, call, number(call, "amplitude"), [](const Run& run) {
+    const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
+    return amplitude.empty() ? std::nan("") : amplitude.front();
+  });
+}
+
+Spread first_impact_place(Runs& runs, const MeasureCall& call) {
+  return farthest_over_scenes(runs, call, number(call, "amplitude"), [](const Run& run) {
+    const Impacts& impacts = impacts_of(run);
+    if (impacts.time.empty()) return std::nan("");
+    return impacts.displacement.front() + (impacts.wall.front() == Wall::right ? 1 : 0);
+  });
+}
+
+// An impact at the relative speed w takes nu (1 - e^2) w^2 / (2 (1 + nu)) out; without viscous damping
+// nothing else is lost between the first amplitude and the last.
+Spread impact_loss_error(Runs& runs, const MeasureCall& call) {
+  return farthest_over_scenes(runs, call, 0, [](const Run& run) {
+    const double nu = run.scene.mass_ratio, e = run.scene.restitution;
+    double squares = 0;
+    for (const double w : impacts_of(run).relative_velocity) squares += w * w;
+    const double lost = nu * (1 - e * e) / (2 * (1 + nu)) * squares;
+    const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
+    const double first = amplitude.front(), last = amplitude.back();
+    return lost / ((first * first - last * last) / 2) - 1;
   });
 }
 
@@ -364,6 +415,26 @@ std::vector<Measure> regime_measures() {
        {"from", "to"},
        bounce_down_degrees_slope,
        "growth of the part between first and last impact of a half cycle with amplitude, degrees"},
+      {"first_amplitude",
+       1,
+       8,
+       {"amplitude"},
+       first_amplitude,
+       "amplitude of the first half cycle, of the scene in which it is farthest from the given one"},
+      {"first_impact_place",
+       1,
+       8,
+       {"amplitude"},
+       first_impact_place,
+       "place of the secondary mass at its first impact, of the scene in which it is farthest from the given "
+       "one"},
+      {"impact_loss_error",
+       1,
+       8,
+       {},
+       impact_loss_error,
+       "energy that the impacts' speeds take out, divided by that which the amplitudes lose, less 1; of the "
+       "scene in which it is farthest from 0"},
       {"impact_speed_slope",
        1,
        1,

@@ -1,0 +1,184 @@
+#include "power_table.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "impact_damper/files/number_text.hpp"
+#include "text_table.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+// Of so many claims the first few, and how many more.
+std::string names_of(const std::vector<std::string>& claims, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < claims.size() && i < most; ++i) {
+    if (i > 0) text += ", ";
+    text += claims[i];
+  }
+  if (claims.size() > most) text += " and " + std::to_string(claims.size() - most) + " more";
+  return text;
+}
+
+// "7.1 %" of a number that is not 0; what is added to one that is.
+std::string change_text(const PowerNumber& number, const Trial& trial) {
+  if (number.value == 0) return number_text(trial.value);
+  if (trial.change >= 1) return "a factor of " + rounded_text(1 + trial.change, 2);
+  return rounded_text(100 * trial.change, 2) + " %";
+}
+
+std::string found_text(const PowerNumber& number, const std::optional<Direction>& direction) {
+  if (!direction) return "-";
+  if (!direction->turn) return "none up to " + rounded_text(direction->searched_to.value, 4);
+  const Trial& trial = direction->turn->trial;
+  if (number.value == 0) return "to " + rounded_text(trial.value, 4);
+  return change_text(number, trial) + ", to " + rounded_text(trial.value, 4);
+}
+
+std::string claims_text(const std::optional<Direction>& direction, std::size_t most) {
+  return direction && direction->turn ? names_of(direction->turn->claims, most) : "";
+}
+
+bool turns_some(const PowerRow& row) { return (row.up && row.up->turn) || (row.down && row.down->turn); }
+
+std::string summary_text(const PowerTable& table) {
+  const auto some = std::ranges::count_if(table.rows, turns_some);
+  return std::to_string(table.rows.size()) + " numbers, " + std::to_string(table.claims) + " claims, " +
+         (table.engine.empty() ? "" : "engine " + table.engine + ", ") + "ensembles of " +
+         std::to_string(table.members) + ": " + std::to_string(some) + " numbers turn a verdict, " +
+         std::to_string(table.rows.size() - static_cast<std::size_t>(some)) + " turn none\n";
+}
+
+std::string quoted(const std::string& text) { return '"' + text + '"'; }  // names have no other characters
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text = "[";
+  for (const std::string& name : names) {
+    if (text.size() > 1) text += ", ";
+    text += quoted(name);
+  }
+  return text + "]";
+}
+
+std::string json_of(const Direction& direction) {
+  std::string text = "{\"searched_to\": " + number_text(direction.searched_to.value);
+  if (direction.turn)
+    text += ", \"change\": " + number_text(direction.turn->trial.change) +
+            ", \"value\": " + number_text(direction.turn->trial.value) +
+            ", \"claims\": " + list_of(direction.turn->claims);
+  return text + "}";
+}
+
+// The rows that `wanted` holds for, as a table whose first column is the scene, if they are of several.
+template <class Wanted>
+std::string markdown_rows(const PowerTable& table, bool with_scene, Wanted wanted) {
+  std::string text = with_scene ? "| scene " : "";
+  text += "| number | is | smallest increase | turns | smallest decrease | turns |\n";
+  text += with_scene ? "|---|---|---|---|---|---|---|\n" : "|---|---|---|---|---|---|\n";
+  for (const PowerRow& row : table.rows) {
+    if (!wanted(row.number.of)) continue;
+    if (with_scene) text += "| " + row.number.of + " ";
+    for (const std::string& cell :
+         {row.number.name, rounded_text(row.number.value, 4), found_text(row.number, row.up),
+          claims_text(row.up, 3), found_text(row.number, row.down), claims_text(row.down, 3)})
+      text += "| " + cell + " ";
+    text += "|\n";
+  }
+  return text;
+}
+
+// What no claim notices, by the test that does.
+std::string unnoticed_rows(const PowerTable& table) {
+  std::map<std::string_view, std::string> numbers;
+  for (const PowerRow& row : table.rows) {
+    if (turns_some(row)) continue;
+    std::string& text = numbers[row.number.noticed_by];
+    if (!text.empty()) text += ", ";
+    text += row.number.of + " " + row.number.name;
+  }
+  std::string text = "| test | notices |\n|---|---|\n";
+  for (const auto& each : numbers) {
+    text += "| ";
+    text += each.first;
+    text += " | " + each.second + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string table_text(const PowerTable& table) {
+  std::vector<std::vector<std::string>> lines{
+      {"of", "number", "is", "increase", "turns", "decrease", "turns"}};
+  for (const PowerRow& row : table.rows)
+    lines.push_back({row.number.of, row.number.name, rounded_text(row.number.value, 4),
+                     found_text(row.number, row.up), claims_text(row.up, 2), found_text(row.number, row.down),
+                     claims_text(row.down, 2)});
+  const std::string left_out =
+      table.unsettled.empty()
+          ? ""
+          : "left out, as other ensembles turn them: " + names_of(table.unsettled, table.unsettled.size()) +
+                "\n";
+  return aligned(lines) + "\n" + left_out + summary_text(table);
+}
+
+std::string json_text(const PowerTable& table) {
+  std::string text = "{\"schema\": \"impact-damper/power/1\",\n \"engine\": " + quoted(table.engine) +
+                     ", \"members\": " + std::to_string(table.members) +
+                     ", \"claims\": " + std::to_string(table.claims) +
+                     ", \"other_ensembles\": " + std::to_string(table.ensembles) +
+                     ",\n \"unsettled\": " + list_of(table.unsettled) + ",\n \"numbers\": [";
+  const char* separator = "\n";
+  for (const PowerRow& row : table.rows) {
+    text += separator;
+    text += "  {\"of\": " + quoted(row.number.of) + ", \"name\": " + quoted(row.number.name) +
+            ", \"value\": " + number_text(row.number.value);
+    if (row.up) text += ",\n   \"up\": " + json_of(*row.up);
+    if (row.down) text += ",\n   \"down\": " + json_of(*row.down);
+    text += ",\n   \"noticed_by\": " + quoted(std::string(row.number.noticed_by)) + "}";
+    separator = ",\n";
+  }
+  return text + "\n ]}\n";
+}
+
+std::string markdown_text(const PowerTable& table) {
+  const auto is = [](std::string_view which) {
+    return [which](const std::string& of) { return of == which; };
+  };
+  std::string text =
+      "# How little turns a verdict\n\n"
+      "Made by `impact-damper verify --power --markdown` from [data/claims.json](../data/claims.json), all "
+      "digits in\n[power.json](power.json). For each number of the eight scenes, of the analysis and of what "
+      "runs record: the smallest\nchange, all other numbers as they are, that turns at least one verdict of "
+      "[claims.md](claims.md), and the claims that it\nturns.\n\n"
+      "- A number becomes larger by so many percent, or is divided by as much: 50 % is times 1.5 or divided "
+      "by 1.5. One that\n  is 0 becomes what is given.\n"
+      "- A scene's number is changed as if its file were wrong: the simulation and the analysis both get the "
+      "changed one.\n  What runs record is multiplied in every run that a measure looks at.\n"
+      "- Medians of chaotic decays do not depend on a number monotonically. Changes of 0.1, 0.2, 0.5, 1, "
+      "2, 5 ... percent are\n  tried until a verdict turns, and bisection over changes of two digits narrows "
+      "the interval before it. The change\n  given turns a verdict, and the next smaller one of two digits "
+      "turns none; that no smaller change does is not\n  proved. Whole numbers are tried one by one.\n"
+      "- A small change means that the claims hold the number tightly, *none* that they do not know it. "
+      "The paper's words\n  decide that, not the program: two percent of a momentum are below any digit "
+      "that it prints.\n";
+  text += "- Left out, because each of " + std::to_string(table.ensembles) +
+          " other ensembles may turn them without any change: " +
+          (table.unsettled.empty() ? "none" : names_of(table.unsettled, table.unsettled.size())) + ".\n";
+  text += "\n";
+  text += summary_text(table);
+  text += "\n## Scenes\n\n" + markdown_rows(table, true, [](const std::string& of) {
+            return of != "analysis" && of != "columns";
+          });
+  text += "\n## Analysis\n\n" + markdown_rows(table, false, is("analysis"));
+  text += "\n## What runs record\n\nTimes a factor of 1.\n\n" + markdown_rows(table, false, is("columns"));
+  text +=
+      "\n## What no claim notices\n\nSuch a number is not the paper's, or the paper says that it does "
+      "not matter, or it ends a run later than anything that is\njudged. A test of the project "
+      "notices a change of it:\n\n" +
+      unnoticed_rows(table);
+  return text;
+}
+
+}  // namespace impact_damper::cli
