@@ -492,7 +492,7 @@ TEST_CASE("what the paper's stuck regime changes is read off runs with it and wi
 
   const double from = 1, to = 5;
   const auto curve = [&](std::optional<double> stuck_speed) {
-    return loss_curve(run(from / 2, stuck_speed, any), LossOrdinate::amplitude_times, from, to);
+    return loss_curve(run(from / 2, stuck_speed, any), LossOrdinate::amplitude_times, {}, from, to);
   };
   const double spread = spread_percent({curve(speed), curve({})}, from, to);
   CHECK(spread > 0.1);

@@ -30,7 +30,7 @@ Scene decay_of(Runs& runs, const MeasureCall& call, double amplitude) {
 std::vector<Run> decays(const Runs& runs, const Scene& scene, std::optional<double> stuck_speed) {
   Record record;
   record.contacts = true;
-  return simulate_ensemble(scene, method(stuck_speed), record, runs.options());
+  return runs.simulated_ensemble(scene, method(stuck_speed), record);
 }
 
 Spread time_percent(Runs& runs, const MeasureCall& call) {
@@ -38,7 +38,6 @@ Spread time_percent(Runs& runs, const MeasureCall& call) {
   const Scene scene = decay_of(runs, call, amplitude);
   const auto times = [&](std::optional<double> stuck_speed) {
     std::vector<double> values;
-    values.reserve(static_cast<std::size_t>(runs.options().members));
     for (const Run& run : decays(runs, scene, stuck_speed)) {
       const auto row = first_row_below(half_cycles_of(run), amplitude);
       values.push_back(row ? run.half_cycles->peak_time[*row] : std::nan(""));
@@ -52,6 +51,7 @@ Spread time_percent(Runs& runs, const MeasureCall& call) {
 }
 
 Spread curve_percent(Runs& runs, const MeasureCall& call) {
+  const AnalysisOptions& analysis = runs.analysis();
   const double from = number(call, "from"), to = number(call, "to");
   // The average over eleven peaks needs five below the last.
   const Scene scene = decay_of(runs, call, from / 2);
@@ -60,16 +60,16 @@ Spread curve_percent(Runs& runs, const MeasureCall& call) {
   std::vector<double> values;
   values.reserve(with.size());
   for (std::size_t i = 0; i < with.size(); ++i)
-    values.push_back(spread_percent({loss_curve(with[i], LossOrdinate::amplitude_times, from, to),
-                                     loss_curve(without[i], LossOrdinate::amplitude_times, from, to)},
-                                    from, to));
+    values.push_back(
+        spread_percent({loss_curve(with[i], LossOrdinate::amplitude_times, analysis.loss, from, to),
+                        loss_curve(without[i], LossOrdinate::amplitude_times, analysis.loss, from, to)},
+                       from, to, analysis.bins));
   return spread_of(values);
 }
 
 Spread bounce_down_end(Runs& runs, const MeasureCall& call) {
   const Scene scene = decay_of(runs, call, number(call, "amplitude"));
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(runs.options().members));
   for (const Run& run : decays(runs, scene, number(call, "stuck_speed")))
     values.push_back(end_of_bounce_down(run).value_or(std::nan("")));
   return spread_of(values);
@@ -108,7 +108,8 @@ std::vector<Measure> stuck_measures() {
        1,
        {"stuck_speed", "from", "to"},
        curve_percent,
-       "spread of A eta_s / nu between the component element method with and without that regime, in percent"},
+       "spread of A eta_s / nu between the component element method with and without that regime, in "
+       "percent"},
       {"stuck_regime_bounce_down_end",
        1,
        1,
