@@ -107,6 +107,17 @@ TEST_CASE("both masses move by equation (9) and part where x'' changes its sign,
   }
 }
 
+TEST_CASE("from rest in the middle a force moves both masses, from the first step on") {
+  // x = f0 omega_f t^3/6 divided by 1 + nu, as long as t is small.
+  const double h = 1e-3, f0 = 0.5;
+  const Scene scene{
+      .mass_ratio = 0.5, .wall_stiffness = 100, .x0 = 0, .force_amplitude = f0, .until_time = 0.1};
+  const Run run =
+      simulate(scene, Cem{.time_step = h, .stuck_speed = always}, {.contacts = true, .history = {{0, h, 2}}});
+  CHECK(run.history->x[1] == doctest::Approx(f0 * h * h * h / 6 / 1.5).epsilon(1e-3));
+  CHECK(run.contacts->end.at(0) == 0.1);
+}
+
 TEST_CASE("a slow impact joins the masses with their momentum, at what that costs, until x returns to zero") {
   // x = -cos t; the secondary mass goes straight on, from -0.9 with the speed -0.3.
   const Scene scene{.mass_ratio = 0.2, .x0 = -1, .y0 = 0.1, .w0 = -0.3, .until_time = 3};

@@ -50,7 +50,8 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
   // too, unless an impact does.
   const bool impact_at_once = (s.y == 0 && s.w < 0) || (s.y == 1 && s.w > 0);
   const bool moved_by_force = s.x == 0 && s.v == 0 && acceleration(Real(0), s).x == 0 && !impact_at_once;
-  if (moved_by_force) now_.dx += h * h * h * force_.amplitude * force_.frequency / 6;
+  const Real mass = stuck_ ? 1 + flight_.nu : Real(1);
+  if (moved_by_force) now_.dx += h * h * h * force_.amplitude * force_.frequency / 6 / mass;
 
   side_ = sign(s.x != 0 ? s.x : s.v);
   trend_ = sign(s.v);
