@@ -149,7 +149,7 @@ std::string markdown_text(const PowerTable& table) {
   std::string text =
       "# How little turns a verdict\n\n"
       "Made by `impact-damper verify --power --markdown` from [data/claims.json](../data/claims.json), all "
-      "digits in\n[power.json](power.json). For each number of the eight scenes, of the analysis and of what "
+      "digits in\n[power.json](power.json). For each number of the scenes, of the analysis and of what "
       "runs record: the smallest\nchange, all other numbers as they are, that turns at least one verdict of "
       "[claims.md](claims.md), and the claims that it\nturns.\n\n"
       "- A number becomes larger by so many percent, or is divided by as much: 50 % is times 1.5 or divided "
@@ -159,12 +159,13 @@ std::string markdown_text(const PowerTable& table) {
       "- Medians of chaotic decays do not depend on a number monotonically. Changes of 0.1, 0.2, 0.5, 1, "
       "2, 5 ... percent are\n  tried until a verdict turns, and bisection over changes of two digits narrows "
       "the interval before it. The change\n  given turns a verdict, and the next smaller one of two digits "
-      "turns none; that no smaller change does is not\n  proved. Whole numbers are tried one by one.\n"
+      "turns none; that no smaller change does is not\n  proved. Whole numbers are tried one by one; their "
+      "change is a\n  percentage of what they are.\n"
       "- A small change means that the claims hold the number tightly, *none* that they do not know it. "
       "The paper's words\n  decide that, not the program: two percent of a momentum are below any digit "
       "that it prints.\n";
-  text += "- Left out, because each of " + std::to_string(table.ensembles) +
-          " other ensembles may turn them without any change: " +
+  text += "- Left out, because at least one of " + std::to_string(table.ensembles) +
+          " other ensembles turns them without any change: " +
           (table.unsettled.empty() ? "none" : names_of(table.unsettled, table.unsettled.size())) + ".\n";
   text += "\n";
   text += summary_text(table);
@@ -174,9 +175,9 @@ std::string markdown_text(const PowerTable& table) {
   text += "\n## Analysis\n\n" + markdown_rows(table, false, is("analysis"));
   text += "\n## What runs record\n\nTimes a factor of 1.\n\n" + markdown_rows(table, false, is("columns"));
   text +=
-      "\n## What no claim notices\n\nSuch a number is not the paper's, or the paper says that it does "
-      "not matter, or it ends a run later than anything that is\njudged. A test of the project "
-      "notices a change of it:\n\n" +
+      "\n## What no claim notices\n\nSuch a number is not in the paper, or the paper says that it does not "
+      "matter, or its effect is gone before anything that\nis judged. A test of the project notices a "
+      "change of it:\n\n" +
       unnoticed_rows(table);
   return text;
 }
