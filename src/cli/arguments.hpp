@@ -16,7 +16,7 @@
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/files/json_reader.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the parser's
 class App;
 }
 

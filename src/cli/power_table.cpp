@@ -50,13 +50,15 @@ std::string summary_text(const PowerTable& table) {
          std::to_string(table.rows.size() - static_cast<std::size_t>(some)) + " turn none\n";
 }
 
-std::string quoted(const std::string& text) { return '"' + text + '"'; }  // names have no other characters
+std::string json_string(const std::string& text) {
+  return '"' + text + '"';
+}  // names have no other characters
 
 std::string list_of(const std::vector<std::string>& names) {
   std::string text = "[";
   for (const std::string& name : names) {
     if (text.size() > 1) text += ", ";
-    text += quoted(name);
+    text += json_string(name);
   }
   return text + "]";
 }
@@ -124,7 +126,7 @@ std::string table_text(const PowerTable& table) {
 }
 
 std::string json_text(const PowerTable& table) {
-  std::string text = "{\"schema\": \"impact-damper/power/1\",\n \"engine\": " + quoted(table.engine) +
+  std::string text = "{\"schema\": \"impact-damper/power/1\",\n \"engine\": " + json_string(table.engine) +
                      ", \"members\": " + std::to_string(table.members) +
                      ", \"claims\": " + std::to_string(table.claims) +
                      ", \"other_ensembles\": " + std::to_string(table.ensembles) +
@@ -132,11 +134,11 @@ std::string json_text(const PowerTable& table) {
   const char* separator = "\n";
   for (const PowerRow& row : table.rows) {
     text += separator;
-    text += "  {\"of\": " + quoted(row.number.of) + ", \"name\": " + quoted(row.number.name) +
+    text += "  {\"of\": " + json_string(row.number.of) + ", \"name\": " + json_string(row.number.name) +
             ", \"value\": " + number_text(row.number.value);
     if (row.up) text += ",\n   \"up\": " + json_of(*row.up);
     if (row.down) text += ",\n   \"down\": " + json_of(*row.down);
-    text += ",\n   \"noticed_by\": " + quoted(std::string(row.number.noticed_by)) + "}";
+    text += ",\n   \"noticed_by\": " + json_string(std::string(row.number.noticed_by)) + "}";
     separator = ",\n";
   }
   return text + "\n ]}\n";

@@ -123,7 +123,7 @@ void warn_of_missing_samples(const Run& run, const Record& record) {
             << " samples asked for\n";
 }
 
-int run(Arguments& arguments) {
+int run_scene(Arguments& arguments) {
   const SceneFile scene_file = scene_of(arguments);
   const Scene& scene = scene_file.scene;
   const std::optional<Scales>& scales = scene_file.scales;
@@ -216,7 +216,7 @@ Command run_command() {
       "the scene\n"
       "file's content is not valid, 4 numerical failure, 5 the scene file cannot be read or\n"
       "the run cannot be written.";
-  command.act = run;
+  command.act = run_scene;
   return command;
 }
 

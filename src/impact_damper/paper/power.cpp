@@ -44,11 +44,12 @@ constexpr double to_four_times = 3;
 
 Trials whole_number_trials(double value, double step, double last) {
   Trials trials;
-  for (double each = value + step; step > 0 ? each <= last : each >= last; each += step) {
+  for (int i = 1;; ++i) {
+    const double each = value + i * step;
+    if (!(step > 0 ? each <= last : each >= last)) return trials;
     trials.first.push_back(trials.all.size());
     trials.all.push_back({std::abs(each - value) / value, each});
   }
-  return trials;
 }
 
 void keep_valid(Trials& trials, const std::function<bool(double)>& is_valid) {
@@ -325,10 +326,10 @@ std::vector<PowerRow> Power::table(const std::function<void(std::size_t, std::si
   std::atomic<std::size_t> done{0};
   for_each_index(std::int64_t(searches.size()), threads_, [&](std::int64_t i) {
     const Search& search = searches[std::size_t(i)];
-    Direction& direction = search.found->emplace(Direction{.searched_to = search.trials->all.back()});
+    *search.found = Direction{.searched_to = search.trials->all.back()};
     const auto turns = [&](double value) { return !turned(*search.number, value, false).empty(); };
     if (const auto trial = smallest_turn(*search.trials, turns))
-      direction.turn = Turn{*trial, turned(*search.number, trial->value)};
+      (*search.found)->turn = Turn{*trial, turned(*search.number, trial->value)};
     tell(++done, searches.size());
   });
   return rows;
