@@ -22,6 +22,8 @@ FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
     (r"L/sqrt\(pi\^2 \+ L\^2\) with L = -ln e", r"$L/\\sqrt{\\pi^2 + L^2}$ with $L = -\\ln e$"),
     (r"Omega_m = sqrt\(K_M/M\)", r"$\\Omega_m = \\sqrt{K_M/M}$"),
     (r"sqrt\(k\)", r"$\\sqrt{k}$"),
+    (r"\b(zeta|zeta_s) = C/C_c", r"$\\\1 = C/C_c$"),
+    (r"\bzeta_s\b", r"$\\zeta_s$"),
     (r"nu \(x'\^2 \+ y'\^2\)/2", r"$\\nu(x'^2 + y'^2)/2$"),
     (r"y'' = -x''", r"$y'' = -x''$"),
     (r"d ln \(w/A\) / d ln A", r"$d\\ln(w/A)/d\\ln A$"),

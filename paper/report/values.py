@@ -131,6 +131,8 @@ class Values:
                            f"{name}.paper": claim["printed"], f"{name}.verdict": told["verdict"]}
             for what, number in told.get("also", {}).items():
                 self.known[f"{name}.{what.replace('_', '-')}"] = number["ours"]
+            self.known |= {f"{name}.{what.replace('_', '-')}": number for what, number in claim["measure"].items()
+                           if isinstance(number, (int, float))}
         self.known |= {"count.claims": len(self.verdicts), "count.open": len(self.open)}
         for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
             self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())
