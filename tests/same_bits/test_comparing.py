@@ -169,16 +169,17 @@ class TheReferenceIsHeldAgainstTheNewOne(InAFolder):
 
 
 class RenewingTheReference(InAFolder):
-    """paper/renew in a repository of its own, with a paper/refresh and a cmake that only pretend."""
+    """paper/renew in a repository of its own, with a paper/refresh, a cmake and a program that only pretend."""
     CHANGELOG = "# Changelog\n\n## [0.1.0] - Unreleased\n\n### Added\n\n- All of it.\n"
 
     def setUp(self):
         super().setUp()
-        for part in ("paper", "data/reference", "bin", "build"):
+        for part in ("paper", "data/reference", "bin", "build/src"):
             (self.folder / part).mkdir(parents=True)
         shutil.copy(SOURCE / "paper/renew", self.folder / "paper/renew")
         self.script("bin/cmake", "exit 0")
         self.script("paper/refresh", f"cp {self.folder}/build/verdicts.json {self.folder}/data/reference/")
+        self.script("build/src/impact-damper", 'echo "$*"; echo "$*" >paper/power.md')
         (self.folder / "CHANGELOG.md").write_text(self.CHANGELOG)
         (self.folder / ".gitignore").write_text("build/\n")
         self.verdicts("data/reference", 0.33651, 5.0623)
@@ -232,6 +233,7 @@ class RenewingTheReference(InAFolder):
         self.assertEqual(self.changelog(), self.CHANGELOG + "\n### Changed\n\n- Claim `product-mid-range`: "
                          "0.3365 (reproduced) before, 0.3368 (reproduced) now.\n")
         self.assertIn("1 claims moved, and are noted in CHANGELOG.md; 1 by less", done.stdout)
+        self.assertRegex((self.folder / "paper/power.md").read_text(), "^verify --power .*-o paper/power.json --markdown paper/power.md")
 
     def test_a_verdict_that_moved_is_noted(self):
         self.verdicts("build", 0.33651, "null", "not reproduced")
