@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "findings.hpp"
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 #include "peers/peers.hpp"
 #include "reference.hpp"
 #include "report.hpp"

@@ -14,18 +14,18 @@
 #include <vector>
 
 #include "impact_damper/engine.hpp"
-#include "impact_damper/motion/arrival.hpp"
-#include "impact_damper/motion/elementary.hpp"
-#include "impact_damper/motion/first_root.hpp"
+#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/events/root_isolation.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper::bench {
 
 struct Counts {
-  std::int64_t guesses = 0;       // of a flight's end (arrival.hpp)
+  std::int64_t guesses = 0;       // of a flight's end (impact_prediction.hpp)
   std::int64_t searches = 0;      // calls of first_root, where no guess is proved
   std::int64_t evaluations = 0;   // of a motion about a guess, and of the functions a search watches
-  std::int64_t steps = 0;         // of the search, one for each function watched (certified_step)
+  std::int64_t steps = 0;         // of the search, one for each function watched (step_without_root)
   std::int64_t sincos = 0;        // sine and cosine of one angle count once
   std::int64_t exponentials = 0;  // exp and expm1
   std::int64_t arctangents = 0;
@@ -91,32 +91,34 @@ inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(dou
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
 template <std::same_as<Counted> Real>
-Guess<Real> guess(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate, const Real& most) {
+Prediction<Real> predict_impact(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate,
+                                const Real& most) {
   ++counts.guesses;
-  return impact_damper::guess<Real>(u, fourth, rate, most);
+  return impact_damper::predict_impact<Real>(u, fourth, rate, most);
 }
 
 template <std::same_as<Counted> Real>
-Nearby<Real> nearby(const Real& level, const Derivatives<Real, 6>& y, const Real& h, const Real& fourth) {
+TimeToLevel<Real> time_to_level(const Real& level, const Derivatives<Real, 6>& y, const Real& h,
+                                const Real& fourth) {
   ++counts.evaluations;
-  return impact_damper::nearby<Real>(level, y, h, fourth);
+  return impact_damper::time_to_level<Real>(level, y, h, fourth);
 }
 
 template <std::same_as<Counted> Real, class Watch>
-std::optional<Root<Real>> first_root(Watch&& outlook, const Real& from, const Real& horizon, const Real& span,
+std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon, const Real& span,
                                      const Real& resolution) {
   ++counts.searches;
   const auto counting = [&](const Real& t) {
     ++counts.evaluations;
-    return outlook(t);
+    return enclose(t);
   };
   return impact_damper::first_root<Real>(counting, from, horizon, span, resolution);
 }
 
 template <std::same_as<Counted> Real>
-Real certified_step(const Jet<Real>& jet, Real most) {
+Real step_without_root(const Jet<Real>& jet, Real most) {
   ++counts.steps;
-  return impact_damper::certified_step<Real>(jet, most);
+  return impact_damper::step_without_root<Real>(jet, most);
 }
 
 // What a run of the scene counts, its half cycles recorded, and how many impacts it has.

@@ -3,9 +3,9 @@
 #include <map>
 
 #include "impact_damper/analysis/ensemble.hpp"
-#include "impact_damper/files/scene_file.hpp"
-#include "impact_damper/paper/catalogue.hpp"
-#include "impact_damper/paper/series.hpp"
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
+#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper::bench {

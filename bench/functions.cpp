@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper::bench {
 namespace {

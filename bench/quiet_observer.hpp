@@ -21,16 +21,16 @@ class QuietObserver {
   void contact(double, double, Wall) {}
   double next_sample() const { return std::numeric_limits<double>::infinity(); }
   void sample(double, double, double, double, double) {}
-  EnergyLedger& ledger() {
-    ledger_.impact_loss.clear();  // the engine keeps the sum
-    return ledger_;
+  EnergyBalance& energy_balance() {
+    energy_balance_.impact_loss.clear();  // the engine keeps the sum
+    return energy_balance_;
   }
 
   std::int64_t rows = 0, impacts = 0;
 
  private:
   bool energy_;
-  EnergyLedger ledger_;
+  EnergyBalance energy_balance_;
 };
 
 }  // namespace impact_damper::bench

@@ -9,7 +9,7 @@
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 #ifdef HAVE_FLOAT128
 // Boost 1.74's own expm1 of this type does not compile.

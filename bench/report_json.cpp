@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/io/provenance.hpp"
 #include "reference.hpp"
 #include "report.hpp"
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/io/provenance.hpp"
 #include "reference.hpp"
 #include "report.hpp"
 

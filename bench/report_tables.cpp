@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 #include "report.hpp"
 
 namespace impact_damper::bench {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/restitution.hpp"
-#include "impact_damper/files/number_text.hpp"
 #include "quiet_observer.hpp"
 
 namespace impact_damper::bench {
@@ -24,7 +24,7 @@ SweepPoint measure_point(double at, const Scene& scene, const Options& options) 
   run(scene, options, accountant);
   point.impacts = accountant.impacts;
   point.half_cycles = accountant.rows;
-  point.residual = std::abs(accountant.ledger().residual);
+  point.residual = std::abs(accountant.energy_balance().residual);
 
   const auto once = [&] {
     QuietObserver observer;

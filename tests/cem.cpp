@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/engines/recorder.hpp"
-#include "impact_damper/files/errors.hpp"
 
 using namespace impact_damper;
 
@@ -392,7 +392,7 @@ TEST_CASE("a mass pressed to the wall at the start is in contact but makes no im
   }
 }
 
-TEST_CASE("over one impact the ledger's residual is of second order, located or not") {
+TEST_CASE("over one impact the energy balance's residual is of second order, located or not") {
   for (const Cem& options : {Cem{}, Cem{.locate = true}, Cem{.damper = Damper::lagged}}) {
     const auto residual = [&](double steps, double phase) {
       const auto [scene, h] = one_impact({}, steps, phase);
@@ -407,7 +407,7 @@ TEST_CASE("over one impact the ledger's residual is of second order, located or 
   }
 }
 
-TEST_CASE("over a decay with located events the ledger closes with second order") {
+TEST_CASE("over a decay with located events the energy balance closes with second order") {
   for (double zeta : {0.0, 0.008}) {
     for (double force : {0.0, 0.3}) {
       const Scene scene{
@@ -415,12 +415,12 @@ TEST_CASE("over a decay with located events the ledger closes with second order"
       std::array<double, 3> residual;
       for (int i = 0; i < 3; ++i) {
         const Run run = simulated(scene, {.time_step = 1e-4 / (1 << i), .locate = true}, everything());
-        const EnergyLedger& ledger = *run.energy;
-        residual[i] = std::abs(ledger.residual);
-        CHECK(ledger.impact_loss.size() == run.impacts->time.size());
-        for (double loss : ledger.impact_loss) CHECK(loss >= 0);
-        CHECK((ledger.viscous_work > 0) == (zeta > 0));
-        CHECK((ledger.forcing_work != 0) == (force != 0));
+        const EnergyBalance& balance = *run.energy;
+        residual[i] = std::abs(balance.residual);
+        CHECK(balance.impact_loss.size() == run.impacts->time.size());
+        for (double loss : balance.impact_loss) CHECK(loss >= 0);
+        CHECK((balance.viscous_work > 0) == (zeta > 0));
+        CHECK((balance.forcing_work != 0) == (force != 0));
       }
       CHECK(residual[0] < 1e-5);
       CHECK(order(residual[0], residual[1]) == doctest::Approx(2).epsilon(0.1));

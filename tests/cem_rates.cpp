@@ -254,7 +254,7 @@ TEST_CASE("damped and forced too, a change of step during rest is wrong by no mo
   }
 }
 
-TEST_CASE("with two rates the ledger closes with second order") {
+TEST_CASE("with two rates the energy balance closes with second order") {
   for (double zeta : {0.0, 0.008}) {
     for (double force : {0.0, 0.3}) {
       const Scene scene{
@@ -262,11 +262,11 @@ TEST_CASE("with two rates the ledger closes with second order") {
       const auto residual = [&](double scale) {
         const Run run = simulate(
             scene, Cem{.time_step = 1e-4 * scale, .locate = true, .large_step = 0.08 * scale}, everything());
-        const EnergyLedger& ledger = *run.energy;
-        CHECK(ledger.impact_loss.size() == run.impacts->time.size());
-        CHECK((ledger.viscous_work > 0) == (zeta > 0));
-        CHECK((ledger.forcing_work != 0) == (force != 0));
-        return std::abs(ledger.residual);
+        const EnergyBalance& balance = *run.energy;
+        CHECK(balance.impact_loss.size() == run.impacts->time.size());
+        CHECK((balance.viscous_work > 0) == (zeta > 0));
+        CHECK((balance.forcing_work != 0) == (force != 0));
+        return std::abs(balance.residual);
       };
       const double coarse = residual(1), fine = residual(0.125);
       CAPTURE(zeta);

@@ -1,4 +1,4 @@
-#include "impact_damper/paper/claims.hpp"
+#include "impact_damper/reproduction/claims.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/paper/measure_numbers.hpp"
-#include "impact_damper/paper/measures.hpp"
-#include "impact_damper/paper/printed.hpp"
-#include "impact_damper/paper/words.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/reproduction/measure_numbers.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/printed.hpp"
+#include "impact_damper/reproduction/words.hpp"
 
 using namespace impact_damper;
 

@@ -22,8 +22,8 @@ double magnitude(Quad x) { return double(reference::absolute(x)); }
 // x, v, q, w after a time t of contact: equations (5)-(8) as one linear system, with the force as two more
 // unknowns and q scaled so that all entries are of the order of the wall's frequency.
 template <class Real>
-std::array<Quad, 4> moved(const ContactSystem<Real>& wall, const std::array<double, 4>& from, double begin,
-                          double t) {
+std::array<Quad, 4> shifted(const ContactModes<Real>& wall, const std::array<double, 4>& from, double begin,
+                            double t) {
   const Quad nu = wall.nu, k = wall.stiffness, c = wall.damping, zeta = wall.zeta;
   const Quad f0 = wall.forcing.amplitude, omega = wall.forcing.frequency;
   const Quad s = std::sqrt(double(wall.stiffness));
@@ -88,7 +88,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
   for (int n = 0; n < 4000; ++n) {
     const Scene scene = random_scene(random);
     const System<double> system(scene);
-    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const double root_k = std::sqrt(walls.stiffness), rate = walls.fast.rate();
     // An impact, or any overlap, of either mass's motion of any size.
     std::array<double, 4> from{random.uniform(-10, 10), random.uniform(-10, 10), 0,
@@ -100,7 +100,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
 
     const Contact<double> contact(walls, begin, {from[0], from[1], from[2], from[3]}, Wall::left);
     const State<double> found = contact.at(t);
-    const auto expected = moved(walls, from, begin, t);
+    const auto expected = shifted(walls, from, begin, t);
 
     // The sizes of the two motions, and how far rounding of the phase shifts what still rings.
     const double f0 = std::abs(scene.force_amplitude), nu = scene.mass_ratio;
@@ -138,7 +138,7 @@ struct Impact {
 };
 Impact impact_of(const Scene& scene, Calibration calibration) {
   const System<double> system(scene);
-  const ContactSystem<double> walls(system, zeta_m<double>(scene, calibration));
+  const ContactModes<double> walls(system, zeta_m<double>(scene, calibration));
   const Contact<double> contact(walls, 0.0, {0, 0, 0, -1}, Wall::left);
   const double infinite = std::numeric_limits<double>::infinity();
   const auto left = contact.leave(100.0, infinite);
@@ -155,7 +155,7 @@ TEST_CASE("the first three derivatives of x at a contact's beginning are those o
   for (int n = 0; n < 500; ++n) {
     const Scene scene = random_scene(random);
     const System<double> system(scene);
-    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const bool at_rest = random.chance(0.2);  // then the force's own jerk may be all there is
     const double x = at_rest ? 0 : random.uniform(-6, 6), v = at_rest ? 0 : random.uniform(-6, 6);
     const double w = at_rest ? 0 : random.uniform(-6, 0), begin = at_rest ? 0 : random.uniform(0, 10);
@@ -163,7 +163,7 @@ TEST_CASE("the first three derivatives of x at a contact's beginning are those o
     // From velocities a short time before and behind; the next derivatives are larger by the fastest rate.
     const double rate = std::max({1.0, walls.fast.rate(), scene.force_frequency}), h = 1e-7 / rate;
     const std::array<double, 4> start{x, v, 0, w};
-    const Quad before = moved(walls, start, begin, -h)[1], behind = moved(walls, start, begin, h)[1];
+    const Quad before = shifted(walls, start, begin, -h)[1], behind = shifted(walls, start, begin, h)[1];
     const double x2 = double((behind - before) / (2 * Quad(h)));
     const double x3 = double((behind - 2 * Quad(v) + before) / (Quad(h) * h));
     const double size =
@@ -214,7 +214,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
     scene.mass_ratio = nu;
     scene.restitution = 0;
     const System<double> system(scene);
-    const ContactSystem<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
     const double infinite = std::numeric_limits<double>::infinity();
     const auto left = contact.leave(100.0, infinite);

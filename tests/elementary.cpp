@@ -3,7 +3,7 @@
 // errors met in 100,000 arguments for each line: sine and cosine 0.58, next to a quarter turn's multiple
 // 0.77, tiny 0.53, large 0.57; exponential 0.51, in subnormal numbers 0.75; less 1 0.502; logarithm 0.51;
 // angle 0.61.
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 #include <doctest/doctest.h>
 #include <mpfr.h>

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "impact_damper/motion/complex.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/complex.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 using namespace impact_damper;
 

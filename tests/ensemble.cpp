@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/io/run_file.hpp"
 
 using namespace impact_damper;
 

@@ -5,7 +5,7 @@
 
 #include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/engines/recorder.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 namespace every_run {
 

@@ -320,7 +320,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("energy never rises unforced and the ledger closes, over many scenes") {
+TEST_CASE("energy never rises unforced and the energy balance closes, over many scenes") {
   for (const Scene& scene : many_scenes()) {
     CAPTURE(scene.mass_ratio);
     CAPTURE(scene.damping_ratio);
@@ -413,10 +413,10 @@ struct AtCrossings {
     return x.size() < ends.size() ? ends[x.size()] : std::numeric_limits<double>::infinity();
   }
   void sample(double, double now, double, double, double) { x.push_back(now); }
-  EnergyLedger& ledger() { return unused; }
+  EnergyBalance& energy_balance() { return unused; }
 
   std::vector<double> ends, x;
-  EnergyLedger unused;
+  EnergyBalance unused;
 };
 
 TEST_CASE("who asks for the state at a time that was told of gets it, that of the scene's end among them") {

@@ -1,4 +1,4 @@
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/json_reader.hpp"
 
 using namespace impact_damper;
 namespace fs = std::filesystem;

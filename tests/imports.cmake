@@ -1,5 +1,5 @@
 # Fails if one of FILES, objects, libraries and programs as NM reads them, imports a transcendental function of
-# the C library: its last bits depend on the library's version and on the processor (src/impact_damper/motion/
+# the C library: its last bits depend on the library's version and on the processor (src/impact_damper/math/
 # elementary_kernels.hpp). Not among them: sqrt, fmod, remainder, ceil, floor, round, trunc, rint, fabs, copysign, whose
 # results the standard fixes to the last bit. fma is among them: without an instruction for it, it is slow.
 set(real

@@ -1,11 +1,11 @@
-#include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/io/json_reader.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 
 using namespace impact_damper;
 

@@ -1,4 +1,4 @@
-#include "impact_damper/paper/measures.hpp"
+#include "impact_damper/reproduction/measures.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/paper/measures_parts.hpp"
+#include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "impact_damper/analysis/regimes.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/run_file.hpp"
-#include "impact_damper/paper/measures.hpp"
-#include "impact_damper/paper/measures_parts.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -1,4 +1,4 @@
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 #include <doctest/doctest.h>
 

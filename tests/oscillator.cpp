@@ -193,18 +193,18 @@ TEST_CASE("the bound on a motion holds and is reached") {
   }
 }
 
-TEST_CASE("what is kept of a damped swing is never more, and what is left never less, than it is") {
+TEST_CASE("the lower bound of a decay is never above it, and the bound of a decaying motion never below it") {
   reference::Random random(8);
   for (int n = 0; n < 2000; ++n) {
     const double a = random.log_uniform(1e-3, 10), b = random.log_uniform(0.01, 100);
     const double u = random.uniform(-1, 1), u1 = random.uniform(-3, 3), t = random.log_uniform(1e-3, 10);
     const Oscillator<double> oscillator(a, b);
-    CHECK(oscillator.kept(t) <= std::exp(-a * t) * (1 + 1e-14));
-    CHECK(oscillator.kept(t) >= std::exp(-a * t) / 2);
-    const double left = oscillator.left(u, u1, t);
+    CHECK(oscillator.lower_bound_of_decay(t) <= std::exp(-a * t) * (1 + 1e-14));
+    CHECK(oscillator.lower_bound_of_decay(t) >= std::exp(-a * t) / 2);
+    const double bound = oscillator.bound_after(u, u1, t);
     for (int i = 0; i <= 100; ++i) {
       const auto p = oscillator.propagate(t * (1 + i / 10.0));
-      CHECK(std::abs(p.c * u + p.s * u1) <= left * (1 + 1e-14));
+      CHECK(std::abs(p.c * u + p.s * u1) <= bound * (1 + 1e-14));
     }
   }
 }

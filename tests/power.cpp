@@ -1,6 +1,6 @@
 // The recorded table of the claims' discriminating power (paper/power.json): complete, and right where it is
 // tried. `impact-damper verify --power` makes all of it, in minutes.
-#include "impact_damper/paper/power.hpp"
+#include "impact_damper/reproduction/power.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

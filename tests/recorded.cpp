@@ -86,7 +86,7 @@ void same(const Run& run, const Run& expected, double allowed) {
   same("v", run.history->v, expected.history->v, allowed);
   same("y", run.history->y, expected.history->y, allowed);
   same("w", run.history->w, expected.history->w, allowed);
-  const EnergyLedger &energy = *run.energy, &its = *expected.energy;
+  const EnergyBalance &energy = *run.energy, &its = *expected.energy;
   same("initial", energy.initial, its.initial, 1e-14);
   same("final", energy.final, its.final, allowed);
   same("impact_loss", energy.impact_loss, its.impact_loss, allowed);
@@ -190,7 +190,7 @@ TEST_CASE("the residual is what the recorded terms leave open, in units of the e
     CAPTURE(name_of(engine));
     Scene its = scene;
     if (std::holds_alternative<Cem>(engine)) its.until_time = 30;  // its residual is of the order of its step
-    const EnergyLedger energy = *simulate(its, engine, {.energy = true}).energy;
+    const EnergyBalance energy = *simulate(its, engine, {.energy = true}).energy;
     double losses = energy.contact_loss + energy.bounce_down_loss;
     for (const double loss : energy.impact_loss) losses += loss;
     const double open = energy.initial.total() - (energy.final.total() + losses + energy.viscous_work);

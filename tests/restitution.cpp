@@ -101,11 +101,11 @@ TEST_CASE("bouncing to rest ends after 2 w / (a (1 - e)) under a constant relati
       CHECK(run.impacts->time[i] == doctest::Approx(time).epsilon(end * end + 1e-12));
       time += 2 * w / a * std::pow(e, double(i + 1));
     }
-    const EnergyLedger& ledger = *run.energy;
+    const EnergyBalance& balance = *run.energy;
     const double lost =
-        std::accumulate(ledger.impact_loss.begin(), ledger.impact_loss.end(), ledger.bounce_down_loss);
+        std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), balance.bounce_down_loss);
     CHECK(lost == doctest::Approx(1e-9 * w * w / 2 / (1 + 1e-9)).epsilon(1e-6));
-    CHECK(ledger.bounce_downs == (e > 0 ? 1 : 0));
+    CHECK(balance.bounce_downs == (e > 0 ? 1 : 0));
   }
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("nothing jumps where a stuck mass is released") {
   CHECK(released > 10);
 }
 
-TEST_CASE("0 <= y <= 1 always, energy never rises unforced, and the ledger closes") {
+TEST_CASE("0 <= y <= 1 always, energy never rises unforced, and the energy balance closes") {
   for (const Scene& scene : many_scenes()) {
     CAPTURE(scene.mass_ratio);
     CAPTURE(scene.damping_ratio);

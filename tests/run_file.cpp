@@ -1,4 +1,4 @@
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/io/run_file.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,11 +8,11 @@
 #include <random>
 #include <utility>
 
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/provenance.hpp"
-#include "impact_damper/files/scene_file.hpp"
-#include "impact_damper/files/sha256.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/sha256.hpp"
+#include "impact_damper/io/provenance.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 using namespace impact_damper;
 
@@ -68,7 +68,7 @@ Run full_run(Engine engine = lagged_cem()) {
                         {6.0, 5.9, std::nullopt},
                         {3.5, -4, 1.0 / 3}};
   run.contacts = Contacts{{1, 2}, {1.125, 2}, {Wall::right, Wall::left}};
-  run.energy = EnergyLedger{{1, 2, 3, 4}, {0.1, 0.2, 0.3, 0.7}, {0.1, 0.2, 0.3}, 4, 5, 6, 7, 8, -1e-16};
+  run.energy = EnergyBalance{{1, 2, 3, 4}, {0.1, 0.2, 0.3, 0.7}, {0.1, 0.2, 0.3}, 4, 5, 6, 7, 8, -1e-16};
   run.history = History{{0, 1}, {6, -0.0}, {0, -1}, {0, 0.5}, {1.7976931348623157e308, -1}};
   return run;
 }
@@ -523,7 +523,7 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
     run.scene.until_amplitude = 0.5;
     run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.y0 = run.scene.w0 = 0;
     run.scene.force_amplitude = run.end_time = 0;
-    run.energy = EnergyLedger{.initial = {}, .final = {}, .impact_loss = {0, 0, 0}};
+    run.energy = EnergyBalance{.initial = {}, .final = {}, .impact_loss = {0, 0, 0}};
     same(parse_run("run.json", run_text(run)), run);
   }
 }

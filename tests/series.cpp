@@ -1,5 +1,5 @@
 // The catalogue, and the tables made from runs whose answer is known beforehand.
-#include "impact_damper/paper/series.hpp"
+#include "impact_damper/reproduction/series.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,8 +13,8 @@
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "impact_damper/analysis/cautions.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

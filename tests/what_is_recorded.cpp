@@ -65,13 +65,13 @@ Columns columns_of(const Run& run) {
     all["history.y"] = history->y;
     all["history.w"] = history->w;
   }
-  if (const auto& ledger = run.energy) {
+  if (const auto& balance = run.energy) {
     const auto energy = [](const Energy& e) { return std::vector{e.kinetic, e.spring, e.wall, e.paper}; };
-    all["energy.initial"] = energy(ledger->initial);
-    all["energy.final"] = energy(ledger->final);
-    all["energy.impact_loss"] = ledger->impact_loss;
-    all["energy.sums"] = {ledger->contact_loss, double(ledger->bounce_downs), ledger->bounce_down_loss,
-                          ledger->viscous_work, ledger->forcing_work,         ledger->residual};
+    all["energy.initial"] = energy(balance->initial);
+    all["energy.final"] = energy(balance->final);
+    all["energy.impact_loss"] = balance->impact_loss;
+    all["energy.sums"] = {balance->contact_loss, double(balance->bounce_downs), balance->bounce_down_loss,
+                          balance->viscous_work, balance->forcing_work,         balance->residual};
   }
   return all;
 }

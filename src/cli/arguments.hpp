@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
-#include "impact_damper/files/json_reader.hpp"
+#include "impact_damper/io/json_reader.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the parser's
 class App;

@@ -6,10 +6,10 @@
 #include "commands.hpp"
 #include "embedded.hpp"
 #include "impact_damper/engine.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/json_reader.hpp"
-#include "impact_damper/files/provenance.hpp"
-#include "impact_damper/paper/manifest.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/provenance.hpp"
+#include "impact_damper/reproduction/manifest.hpp"
 #include "project_files.hpp"
 
 namespace impact_damper::cli {

@@ -13,10 +13,10 @@
 #include <string_view>
 
 #include "embedded.hpp"
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/json_reader.hpp"
-#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/provenance.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX has it declared by the user
 

@@ -1,8 +1,8 @@
 // `figures`: what the catalogue draws, as an aligned table.
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/paper/catalogue.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
 #include "project_files.hpp"
 #include "text_table.hpp"
 

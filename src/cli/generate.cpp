@@ -6,8 +6,8 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/provenance.hpp"
 
 namespace impact_damper::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "drawing.hpp"
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 
 namespace impact_damper::cli {
 namespace {

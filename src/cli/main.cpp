@@ -14,11 +14,11 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/arithmetic.hpp"
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/provenance.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/provenance.hpp"
 #include "interruption.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 #include "text_table.hpp"
 
 namespace impact_damper::cli {

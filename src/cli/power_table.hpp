@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/paper/power.hpp"
+#include "impact_damper/reproduction/power.hpp"
 
 namespace impact_damper::cli {
 

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "embedded.hpp"
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/report/page.hpp"
 #include "interruption.hpp"
 #include "scene_arguments.hpp"

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "commands.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "interruption.hpp"
 #include "scene_arguments.hpp"
@@ -104,7 +104,7 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   return record;
 }
 
-// CSV is one table: a run that is written so records one section, and no ledger.
+// CSV is one table: a run that is written so records one section, and no energy balance.
 bool holds_one_table(const Record& record) {
   const bool history = !record.history.empty() || !record.history_below.empty();
   return !record.energy && int{record.half_cycles} + record.impacts + record.contacts + history == 1;

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "impact_damper/analysis/cautions.hpp"
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper::cli {
 namespace {

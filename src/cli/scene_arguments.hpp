@@ -6,7 +6,7 @@
 
 #include "commands.hpp"
 #include "impact_damper/engine.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper::cli {

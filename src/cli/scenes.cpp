@@ -4,10 +4,10 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "project_files.hpp"
 #include "text_table.hpp"
 

@@ -1,14 +1,14 @@
 // `series`: the run files of a folder into the tables that the figures draw.
-#include "impact_damper/paper/series.hpp"
+#include "impact_damper/reproduction/series.hpp"
 
 #include <filesystem>
 
 #include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/paper/catalogue.hpp"
-#include "impact_damper/paper/scene_runs.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 #include "interruption.hpp"
 #include "project_files.hpp"
 

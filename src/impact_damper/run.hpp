@@ -67,7 +67,7 @@ struct Energy {
 
 // initial.total() + forcing_work
 //     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work
-struct EnergyLedger {
+struct EnergyBalance {
   Energy initial, final;
   std::vector<double> impact_loss;  // per impact, in the order of Impacts
   double contact_loss = 0;          // compliant walls: loss in contacts that no impact began
@@ -122,7 +122,7 @@ struct Run {
   std::optional<HalfCycles> half_cycles;
   std::optional<Impacts> impacts;
   std::optional<Contacts> contacts;
-  std::optional<EnergyLedger> energy;
+  std::optional<EnergyBalance> energy;
   std::optional<History> history;
 };
 

@@ -1,7 +1,7 @@
 #include "impact_damper/scene.hpp"
 
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/wording.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
 
 namespace impact_damper {
 namespace {

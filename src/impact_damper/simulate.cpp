@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/motion/effort.hpp"
+#include "impact_damper/events/step_budget.hpp"
 
 namespace impact_damper {
 namespace {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/wording.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
 
 namespace impact_damper {
 namespace {

@@ -79,7 +79,7 @@ def listed_problems(folder: Path) -> list:
 def provenance(source: Path) -> bytes:
     output = FOLDER / "provenance.cpp"
     output.unlink(missing_ok=True)
-    done = run("cmake", f"-DSOURCE={source}", f"-DINPUT={source}/src/impact_damper/files/provenance.cpp.in",
+    done = run("cmake", f"-DSOURCE={source}", f"-DINPUT={source}/src/impact_damper/io/provenance.cpp.in",
                f"-DOUTPUT={output}", "-P", source / "src/provenance.cmake", HOME=str(FOLDER))
     wanted(done.returncode == 0, f"provenance: {done.stderr}")
     return output.read_bytes()

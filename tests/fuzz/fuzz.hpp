@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "impact_damper/files/errors.hpp"
+#include "impact_damper/base/errors.hpp"
 
 namespace impact_damper::fuzz {
 

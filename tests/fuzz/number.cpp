@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "fuzz.hpp"
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

@@ -3,7 +3,7 @@
 #include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/io/run_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

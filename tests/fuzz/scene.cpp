@@ -1,6 +1,6 @@
 // What is read as a scene is written as one that reads as the same; what is not is rejected in words.
 #include "fuzz.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

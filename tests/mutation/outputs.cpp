@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "impact_damper/files/run_file.hpp"
-#include "impact_damper/files/scene_file.hpp"
-#include "impact_damper/paper/measures.hpp"
-#include "impact_damper/paper/series.hpp"
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
 #include "planter.hpp"
 

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "impact_damper/files/run_file.hpp"
-#include "impact_damper/paper/measures.hpp"
-#include "impact_damper/paper/series.hpp"
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -141,9 +141,9 @@ void each_entry(Run& run, Visit all) {
     visit("wall", run.contacts->wall);
   }
   if (run.energy) {
-    EnergyLedger& ledger = *run.energy;
+    EnergyBalance& balance = *run.energy;
     for (auto [name, energy] :
-         {std::pair{"energy.initial", &ledger.initial}, {"energy.final", &ledger.final}}) {
+         {std::pair{"energy.initial", &balance.initial}, {"energy.final", &balance.final}}) {
       const auto visit = under(name);
       visit("kinetic", energy->kinetic);
       visit("spring", energy->spring);
@@ -151,13 +151,13 @@ void each_entry(Run& run, Visit all) {
       visit("paper", energy->paper);
     }
     const auto visit = under("energy");
-    visit("impact_loss", ledger.impact_loss);
-    visit("contact_loss", ledger.contact_loss);
-    visit("bounce_downs", ledger.bounce_downs);
-    visit("bounce_down_loss", ledger.bounce_down_loss);
-    visit("viscous_work", ledger.viscous_work);
-    visit("forcing_work", ledger.forcing_work);
-    visit("residual", ledger.residual);
+    visit("impact_loss", balance.impact_loss);
+    visit("contact_loss", balance.contact_loss);
+    visit("bounce_downs", balance.bounce_downs);
+    visit("bounce_down_loss", balance.bounce_down_loss);
+    visit("viscous_work", balance.viscous_work);
+    visit("forcing_work", balance.forcing_work);
+    visit("residual", balance.residual);
   }
   if (run.history) {
     const auto visit = under("history");

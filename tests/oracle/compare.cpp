@@ -225,7 +225,7 @@ class Growth {
   void take(Kind kind, Quad time, Quad difference) {
     entries_[kind].push_back({time, magnitude(difference)});
   }
-  void settle() {
+  void end_of_sustained_contact() {
     for (auto& each : entries_) {
       std::sort(each.begin(), each.end(), [](const Entry& a, const Entry& b) { return a.time < b.time; });
       Quad most = 0;
@@ -266,7 +266,7 @@ struct Prediction {
   std::optional<Quad> ends;  // when nothing can be predicted beyond
   std::string why;
   std::vector<std::array<Quad, 4>> samples;  // growth at each sample
-  std::array<Quad, 10> totals{};             // growth of the ledger's numbers at the end
+  std::array<Quad, 10> totals{};             // growth of the energy balance's numbers at the end
 };
 
 std::array<Quad, 10> totals_of(const Answer& answer) {
@@ -374,7 +374,7 @@ Prediction predict(Question question, const Accuracy& accuracy) {
     for (std::size_t i = 0; i < mine.size(); ++i)
       result.totals[i] = std::max(result.totals[i], magnitude(mine[i] - others[i]) * per_rounding);
   }
-  result.growth.settle();
+  result.growth.end_of_sustained_contact();
   // Until when is an error small?
   for (const Kind kind : {x_, v_, y_, w_})
     for (const auto& entry : result.growth.entries(kind)) {
@@ -620,11 +620,11 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   }
   if (run.history->time != sample_times(end)) judge.differ("other samples than were asked for");
 
-  // The ledger. Each term may be off by roundings of the largest.
-  const EnergyLedger& ledger = *run.energy;
+  // The energy balance. Each term may be off by roundings of the largest.
+  const EnergyBalance& balance = *run.energy;
   Quad listed = 0, recorded = 0;
   for (const oracle::Impact& each : answer.impacts) listed += each.loss;
-  for (const double each : ledger.impact_loss) recorded += each;
+  for (const double each : balance.impact_loss) recorded += each;
   const auto& totals = prediction.totals;
   const Quad all = answer.initial.total() + magnitude(answer.forcing_work) + answer.viscous_work;
   const Quad floor = Quad(rounding) * all;
@@ -636,20 +636,20 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     judge.number(which + " wall energy", e.wall, truth.wall, grown(2));
     judge.number(which + " paper's energy", e.paper, truth.paper, grown(3));
   };
-  energies("initial", ledger.initial, answer.initial, false);
-  energies("final", ledger.final, answer.final, true);
+  energies("initial", balance.initial, answer.initial, false);
+  energies("final", balance.final, answer.final, true);
   if (cem) {
     // A contact that begins without speed may begin with an impact here: only the sum is known.
-    judge.number("all losses", double(recorded + Quad(ledger.contact_loss)), listed + answer.contact_loss,
+    judge.number("all losses", double(recorded + Quad(balance.contact_loss)), listed + answer.contact_loss,
                  totals[4] + totals[5] + floor);
   } else {
-    judge.number("loss of all impacts", double(recorded + Quad(ledger.bounce_down_loss)),
+    judge.number("loss of all impacts", double(recorded + Quad(balance.bounce_down_loss)),
                  listed + answer.chatter_loss, totals[4] + totals[6] + floor);
-    judge.number("contact loss", ledger.contact_loss, answer.contact_loss, totals[5] + floor);
+    judge.number("contact loss", balance.contact_loss, answer.contact_loss, totals[5] + floor);
   }
-  judge.number("viscous work", ledger.viscous_work, answer.viscous_work, totals[7] + floor);
-  judge.number("forcing work", ledger.forcing_work, answer.forcing_work, totals[8] + floor);
-  judge.number("residual", ledger.residual, 0, Quad(rounding) * 10);
+  judge.number("viscous work", balance.viscous_work, answer.viscous_work, totals[7] + floor);
+  judge.number("forcing work", balance.forcing_work, answer.forcing_work, totals[8] + floor);
+  judge.number("residual", balance.residual, 0, Quad(rounding) * 10);
   if (question.walls == Walls::rigid && !both.mismatch) {
     Quad jumped = answer.chatter_loss;
     for (const std::size_t i : both.skipped) jumped += mine.impacts[i].loss;
@@ -660,10 +660,10 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
       complete +=
           mine.impacts[i].accumulation &&
           (i + 1 == mine.impacts.size() || mine.impacts[i + 1].accumulation != mine.impacts[i].accumulation);
-    if (ledger.bounce_downs < both.jumps || ledger.bounce_downs > complete)
-      judge.differ("bounce-downs: " + std::to_string(ledger.bounce_downs) + ", true " +
+    if (balance.bounce_downs < both.jumps || balance.bounce_downs > complete)
+      judge.differ("bounce-downs: " + std::to_string(balance.bounce_downs) + ", true " +
                    std::to_string(both.jumps));
-    judge.number("bounce-down loss", ledger.bounce_down_loss, jumped, totals[4] + totals[6] + floor);
+    judge.number("bounce-down loss", balance.bounce_down_loss, jumped, totals[4] + totals[6] + floor);
   }
   judge.number("end time", run.end_time, end, 0);
   if (run.stop_reason != StopReason::time)

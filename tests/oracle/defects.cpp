@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compare.hpp"
-#include "impact_damper/files/run_file.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -16,9 +16,9 @@
 
 #include "compare.hpp"
 #include "impact_damper/analysis/parallel.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "print.hpp"
 #include "scenes.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 #include "reference.hpp"
 
 namespace oracle {

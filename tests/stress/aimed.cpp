@@ -173,7 +173,7 @@ Check within_a_rounding(const Options& options) {
         coincident += time[i] - time[i - 1] <= epsilon * time[i];
       }
       if (run.stop_reason != StopReason::time) check.miss("did not reach its end; " + in_full(scene, engine));
-      if (!(std::abs(run.energy->residual) <= closed_ledger))
+      if (!(std::abs(run.energy->residual) <= closed_balance))
         check.miss("energy balance open by " + rounded(run.energy->residual) + "; " + in_full(scene, engine));
       // Nothing decays at such a mass ratio: every half cycle is the third again, but for impacts that
       // rounding adds or takes at the end of a bounce-down.
@@ -221,7 +221,7 @@ Check lossless(const Options& options, const Engine& engine) {
   const std::int64_t impacts = options.brief ? 100'000 : 10'000'000;
   Check check = about(std::string(name_of_engine(engine)) + ", e = 1: drift of the energy over " +
                           (options.brief ? "1e5" : "1e7") + " impacts",
-                      rounded(closed_ledger));
+                      rounded(closed_balance));
   Engine budgeted = engine;
   std::visit([&](auto& options_of_it) { options_of_it.budget.max_impacts = impacts; }, budgeted);
   Worst worst;
@@ -234,10 +234,10 @@ Check lossless(const Options& options, const Engine& engine) {
     ++check.cases;
     std::fprintf(stderr, "stress: %s\n", check.what.c_str());
     const Run run = simulate(scene, budgeted, {.half_cycles = false, .energy = true});
-    const EnergyLedger& ledger = *run.energy;
-    const double drift = std::abs(ledger.final.total() / ledger.initial.total() - 1);
+    const EnergyBalance& balance = *run.energy;
+    const double drift = std::abs(balance.final.total() / balance.initial.total() - 1);
     worst.take(drift);
-    if (run.stop_reason != StopReason::impact_budget || !(drift <= closed_ledger))
+    if (run.stop_reason != StopReason::impact_budget || !(drift <= closed_balance))
       check.miss("drift " + rounded(drift) + " to t = " + rounded(run.end_time) + ", stopped by " +
                  std::string(name_of(run.stop_reason)) + "; " + in_full(scene, engine));
   }
@@ -328,8 +328,8 @@ Check crawling() {
 // A mass that drifts for half a thousand million radians before it meets a wall, one that stays in its wall,
 // one that rests on it.
 Check long_times() {
-  Check check =
-      about("impacts and contacts up to t = 1e9: the energy balance, order, the end", rounded(closed_ledger));
+  Check check = about("impacts and contacts up to t = 1e9: the energy balance, order, the end",
+                      rounded(closed_balance));
   Worst worst;
   struct Slow {
     double x0, y0, w0, e, zeta;
@@ -349,7 +349,7 @@ Check long_times() {
       worst.take(open);
       const bool ended = (run.stop_reason == StopReason::time && run.end_time == 1e9) ||
                          run.stop_reason == StopReason::impact_budget;
-      if (!(open <= closed_ledger) || !ended)
+      if (!(open <= closed_balance) || !ended)
         check.miss("open by " + rounded(open) + ", " + std::to_string(run.energy->impact_loss.size()) +
                    " impacts to t = " + full(run.end_time) + "; " + in_full(scene, engine));
     }

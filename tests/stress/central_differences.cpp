@@ -20,7 +20,7 @@
 #include <complex>
 
 #include "impact_damper/engines/cem.hpp"
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"

@@ -35,9 +35,9 @@ void check_finite(const Run& run, std::string& broken) {
   column("history v", run.history->v);
   column("history y", run.history->y);
   column("history w", run.history->w);
-  const EnergyLedger& ledger = *run.energy;
-  column("ledger", {ledger.initial.total(), ledger.final.total(), ledger.contact_loss,
-                    ledger.bounce_down_loss, ledger.viscous_work, ledger.forcing_work, ledger.residual});
+  const EnergyBalance& balance = *run.energy;
+  column("balance", {balance.initial.total(), balance.final.total(), balance.contact_loss,
+                     balance.bounce_down_loss, balance.viscous_work, balance.forcing_work, balance.residual});
 }
 
 void check_consistency(const Run& run, std::string& broken) {
@@ -130,7 +130,8 @@ Examined examine(const Scene& scene, const Engine& engine) {
       broken(Promise::between_walls) = rounded(result.outside) + " roundings beyond a wall";
     check_end(run, broken(Promise::end_on_the_dot));
     result.residual = std::abs(run.energy->residual);
-    if (!(result.residual <= closed_ledger)) broken(Promise::ledger) = "open by " + rounded(result.residual);
+    if (!(result.residual <= closed_balance))
+      broken(Promise::balance) = "open by " + rounded(result.residual);
   } catch (const std::exception& error) {
     broken(Promise::finite) = std::string("threw ") + error.what();
   }

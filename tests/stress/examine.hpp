@@ -15,7 +15,7 @@ enum class Promise {
   bounded,         // ends by time or by the impacts that were granted; no impacts heaped on one instant
   between_walls,   // 0 <= y <= 1 in flight, beyond the wall in contact
   end_on_the_dot,  // a contact that the end of the run cuts ends with it
-  ledger,          // closes
+  balance,         // closes
 };
 inline constexpr std::array<const char*, 6> promises{"finite",        "consistent",     "bounded",
                                                      "between walls", "end on the dot", "energy balance"};
@@ -30,7 +30,7 @@ struct Examined {
 // Runs the scene with everything recorded, sampled at times that crowd near the release.
 Examined examine(const impact_damper::Scene& scene, const impact_damper::Engine& engine);
 
-inline constexpr double closed_ledger = 1e-10;
+inline constexpr double closed_balance = 1e-10;
 // A rounding is epsilon (1 + t) by the speeds and lengths that y is made of.
 inline constexpr double roundings_beyond_a_wall = 64;
 

@@ -15,7 +15,7 @@
 #include <mutex>
 
 #include "examine.hpp"
-#include "impact_damper/files/file_output.hpp"
+#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"
@@ -273,9 +273,9 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
         check.measured = rounded(whole.outside[e]) + " roundings";
         check.allowed = rounded(roundings_beyond_a_wall);
       }
-      if (p == std::size_t(Promise::ledger)) {
+      if (p == std::size_t(Promise::balance)) {
         check.measured = rounded(whole.residual[e]);
-        check.allowed = rounded(closed_ledger);
+        check.allowed = rounded(closed_balance);
       }
       checks.push_back(check);
     }

@@ -29,8 +29,8 @@
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/engines/exact.hpp"
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"
 
@@ -61,13 +61,13 @@ class Crossings {
     return sampled_ < rows.size() ? rows[sampled_].end : std::numeric_limits<double>::infinity();
   }
   void sample(double, double, double v, double y, double w) { rows[sampled_++].state = {v, y, w}; }
-  EnergyLedger& ledger() { return ledger_; }
+  EnergyBalance& energy_balance() { return energy_balance_; }
 
   std::vector<HalfCycle> rows;
 
  private:
   std::size_t sampled_ = 0;
-  EnergyLedger ledger_;
+  EnergyBalance energy_balance_;
 };
 
 std::vector<HalfCycle> half_cycles_of(const Scene& scene, const Exact& options = {}) {

@@ -14,8 +14,8 @@
 #include <iostream>
 #include <string>
 
-#include "impact_damper/files/file_output.hpp"
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
 
 namespace stress {
 namespace {

@@ -31,7 +31,7 @@ class Watch {
     samples.push_back({time, x, v, y, w});
     sample_at = every > 0 ? first_ + every * double(samples.size()) : std::numeric_limits<double>::infinity();
   }
-  impact_damper::EnergyLedger& ledger() { return ledger_; }
+  impact_damper::EnergyBalance& energy_balance() { return energy_balance_; }
 
   double sample_at = std::numeric_limits<double>::infinity();
   double every = 0;  // 0: no more than one sample
@@ -41,7 +41,7 @@ class Watch {
 
  private:
   double first_ = 0;
-  impact_damper::EnergyLedger ledger_;
+  impact_damper::EnergyBalance energy_balance_;
 };
 
 }  // namespace stress

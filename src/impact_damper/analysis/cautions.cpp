@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
 namespace {
@@ -358,19 +358,19 @@ class Examination {
     }
   }
 
-  void examine_energy(const EnergyLedger& ledger) {
+  void examine_energy(const EnergyBalance& balance) {
     const double nu = scene_.mass_ratio, e = scene_.restitution;
     const double depth = is_rigid() ? 0 : std::max({0.0, -scene_.y0, scene_.y0 - 1});
-    examine_energy_at("/energy/initial/", ledger.initial, scene_.x0, scene_.v0, scene_.w0,
+    examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, scene_.w0,
                       scene_.wall_stiffness * depth * depth / 2, rounding);
     if (run_.history && !run_.history->time.empty() && run_.history->time.back() == run_.end_time) {
       const History& history = *run_.history;
       // Near resonance or in an overdamped motion a state carries the rounding of more than it is made of at
       // last; velocities of central differences are of second order.
-      examine_energy_at("/energy/final/", ledger.final, history.x.back(), history.v.back(), history.w.back(),
-                        ledger.final.wall, 1e-9 + step_ * step_);
+      examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), history.w.back(),
+                        balance.final.wall, 1e-9 + step_ * step_);
     }
-    const std::vector<double>& losses = ledger.impact_loss;
+    const std::vector<double>& losses = balance.impact_loss;
     for (std::size_t i = 0; is_rigid() && run_.impacts && i < losses.size(); ++i) {
       const double w = run_.impacts->relative_velocity[i];
       const double loss = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
@@ -378,20 +378,20 @@ class Examination {
                  ", by its speed and the restitution"))
         break;
     }
-    if (is_rigid()) equal("/energy/contact_loss", 0, ledger.contact_loss, 0, ": rigid walls take no energy");
-    if (!is_rigid() || ledger.bounce_downs == 0) {
-      require(ledger.bounce_downs == 0, "/energy/bounce_downs",
-              "must be 0 with compliant walls, got " + std::to_string(ledger.bounce_downs));
-      equal("/energy/bounce_down_loss", 0, ledger.bounce_down_loss, 0,
+    if (is_rigid()) equal("/energy/contact_loss", 0, balance.contact_loss, 0, ": rigid walls take no energy");
+    if (!is_rigid() || balance.bounce_downs == 0) {
+      require(balance.bounce_downs == 0, "/energy/bounce_downs",
+              "must be 0 with compliant walls, got " + std::to_string(balance.bounce_downs));
+      equal("/energy/bounce_down_loss", 0, balance.bounce_down_loss, 0,
             ": there was no bounce-down to jump over");
     }
     if (scene_.damping_ratio == 0)
-      equal("/energy/viscous_work", 0, ledger.viscous_work, 0, ": there is no damper");
-    require(ledger.viscous_work >= (cem_ ? -step_ * ledger.initial.total() : 0.0), "/energy/viscous_work",
-            got(">= 0", ledger.viscous_work));
+      equal("/energy/viscous_work", 0, balance.viscous_work, 0, ": there is no damper");
+    require(balance.viscous_work >= (cem_ ? -step_ * balance.initial.total() : 0.0), "/energy/viscous_work",
+            got(">= 0", balance.viscous_work));
     if (scene_.force_amplitude == 0)
-      equal("/energy/forcing_work", 0, ledger.forcing_work, 0, ": there is no force");
-    examine_residual(ledger);
+      equal("/energy/forcing_work", 0, balance.forcing_work, 0, ": there is no force");
+    examine_residual(balance);
   }
 
   void examine_energy_at(const std::string& section, const Energy& energy, double x, double v, double w,
@@ -410,11 +410,11 @@ class Examination {
   // at least |the force's work| and at most what the force can do to a mass that keeps all it is given: v^2/2
   // <= D and D <= E + f0 T sqrt(2 D) bound D. With the component element method it is the largest energy
   // seen.
-  void examine_residual(const EnergyLedger& ledger) {
-    const std::vector<double>& losses = ledger.impact_loss;
-    const double begin = ledger.initial.total(), end = ledger.final.total(), put_in = ledger.forcing_work;
-    const double lost = std::accumulate(losses.begin(), losses.end(), 0.0) + ledger.contact_loss +
-                        ledger.bounce_down_loss + ledger.viscous_work;
+  void examine_residual(const EnergyBalance& balance) {
+    const std::vector<double>& losses = balance.impact_loss;
+    const double begin = balance.initial.total(), end = balance.final.total(), put_in = balance.forcing_work;
+    const double lost = std::accumulate(losses.begin(), losses.end(), 0.0) + balance.contact_loss +
+                        balance.bounce_down_loss + balance.viscous_work;
     const double open = (begin + put_in) - (end + lost);
     const double push = std::abs(scene_.force_amplitude) * run_.end_time / std::sqrt(2.0);
     const double root = push + std::sqrt(push * push + begin);
@@ -422,17 +422,17 @@ class Examination {
     // The component element method's energy is its own but for an error of the order of the step.
     const double bound = scene_.force_amplitude == 0 ? begin : root * root;
     const double most = cem_ ? 2 * std::max(bound, least) : bound;
-    double handled = begin + std::abs(put_in) + end + std::abs(ledger.contact_loss) +
-                     std::abs(ledger.bounce_down_loss) + std::abs(ledger.viscous_work);
+    double handled = begin + std::abs(put_in) + end + std::abs(balance.contact_loss) +
+                     std::abs(balance.bounce_down_loss) + std::abs(balance.viscous_work);
     for (const double loss : losses) handled += std::abs(loss);
     const double rounded = (1 + static_cast<double>(losses.size()) / 64) * rounding * handled;
-    const double size = std::abs(ledger.residual);
-    const bool same_sign = open * ledger.residual >= 0 || std::abs(open) <= rounded;
+    const double size = std::abs(balance.residual);
+    const bool same_sign = open * balance.residual >= 0 || std::abs(open) <= rounded;
     require(same_sign && std::abs(open) <= size * most + rounded && std::abs(open) >= size * least - rounded,
             "/energy/residual",
             got("what the terms of the energy balance leave open, " + number_text(open) + ", by " +
                     number_text(least) + (most > least ? " to " + number_text(most) : ""),
-                ledger.residual));
+                balance.residual));
   }
 
   const Run& run_;

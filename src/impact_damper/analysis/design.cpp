@@ -9,7 +9,7 @@
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {

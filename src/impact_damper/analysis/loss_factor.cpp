@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {

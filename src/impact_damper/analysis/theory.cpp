@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {

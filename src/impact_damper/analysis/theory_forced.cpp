@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {

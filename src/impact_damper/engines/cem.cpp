@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/files/errors.hpp"
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
 namespace {

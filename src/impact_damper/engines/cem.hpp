@@ -26,8 +26,9 @@
 // are functions of scene and options, and a run that ends earlier is the beginning of a longer one.
 //
 // Energy. The scheme conserves |d/h|^2_M / 2 + u_n.K u_{n+1} / 2 within a regime but for the sums
-// of damping and forcing power at the steps, so those sums are the ledger's losses. The residual holds what
-// this form of the energy differs from the true one by, O(h^2); it is no measure of the first-order error.
+// of damping and forcing power at the steps, so those sums are the energy balance's losses. The residual
+// holds what this form of the energy differs from the true one by, O(h^2); it is no measure of the
+// first-order error.
 #pragma once
 
 #include <algorithm>
@@ -36,11 +37,11 @@
 #include <optional>
 #include <vector>
 
-#include "impact_damper/arithmetic.hpp"
+#include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/cem_scheme.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/energy.hpp"
-#include "impact_damper/motion/swing.hpp"
+#include "impact_damper/motion/forced_motion.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -102,7 +103,7 @@ class CemEngine {
   bool side_or_trend_unknown() const;
   std::int64_t steps_until_look() const;  // at least one
   void take_steps(std::int64_t most);     // at least one
-  template <Regime regime, bool forced, bool ledger>
+  template <Regime regime, bool forced, bool balance>
   void take_steps(std::int64_t most);
   void look_at_last_step();
   void spend_look();
@@ -216,7 +217,7 @@ class CemEngine {
   const Forcing<Real> force_;
   const RegimeEquations<Real> flight_, contact_;
   const Pace<Real> small_;  // the time step
-  const bool forced_, ledger_;
+  const bool forced_, energy_balance_;
   const State<Real> initial_;
 
   std::optional<Rates> rates_;  // small_ beside them

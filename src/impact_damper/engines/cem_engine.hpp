@@ -23,7 +23,7 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
       contact_(regime_equations<Real>(scene, options.calibration, Regime::contact)),
       small_(pace_of(options.time_step.value())),
       forced_(bool(force_)),
-      ledger_(observer.wants_energy()),
+      energy_balance_(observer.wants_energy()),
       initial_{scene.x0, scene.v0, scene.y0, scene.w0},
       pace_(small_),
       steps_left_(options.max_steps),
@@ -60,7 +60,7 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
 
 template <class Real, class Observer>
 Outcome CemEngine<Real, Observer>::run() {
-  if (ledger_) observer_.ledger().initial = energy(initial_);
+  if (energy_balance_) observer_.energy_balance().initial = energy(initial_);
   if (observer_.next_sample() <= 0) {
     observer_.sample(0, double(initial_.x), double(initial_.v), double(initial_.y), double(initial_.w));
   }
@@ -92,7 +92,7 @@ void CemEngine<Real, Observer>::begin_segment(const Real& time, const State<Real
   now_ = {s.x, s.y - origin_of_q(), pace_.h * (s.v - pace_.h * a.x / 2), pace_.h * (s.w - pace_.h * a.q / 2)};
   origin_ = time;
   step_ = 0;
-  if (ledger_) add_powers(-pace_.h / 2, time, s);
+  if (energy_balance_) add_powers(-pace_.h / 2, time, s);
 }
 
 // At rest on a wall: the second-order start leaves y''' out, and y on the wall, where the error of a y'' that
@@ -124,9 +124,9 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const auto choose = [&](auto in) {
     constexpr Regime regime = in;
     if (forced_) {
-      ledger_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
+      energy_balance_ ? take_steps<regime, true, true>(most) : take_steps<regime, true, false>(most);
     } else {
-      ledger_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
+      energy_balance_ ? take_steps<regime, false, true>(most) : take_steps<regime, false, false>(most);
     }
   };
   stuck_  ? choose(std::integral_constant<Regime, Regime::stuck>())
@@ -137,7 +137,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
 // Steps until the wall is crossed (x'' where both masses are one), x changes its sign or x' its own, or
 // `most` are done (fewer where a force or an energy balance is renewed).
 template <class Real, class Observer>
-template <Regime regime, bool forced, bool ledger>
+template <Regime regime, bool forced, bool balance>
 void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const CemStep<Real> a = regime == Regime::contact  ? pace_.contact
                           : regime == Regime::flight ? pace_.flight
@@ -148,12 +148,12 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
 
   // At every 1024th step of a segment, before rounding can add up: the force,
   // f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n, is computed afresh, and the sums are added up.
-  if constexpr (forced || ledger) {
+  if constexpr (forced || balance) {
     constexpr std::int64_t block = 1024;
     const std::int64_t in_block = step_ % block;
     most = std::min(most, block - in_block);
     if (in_block == 0) {
-      if constexpr (ledger) add_sums();
+      if constexpr (balance) add_sums();
       if constexpr (forced) {
         const Real half = force_.frequency * pace_.h / 2, time = origin_ + Real(step_) * pace_.h;
         const Real sin_half = sin_cos(half).sin;
@@ -185,7 +185,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
     }
     now.x = before.x + now.dx;
     now.q = before.q + now.dq;
-    if constexpr (ledger) {
+    if constexpr (balance) {
       const Real v = before.dx + now.dx, w = before.dq + now.dq;
       sum_vv += v * v;
       if constexpr (regime == Regime::contact) sum_ww += (centred ? w : 2 * before.dq) * w;
@@ -212,7 +212,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   steps_left_ -= n;
   if (rates_) steps_at_pace_ -= n;
   if constexpr (forced) force_at_steps_ = {f, df, curb};
-  if constexpr (ledger) sums_ = {sum_vv, sum_ww, sum_fv};
+  if constexpr (balance) sums_ = {sum_vv, sum_ww, sum_fv};
 }
 
 template <class Real, class Observer>
@@ -296,7 +296,7 @@ bool CemEngine<Real, Observer>::joins(const Real& at) const {
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::change_regime(const Real& at, bool restart, bool joining) {
   const Real time = last_step_begin() + at;
-  if (ledger_) add_sums();
+  if (energy_balance_) add_sums();
   State<Real> s = state_at(at);
   const Real y = now_.q + origin_of_q();
   // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
@@ -309,7 +309,7 @@ void CemEngine<Real, Observer>::change_regime(const Real& at, bool restart, bool
   if (restart) {
     s = parted && rates_ ? motion_at(at) : refined(s, at);
     s.y = (wall_ ? *wall_ : wall) == Wall::right ? 1 : 0;
-    if (ledger_) close_powers(at);
+    if (energy_balance_) close_powers(at);
   }
   const Real old_origin = origin_of_q();
   if (wall_) leave(time);
@@ -343,7 +343,7 @@ void CemEngine<Real, Observer>::enter(Wall wall, const Real& time, const State<R
 template <class Real, class Observer>
 State<Real> CemEngine<Real, Observer>::join(const State<Real>& s) {
   const Real nu = flight_.nu;
-  if (ledger_) wall_work_ += nu / (1 + nu) * s.w * s.w / 2;
+  if (energy_balance_) wall_work_ += nu / (1 + nu) * s.w * s.w / 2;
   stuck_ = true;
   return joined(s);
 }
@@ -351,11 +351,11 @@ State<Real> CemEngine<Real, Observer>::join(const State<Real>& s) {
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::leave(const Real& time) {
   if (observer_.wants_contacts()) observer_.contact(double(contact_begin_), double(time), *wall_);
-  if (ledger_) {
+  if (energy_balance_) {
     if (impact_began_contact_) {
-      observer_.ledger().impact_loss.push_back(double(wall_work_));
+      observer_.energy_balance().impact_loss.push_back(double(wall_work_));
     } else {
-      observer_.ledger().contact_loss += double(wall_work_);
+      observer_.energy_balance().contact_loss += double(wall_work_);
     }
     losses_ += wall_work_;
     wall_work_ = 0;
@@ -370,7 +370,7 @@ void CemEngine<Real, Observer>::cross_zero(const Real& at, const Real& span) {
   if (observer_.wants_half_cycles()) {
     observer_.half_cycle(double(row_begin_), double(time), double(peak_time_), double(peak_));
   }
-  if (ledger_) energy(state_at(at));
+  if (energy_balance_) energy(state_at(at));
   ++rows_;
   const bool small = until_amplitude_ && peak_ < Real(*until_amplitude_);
   side_ = -side_;
@@ -406,19 +406,19 @@ template <class Real, class Observer>
 void CemEngine<Real, Observer>::finish(StopReason reason, const Real& at, bool by_horizon) {
   const Real time = by_horizon ? end_time_ : last_step_begin() + at;
   give_samples(time);
-  if (ledger_) {
+  if (energy_balance_) {
     close_powers(at);
-    observer_.ledger().final = energy(motion_at(at));
+    observer_.energy_balance().final = energy(motion_at(at));
   }
   if (wall_) leave(time);
-  if (ledger_) {
-    EnergyLedger& ledger = observer_.ledger();
-    ledger.viscous_work = double(viscous_work_);
-    ledger.forcing_work = double(forcing_work_);
-    const double largest = std::max(largest_energy_, std::abs(ledger.forcing_work));
+  if (energy_balance_) {
+    EnergyBalance& balance = observer_.energy_balance();
+    balance.viscous_work = double(viscous_work_);
+    balance.forcing_work = double(forcing_work_);
+    const double largest = std::max(largest_energy_, std::abs(balance.forcing_work));
     const Real open =
-        (ledger.initial.total() + forcing_work_) - (ledger.final.total() + losses_ + viscous_work_);
-    ledger.residual = largest > 0 ? double(open) / largest : 0.0;
+        (balance.initial.total() + forcing_work_) - (balance.final.total() + losses_ + viscous_work_);
+    balance.residual = largest > 0 ? double(open) / largest : 0.0;
   }
   end_ = Outcome{reason, double(time)};
 }
@@ -430,7 +430,7 @@ Energy CemEngine<Real, Observer>::energy(const State<Real>& s) {
   return energy;
 }
 
-// The ledger's integrals are trapezoids over the steps: the loop adds whole powers, these the ends.
+// The energy balance's integrals are trapezoids over the steps: the loop adds whole powers, these the ends.
 template <class Real, class Observer>
 void CemEngine<Real, Observer>::add_powers(const Real& weight, const Real& time, const State<Real>& s) {
   viscous_work_ += weight * 2 * flight_.zeta * s.v * s.v;

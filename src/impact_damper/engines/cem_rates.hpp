@@ -150,7 +150,7 @@ template <class Real, class Observer>
 void CemEngine<Real, Observer>::change_pace(const Pace<Real>& pace, const State<Real>& s) {
   const Real h = pace_.h, time = last_step_end();
   if (pace.h == h) return;
-  if (ledger_) close_powers(h);
+  if (energy_balance_) close_powers(h);
   consider_peak(step_ == 1 ? Real(0) : -h / 2, h);
   trend_ = sign(s.v);
   pace_ = pace;

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "impact_damper/engine.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/scene.hpp"
 

@@ -2,15 +2,15 @@
 //
 // A scene is a chain of flights (flight.hpp) and contacts (contact.hpp). A flight ends where a wall is met, a
 // contact where the secondary mass is back at the wall's position (a displacement criterion: near the end of
-// a contact the wall's damper pulls). Both ends are predicted and validated (arrival.hpp, rebound.hpp) or,
-// where the validation fails, searched for with proved steps (first_root.hpp): none is missed
-// (docs/mathematics.md, chapter 7). There is no time step, and no error but rounding.
+// a contact the wall's damper pulls). Both ends are predicted and validated (impact_prediction.hpp,
+// short_contact_map.hpp) or, where the validation fails, searched for with proved steps (root_isolation.hpp):
+// none is missed (docs/mathematics.md, chapter 7). There is no time step, and no error but rounding.
 #pragma once
 
-#include "impact_damper/arithmetic.hpp"
-#include "impact_damper/engines/timeline.hpp"
-#include "impact_damper/motion/contact_works.hpp"
-#include "impact_damper/motion/coupled_contact.hpp"
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/motion/contact_without_modes.hpp"
+#include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 
@@ -27,22 +27,22 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
 template <class Real, class Force, class Observer>
 Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
                   Observer& observer) {
-  const ContactSystem<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
-  return walls.coupled ? run_exact<CoupledContact<Real, Force>>(walls, system, scene, options, observer)
+  const ContactModes<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
+  return walls.coupled ? run_exact<ContactWithoutModes<Real, Force>>(walls, system, scene, options, observer)
                        : run_exact<Contact<Real, Force>>(walls, system, scene, options, observer);
 }
 
 // The same with the motion that contacts are.
 template <class InContact, class Real, class Force, class Observer>
-Outcome run_exact(const ContactSystem<Real, Force>& walls, const System<Real, Force>& system,
+Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, Force>& system,
                   const Scene& scene, const Exact& options, Observer& observer) {
-  Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
+  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, observer);
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
   const auto depth_of = [](const State<Real>& s) {
     return s.y < 0 ? Real(-s.y) : s.y > 1 ? Real(s.y - 1) : Real(0);
   };
-  timeline.begin(state, depth_of(state));
+  tracker.begin(state, depth_of(state));
   const Real wall_damping = system.nu * walls.damping;
   Real losses{0};
 
@@ -50,50 +50,49 @@ Outcome run_exact(const ContactSystem<Real, Force>& walls, const System<Real, Fo
   // impact, which the flight meets at once.)
   bool at_rest_on_wall = state.w == 0 && (state.y == 0 || state.y == 1);
   bool in_contact = state.y < 0 || state.y > 1 ||
-                    (at_rest_on_wall && Flight<Real, Force>(system, timeline.now(), state).pressed());
+                    (at_rest_on_wall && Flight<Real, Force>(system, tracker.now(), state).pressed());
   bool by_impact = false;
   Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
 
-  while (!timeline.stopped()) {
+  while (!tracker.stopped()) {
     if (!in_contact) {
-      const Flight<Real, Force> flight(system, timeline.now(), state);
-      const auto met = at_rest_on_wall ? flight.released_meets_wall(timeline.remaining(), timeline.span())
-                                       : flight.next_wall(timeline.remaining(), timeline.span());
+      const Flight<Real, Force> flight(system, tracker.now(), state);
+      const auto met = at_rest_on_wall ? flight.released_meets_wall(tracker.remaining(), tracker.span())
+                                       : flight.next_wall(tracker.remaining(), tracker.span());
       at_rest_on_wall = false;
       if (met) state = copied(met->state);
-      timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
-      if (timeline.stopped()) break;
+      tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
+      if (tracker.stopped()) break;
       wall = met->wall;
-      if (!timeline.impact(wall, state)) break;
+      if (!tracker.impact(wall, state)) break;
       in_contact = by_impact = true;
     } else {
-      const InContact contact(walls, timeline.now(), state, wall);
-      const auto left = contact.leave(timeline.remaining(), timeline.span());
-      const Real begin = timeline.now();
-      if (left) state = copied(left->state);
-      const Works<Real> works =
-          timeline.pass(contact, left ? left->time : timeline.remaining(), state, wall_damping);
+      const InContact contact(walls, tracker.now(), state, wall);
+      const auto end = contact.leave(tracker.remaining(), tracker.span());
+      const Real begin = tracker.now();
+      if (end) state = copied(end->state);
+      const Work<Real> works =
+          tracker.pass(contact, end ? end->time : tracker.remaining(), state, wall_damping);
       if (observer.wants_contacts())
-        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
-                         wall);
+        observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
       if (observer.wants_energy()) {
         losses += works.wall;
         if (by_impact) {
-          observer.ledger().impact_loss.push_back(double(works.wall));
+          observer.energy_balance().impact_loss.push_back(double(works.wall));
         } else {
-          observer.ledger().contact_loss += double(works.wall);
+          observer.energy_balance().contact_loss += double(works.wall);
         }
       }
-      if (timeline.stopped()) {
-        depth = contact.overlap(timeline.passed());
+      if (tracker.stopped()) {
+        depth = contact.overlap(tracker.passed());
         break;
       }
       in_contact = by_impact = at_rest_on_wall = false;
     }
   }
-  timeline.finish(state, depth, losses);
-  return {*timeline.stopped(), timeline.end_time()};
+  tracker.finish(state, depth, losses);
+  return {*tracker.stopped(), tracker.end_time()};
 }
 
 }  // namespace impact_damper

@@ -84,7 +84,7 @@ void Recorder::finish(Run& run) {
   if (wants_.half_cycles) run.half_cycles = std::move(half_cycles_);
   if (wants_.impacts) run.impacts = std::move(impacts_);
   if (wants_.contacts) run.contacts = std::move(contacts_);
-  if (wants_.energy) run.energy = std::move(ledger_);
+  if (wants_.energy) run.energy = std::move(energy_balance_);
   if (!wants_.history.empty() || !wants_.history_below.empty()) run.history = std::move(history_);
 }
 

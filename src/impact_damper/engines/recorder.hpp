@@ -30,7 +30,7 @@ class Recorder {
   double next_sample() const { return next_sample_; }
   void sample(double time, double x, double v, double y, double w);
 
-  EnergyLedger& ledger() { return ledger_; }
+  EnergyBalance& energy_balance() { return energy_balance_; }
 
   // Moves the columns into `run`.
   void finish(Run& run);
@@ -44,7 +44,7 @@ class Recorder {
   Impacts impacts_;
   Contacts contacts_;
   History history_;
-  EnergyLedger ledger_;
+  EnergyBalance energy_balance_;
   std::int64_t row_ = 0;
   std::int64_t impacts_in_row_ = 0;
   std::size_t first_impact_in_row_ = 0;

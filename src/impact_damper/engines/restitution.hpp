@@ -15,10 +15,10 @@
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
-#include "impact_damper/arithmetic.hpp"
-#include "impact_damper/engines/timeline.hpp"
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/motion/flight.hpp"
-#include "impact_damper/motion/stuck.hpp"
+#include "impact_damper/motion/sticking.hpp"
 
 namespace impact_damper {
 
@@ -33,11 +33,11 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
 template <class Real, class Force, class Observer>
 Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
                         Observer& observer) {
-  Timeline<Real, Force, Observer> timeline(scene, system, options.budget, observer);
+  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, observer);
   const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
-  timeline.begin(state, Real(0));
+  tracker.begin(state, Real(0));
   Real losses{0};
 
   // What happens to a secondary mass on a wall with w >= 0 away from it: it bounces on, it is stuck after a
@@ -48,7 +48,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const Real away = wall == Wall::left ? 1 : -1;
     const Real speed = away * state.w;
     if (speed < 0) return false;
-    const Flight<Real, Force> flight(system, timeline.now(), state);
+    const Flight<Real, Force> flight(system, tracker.now(), state);
     const auto lead = flight.lead_of_y();
     const Real push = -away * lead[2];
     accumulation = 0;
@@ -60,55 +60,54 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const auto steady_for = [&](const Real& rate) {
       return (rate + 2 * zeta * push) * accumulation <= tolerance * push;
     };
-    if (!(steady_for(absolute(lead[3])) && accumulation < timeline.span() &&
-          steady_for(absolute(lead[3]) + flight.fourth_of_y(timeline.span()) * accumulation)))
+    if (!(steady_for(absolute(lead[3])) && accumulation < tracker.span() &&
+          steady_for(absolute(lead[3]) + flight.fourth_of_y(tracker.span()) * accumulation)))
       return false;
     accumulation -= accumulation * accumulation * (change_of_push / (3 * push) + zeta * e * nu / (1 + nu));
     return true;
   };
 
   bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0;
-  while (!timeline.stopped()) {
+  while (!tracker.stopped()) {
     if (on_wall && sticks()) {
       const Real joined = nu * state.w / (1 + nu);
       if (observer.wants_energy() && state.w != 0) {
         const Real loss = joined * state.w / 2;
         losses += loss;
-        ++observer.ledger().bounce_downs;
-        observer.ledger().bounce_down_loss += double(loss);
+        ++observer.energy_balance().bounce_downs;
+        observer.energy_balance().bounce_down_loss += double(loss);
       }
-      Stuck<Real, Force> stuck(system, timeline.now(), state.x, state.v + joined, wall);
-      const Real begin = timeline.now() + accumulation;
-      const auto released = stuck.release(accumulation, timeline.remaining(), timeline.span());
+      Stuck<Real, Force> stuck(system, tracker.now(), state.x, state.v + joined, wall);
+      const Real begin = tracker.now() + accumulation;
+      const auto released = stuck.release(accumulation, tracker.remaining(), tracker.span());
       if (released) state = stuck.released(*released);
-      timeline.pass(stuck, released ? *released : timeline.remaining(), state, Real(0));
-      if (observer.wants_contacts() && begin <= timeline.now()) {
-        observer.contact(double(begin), timeline.stopped() ? timeline.end_time() : double(timeline.now()),
-                         wall);
+      tracker.pass(stuck, released ? *released : tracker.remaining(), state, Real(0));
+      if (observer.wants_contacts() && begin <= tracker.now()) {
+        observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
       }
-      if (timeline.stopped()) break;
+      if (tracker.stopped()) break;
     }
 
-    const Flight<Real, Force> flight(system, timeline.now(), state);
+    const Flight<Real, Force> flight(system, tracker.now(), state);
     const bool released = on_wall && state.w == 0;
-    const auto met = released ? flight.released_meets_wall(timeline.remaining(), timeline.span())
-                              : flight.next_wall(timeline.remaining(), timeline.span());
+    const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.span())
+                              : flight.next_wall(tracker.remaining(), tracker.span());
     if (met) state = copied(met->state);
-    timeline.pass(flight, met ? met->time : timeline.remaining(), state, Real(0));
-    if (timeline.stopped()) break;
+    tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
+    if (tracker.stopped()) break;
     wall = met->wall;
-    if (!timeline.impact(wall, state)) break;
+    if (!tracker.impact(wall, state)) break;
     if (observer.wants_energy()) {
       const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));
       losses += loss;
-      observer.ledger().impact_loss.push_back(double(loss));
+      observer.energy_balance().impact_loss.push_back(double(loss));
     }
     state.v += nu * (1 + e) * state.w / (1 + nu);
     state.w *= -e;
     on_wall = true;
   }
-  timeline.finish(state, Real(0), losses);
-  return {*timeline.stopped(), timeline.end_time()};
+  tracker.finish(state, Real(0), losses);
+  return {*tracker.stopped(), tracker.end_time()};
 }
 
 }  // namespace impact_damper

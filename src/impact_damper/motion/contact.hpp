@@ -2,17 +2,20 @@
 //
 // x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow mode, both masses
 // moving together, and a fast one, the wall giving way (M5.3). A state is split into the two
-// (contact_system.hpp), and each moves by its own oscillator's C and S (oscillator.hpp).
+// (contact_modes.hpp), and each moves by its own oscillator's C and S (oscillator.hpp).
 #pragma once
 
-#include "impact_damper/motion/contact_system.hpp"
+#include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/motion/contact_modes.hpp"
+#include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
 
 template <class Real, class Force = Forcing<Real>>
 class Contact {
  public:
-  Contact(const ContactSystem<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
+  Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : system_(system),
         begin_(begin),
         start_(copied(start)),
@@ -26,28 +29,28 @@ class Contact {
   }
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
-  std::optional<Arrival<Real>> leave(const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> leave(const Real& horizon, const Real& span) const {
     if (start_.y == wall_) {
-      std::optional<typename Rebound<Real>::End> end;
-      if (system_.rebound) end = system_.rebound(start_.x, start_.v, start_.w);
-      if (!end) end = settle();
+      std::optional<typename ShortContactMap<Real>::End> end;
+      if (system_.short_contact) end = system_.short_contact(start_.x, start_.v, start_.w);
+      if (!end) end = end_of_sustained_contact();
       if (end && !(end->time < horizon)) return {};
-      if (end) return Arrival<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
+      if (end) return WallEvent<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
     }
     return search_leave(horizon, span);
   }
   // The same, certified step by step.
-  std::optional<Arrival<Real>> search_leave(const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> search_leave(const Real& horizon, const Real& span) const {
     // A mass at rest may be pressed against the wall by q''' alone.
     Real from{0};
     if (start_.y == wall_ && start_.w == 0) {
       const Real third = third_of_q_at_rest();
-      if (inward_ * third > 0) from = leap_by_third<Real>(third, fourth_of_q(span), span);
+      if (inward_ * third > 0) from = begin_by_third<Real>(third, fourth_of_q(span), span);
     }
-    const auto left =
-        search_fall<Real>([&](const Real& t) { return depth(t, span); }, from, horizon, span, resolution());
-    if (!left) return {};
-    Arrival<Real> end{*left, wall(), at(*left)};
+    const auto fall =
+        isolate_fall<Real>([&](const Real& t) { return depth(t, span); }, from, horizon, span, resolution());
+    if (!fall) return {};
+    WallEvent<Real> end{*fall, wall(), at(*fall)};
     end.state.y = wall_;
     return end;
   }
@@ -58,7 +61,7 @@ class Contact {
   ContactState<Real> sum_at(const Real& t) const {
     const Real q0 = start_.y - wall_;
     if (t == 0) return {start_.x, start_.v, q0, start_.w};
-    const ContactSystem<Real, Force>& c = system_;
+    const ContactModes<Real, Force>& c = system_;
     if (!(t * c.fast.rate() < Real(0.5) && t * c.slow.rate() < Real(0.5))) {
       const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
       return {slow.x + fast.x, slow.v + fast.v, slow.q + fast.q, slow.w + fast.w};
@@ -75,11 +78,11 @@ class Contact {
   ContactState<Real> fast_at(const Real& t) const {
     return move(system_.fast, parts().fast, system_.drive_fast, t);
   }
-  const ContactSystem<Real, Force>& system() const { return system_; }
+  const ContactModes<Real, Force>& system() const { return system_; }
 
   // Towards zero: how deep the secondary mass is in the wall.
-  Outlook<Real> depth(const Real& t, const Real& span) const {
-    Outlook<Real> ahead =
+  LocalEnclosure<Real> depth(const Real& t, const Real& span) const {
+    LocalEnclosure<Real> ahead =
         look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
              instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
     const ContactState<Real> s = sum_at(t);
@@ -99,11 +102,11 @@ class Contact {
   // From `from` on, the time within which x has one zero at most: once the ringing is below rounding (Lemma
   // L5).
   Real one_zero_within(const Real& from) const {
-    const ContactSystem<Real, Force>& c = system_;
+    const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
     const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
-    return c.fast.left(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
+    return c.fast.bound_after(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
   }
   // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
   bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
@@ -112,23 +115,26 @@ class Contact {
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
     if (const auto fall = fall_of_slow_x(order, sign, from)) return *fall < until ? fall : std::nullopt;
-    return search_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
-                             until, span, resolution());
+    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
+                              until, span, resolution());
   }
   // |x| at a turn.
   Real height(const Real& t) const {
-    const ContactSystem<Real, Force>& c = system_;
+    const ContactModes<Real, Force>& c = system_;
     if (!c.forcing && parts_ && c.slow.rings()) {
       const auto& [slow, fast] = *parts_;
       const Real height = c.slow.height(slow.x, slow.v, t);
-      if (c.fast.left(fast.x, fast.v, t) < height * (std::numeric_limits<Real>::epsilon() / 8)) return height;
+      if (c.fast.bound_after(fast.x, fast.v, t) < height * (std::numeric_limits<Real>::epsilon() / 8))
+        return height;
     }
     return absolute(at(t).x);
   }
-  Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
+  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
+                                       const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t);
-    Outlook<Real> ahead = look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
-                               instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
+    LocalEnclosure<Real> ahead =
+        look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
+             instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
     // Early in a contact the parts of a small x' are large, and cancel.
     if (order == 0) ahead.whole.g = sign * both.x;
     if (order == 1) ahead.whole.g = sign * both.v;
@@ -138,7 +144,7 @@ class Contact {
   // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
   // rounding errors would decide where one is zero.
   std::array<Real, 4> leads_of_x() const {
-    const ContactSystem<Real, Force>& c = system_;
+    const ContactModes<Real, Force>& c = system_;
     const auto f = c.forcing.template derivatives<2>(begin_);
     const Real force = c.damping * start_.w + c.stiffness * (start_.y - wall_);
     const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
@@ -165,12 +171,12 @@ class Contact {
   Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
 
   // Bounds for a time t.
-  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Rebound<Real>::second_of_x); }
-  Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Rebound<Real>::third_of_x); }
-  template <class OfRebound>
-  Real bound_of_x(std::size_t order, const Real& t, OfRebound of_rebound) const {
-    if (system_.rebound && start_.y == wall_)
-      return (system_.rebound.*of_rebound)(start_.x, start_.v, start_.w);
+  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &ShortContactMap<Real>::second_of_x); }
+  Real third_of_x(const Real& t) const { return bound_of_x(3, t, &ShortContactMap<Real>::third_of_x); }
+  template <class OfMap>
+  Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {
+    if (system_.short_contact && start_.y == wall_)
+      return (system_.short_contact.*of_map)(start_.x, start_.v, start_.w);
     return instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(order, t) +
            instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
   }
@@ -184,36 +190,36 @@ class Contact {
   // proves that the sum falls from `quiet` on, so that it has one zero there, which a Newton step from F
   // finds.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
-    const ContactSystem<Real, Force>& c = system_;
+    const ContactModes<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
     const auto slow = derivatives<5>(c.slow, parts().slow.x, parts().slow.v);
     const auto fast = derivatives<5>(c.fast, parts().fast.x, parts().fast.v);
-    const auto left = [&](std::size_t n, const Real& t) {
-      return c.fast.left(fast[order + n], fast[order + n + 1], t);
+    const auto ringing = [&](std::size_t n, const Real& t) {
+      return c.fast.bound_after(fast[order + n], fast[order + n + 1], t);
     };
     const Real u = sign * slow[order], u1 = sign * slow[order + 1];
-    const Real fall = c.slow.fall(u, u1, from), kept = c.slow.kept(fall);
+    const Real fall = c.slow.fall(u, u1, from), kept = c.slow.lower_bound_of_decay(fall);
     const Real nothing =
         std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
-    if (from > 0) return left(0, from) < nothing ? std::optional(fall) : std::nullopt;
+    if (from > 0) return ringing(0, from) < nothing ? std::optional(fall) : std::nullopt;
 
-    Real quiet{0}, rest = left(0, quiet);
+    Real quiet{0}, rest = ringing(0, quiet);
     for (int i = 0; i < 2; ++i) {
       if (!(rest < kept * u)) return {};
       quiet = fall - fall * rest / (kept * u);
-      rest = left(0, quiet);
+      rest = ringing(0, quiet);
       if (rest < nothing) return fall;
     }
     const ContactState<Real> slow_then = slow_at(fall), fast_then = fast_at(fall);
     const auto u_then = derivatives<3>(c.slow, slow_then.x, slow_then.v);
     const auto f_then = derivatives<3>(c.fast, fast_then.x, fast_then.v);
     const Real slope = absolute(u_then[order + 1]);
-    const Real second = c.slow.left(slow[order + 2], slow[order + 3], Real(0));
+    const Real second = c.slow.bound_after(slow[order + 2], slow[order + 3], Real(0));
     const Real within = fall - quiet + 2 * rest / slope;
-    if (!(2 * (second * within + left(1, quiet)) < slope)) return {};
+    if (!(2 * (second * within + ringing(1, quiet)) < slope)) return {};
     const Real shift = -(u_then[order] + f_then[order]) / (u_then[order + 1] + f_then[order + 1]);
     const Real enough = std::numeric_limits<Real>::epsilon() / 32 * fall;
-    if (!((second + left(2, quiet)) * (shift * shift) < enough * slope)) return {};
+    if (!((second + ringing(2, quiet)) * (shift * shift) < enough * slope)) return {};
     return fall + shift;
   }
 
@@ -221,20 +227,20 @@ class Contact {
   // through zero. The three steps are those of docs/mathematics.md, 7.7: (1) Lemma L2 in pieces, until the
   // ringing that is left can never reach the chord of Lemma L4; (2) if it is below rounding by then, h is the
   // end; (3) else h is corrected (M7.7), and the last quarter proved by L2.
-  std::optional<typename Rebound<Real>::End> settle() const {
-    const ContactSystem<Real, Force>& c = system_;
+  std::optional<typename ShortContactMap<Real>::End> end_of_sustained_contact() const {
+    const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto& [slow, fast] = parts();
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
     const Real h = c.slow.fall(depth, Real(inward_ * slow.w)), early = h / 4, late = h * Real(0.75);
-    const Real chord = c.slow.kept(h) * depth;
+    const Real chord = c.slow.lower_bound_of_decay(h) * depth;
     const Real slow_fourth = fourth_of(c.slow, slow.q, slow.w);
-    const bool swings = c.fast.half_period() < std::numeric_limits<Real>::infinity();
+    const bool oscillates = c.fast.half_period() < std::numeric_limits<Real>::infinity();
 
     Overlap slow_now{inward_ * slow.q, inward_ * slow.w}, fast_now{inward_ * fast.q, inward_ * fast.w};
     Moment now{0, {0, inward_ * start_.w}, fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth};
-    Real left_late;
+    Real ringing_late;
     for (int n = 1;; ++n) {
       const Moment before = now;
       now.time = Real(n) * c.piece;
@@ -244,23 +250,23 @@ class Contact {
       now.depth = {slow_now.q + fast_now.q, slow_now.w + fast_now.w};
       now.fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
       if (!stays_in_wall(before, now, slow_fourth, 4)) return {};
-      left_late = c.fast.left(fast_now.q, fast_now.w, Real(late - now.time));
-      if (!swings && fast_now.q >= 0) break;
+      ringing_late = c.fast.bound_after(fast_now.q, fast_now.w, Real(late - now.time));
+      if (!oscillates && fast_now.q >= 0) break;
       const Real wait = now.time < early ? Real(early - now.time) : Real(0);
-      if (c.fast.left(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
-          c.fast.left(fast_now.q, fast_now.w, wait) < chord / 4)
+      if (c.fast.bound_after(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
+          c.fast.bound_after(fast_now.q, fast_now.w, wait) < chord / 4)
         break;
     }
     const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
-    if (left_late * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
+    if (ringing_late * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
       const ContactState<Real> end = slow_at(h);
-      return typename Rebound<Real>::End{h, end.x, end.v, end.w};
+      return typename ShortContactMap<Real>::End{h, end.x, end.v, end.w};
     }
-    return settle_after(late, h, slow_fourth);
+    return corrected_end(late, h, slow_fourth);
   }
-  std::optional<typename Rebound<Real>::End> settle_after(const Real& late, Real h,
-                                                          const Real& slow_fourth) const {
-    const ContactSystem<Real, Force>& c = system_;
+  std::optional<typename ShortContactMap<Real>::End> corrected_end(const Real& late, Real h,
+                                                                   const Real& slow_fourth) const {
+    const ContactModes<Real, Force>& c = system_;
     const Moment begin = moment(late, slow_fourth);
     const Real last = h;
     for (int correction = 0; correction < 4; ++correction) {
@@ -269,14 +275,14 @@ class Contact {
       c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
                 slow_end.w + fast_end.w},
                x, q);
-      const auto [shift, newton, close] = nearby(Real(0), q, h, begin.fourth);
+      const auto [shift, newton, close] = time_to_level(Real(0), q, h, begin.fourth);
       h += shift;
       if (!(absolute(h - last) < late / 4)) return {};
       if (!close) continue;
-      const auto [end_x, end_v] = moved(x[0], x[1], x, shift);
-      const Real end_w = moved(q[0], q[1], q, shift).u1;
+      const auto [end_x, end_v] = shifted(x[0], x[1], x, shift);
+      const Real end_w = shifted(q[0], q[1], q, shift).u1;
       if (!stays_in_wall(begin, {h, {0, inward_ * end_w}, 0}, slow_fourth, 4)) return {};
-      return typename Rebound<Real>::End{h, end_x, end_v, end_w};
+      return typename ShortContactMap<Real>::End{h, end_x, end_v, end_w};
     }
     return {};
   }
@@ -311,7 +317,7 @@ class Contact {
   // A bound on |u''''| from here on.
   static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
     const auto d = derivatives<6>(oscillator, u, u1);
-    return oscillator.size(d[4], d[5]);
+    return oscillator.bound(d[4], d[5]);
   }
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
@@ -389,8 +395,8 @@ class Contact {
     return {oscillator, now.x,           now.v,     on_f(oscillator, drive.x, drive.v),
             drive.x,    system_.forcing, begin_ + t};
   }
-  static Outlook<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign,
-                            const Real& span) {
+  static LocalEnclosure<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign,
+                                   const Real& span) {
     const Real slow_third = slow.bound(n + 3, span), fast_third = fast.bound(n + 3, span);
     return {{sign * (slow[n] + fast[n]), sign * (slow[n + 1] + fast[n + 1]),
              sign * (slow[n + 2] + fast[n + 2]), slow_third + fast_third},
@@ -399,7 +405,7 @@ class Contact {
             fast.transient(n)};
   }
 
-  const ContactSystem<Real, Force>& system_;
+  const ContactModes<Real, Force>& system_;
   Real begin_;
   State<Real> start_;
   Real wall_, inward_;

@@ -6,12 +6,12 @@
 
 #include <vector>
 
-#include "impact_damper/motion/double_double.hpp"
+#include "impact_damper/math/double_double.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 
 namespace impact_damper {
 
-// The equations of a contact with a force: numbers as in contact_system.hpp.
+// The equations of a contact with a force: numbers as in contact_modes.hpp.
 template <class Real>
 struct ContactEquations {
   Real nu, zeta, stiffness, damping;  // nu, zeta, K = k/nu, c

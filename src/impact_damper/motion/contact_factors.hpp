@@ -8,7 +8,7 @@
 
 #include <limits>
 
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 

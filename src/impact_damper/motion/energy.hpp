@@ -6,7 +6,9 @@
 
 #include <array>
 
-#include "impact_damper/motion/swing.hpp"
+#include "impact_damper/events/step_budget.hpp"
+#include "impact_damper/motion/state.hpp"
+#include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
 
@@ -24,7 +26,7 @@ Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const 
 }
 
 template <class Real>
-struct Works {
+struct Work {
   Real wall{0}, viscous{0}, forcing{0};
   Real turnover{0};  // integral of the forcing's |power|: what rounding errors of its work are measured by
 };
@@ -43,14 +45,14 @@ inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1
                                                      {0.9445750230732325761, 0.0622535239386478929},
                                                      {0.9894009349916499326, 0.0271524594117540949}}};
 
-// Works over [0, duration] of a motion that begins at `begin`, of which rates(t) tells x' and y' in panels of
+// Work over [0, duration] of a motion that begins at `begin`, of which rates(t) tells x' and y' in panels of
 // length panel(t); wall_damping is nu c in contact, else 0. As exact as Gauss's 16 points are over a panel
 // (Oscillator::panel: to rounding), as long as there are no more than 65536 panels: then they get longer, and
-// what swings so often averages out.
+// an oscillation that fast averages out.
 template <class Real, class Force, class Rates, class Panel>
-Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, Panel&& panel,
-                             const Real& begin, const Real& duration, const Real& wall_damping) {
-  Works<Real> works;
+Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Panel&& panel, const Real& begin,
+                           const Real& duration, const Real& wall_damping) {
+  Work<Real> works;
   Real from{0};
   const Real least = duration / 65536;
   for (int panels = 1; from < duration; ++panels) {
@@ -79,14 +81,14 @@ Works<Real> integrated_works(const System<Real, Force>& system, Rates&& rates, P
 }
 
 template <class Motion, class Real, class Force>
-Works<Real> works_of(const System<Real, Force>& system, const Motion& motion, const Real& begin,
-                     const Real& duration, const Real& wall_damping) {
+Work<Real> work_of(const System<Real, Force>& system, const Motion& motion, const Real& begin,
+                   const Real& duration, const Real& wall_damping) {
   if (system.zeta == 0 && !system.forcing && wall_damping == 0) return {};
   const auto rates = [&](const Real& t) {
     const State<Real> now = motion.at(t);
     return std::array{now.v, now.w};
   };
-  return integrated_works(
+  return integrated_work(
       system, rates, [&](const Real& t) { return motion.panel(t); }, begin, duration, wall_damping);
 }
 

@@ -1,8 +1,9 @@
 // Flight, 0 < y < 1: (M2.1). The secondary mass flies straight, z = x + y = z0 + z'0 t.
 #pragma once
 
-#include "impact_damper/motion/arrival.hpp"
-#include "impact_damper/motion/swing.hpp"
+#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/motion/forced_motion.hpp"
+#include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
 
@@ -10,7 +11,7 @@ template <class Real, class Force = Forcing<Real>>
 class Flight {
  public:
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
-      : swing_(system.free, system.forcing, begin, start.x, start.v),
+      : primary_(system.free, system.forcing, begin, start.x, start.v),
         start_(copied(start)),
         wall_(start.y > Real(0.5) ? 1 : 0),
         away_(start.y > Real(0.5) ? -1 : 1) {}
@@ -21,39 +22,40 @@ class Flight {
   }
 
   // Where and when a wall is met, if before `horizon`.
-  std::optional<Arrival<Real>> next_wall(const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> next_wall(const Real& horizon, const Real& span) const {
     return met_from(Real(0), Real(0), horizon, span);
   }
   // The same of a mass that begins at rest on a wall, and leaves it.
-  std::optional<Arrival<Real>> released_meets_wall(const Real& horizon, const Real& span) const {
-    const Real leap = leap_by_jerk(span);
+  std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, const Real& span) const {
+    const Real leap = begin_by_jerk(span);
     // Where y'' is zero to the last bit there is no sign to pass over.
     return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, span);
   }
   // The same, certified step by step.
-  std::optional<Arrival<Real>> search_wall(const Real& from, const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon, const Real& span) const {
     const auto met =
         first_root<Real>([&](const Real& t) { return gaps(t, span); }, from, horizon, span, resolution());
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
     State<Real> state = at(met->time);
     state.y = wall == Wall::left ? 0 : 1;
-    return Arrival<Real>{met->time, wall, state};
+    return WallEvent<Real>{met->time, wall, state};
   }
   // Towards zero: the gap to the left wall, y, and the gap to the right one, 1 - y.
-  std::array<Outlook<Real>, 2> gaps(const Real& t, const Real& span) const {
+  std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
     const Place now = from_wall(t);
     const Real near = now.u, far = 1 - now.u, y1 = away_ * now.u1;
     const Real left = wall_ == 0 ? near : far, right = wall_ == 0 ? far : near;
-    const auto x = swing_.template instant<5>(now.x, now.v, t);
-    const Real third = x.bound(3, span), swing = x.bound(0, span), z1 = y1 + now.v;
-    return {Outlook<Real>{{left, y1, -x[2], third}, {left + now.x, z1, Real(0), Real(0)}, swing},
-            Outlook<Real>{{right, -y1, x[2], third}, {right - now.x, -z1, Real(0), Real(0)}, swing}};
+    const auto x = primary_.template instant<5>(now.x, now.v, t);
+    const Real third = x.bound(3, span), amplitude = x.bound(0, span), z1 = y1 + now.v;
+    return {
+        LocalEnclosure<Real>{{left, y1, -x[2], third}, {left + now.x, z1, Real(0), Real(0)}, amplitude},
+        LocalEnclosure<Real>{{right, -y1, x[2], third}, {right - now.x, -z1, Real(0), Real(0)}, amplitude}};
   }
 
   // y and its first three derivatives at the beginning, and a bound on the fourth from there on.
   Derivatives<Real, 4> lead_of_y() const {
-    const auto x = swing_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
+    const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
   // Whether a secondary mass at rest on the wall next to it is pressed against it: y'' tells, or y''' where
@@ -61,30 +63,31 @@ class Flight {
   bool pressed() const {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
-    return absolute(acceleration) > swing_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;
+    return absolute(acceleration) > primary_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;
   }
-  Real fourth_of_y(const Real& span) const { return swing_.beginning().bound(4, span); }
+  Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
 
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
-    return swing_.keeps_side(side, end.x, t);
+    return primary_.keeps_side(side, end.x, t);
   }
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
-    return swing_.keeps_course(end.v, t);
+    return primary_.keeps_course(end.v, t);
   }
   bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
-    return swing_.leaves_zero(from, t);
+    return primary_.leaves_zero(from, t);
   }
-  Real one_zero_within(const Real&) const { return swing_.one_zero_within(); }
+  Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             const Real& span) const {
-    return swing_.falls(order, sign, from, until, span);
+    return primary_.falls(order, sign, from, until, span);
   }
-  Real height(const Real& t) const { return swing_.height(t); }
-  Outlook<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t, const Real& span) const {
-    return swing_.outlook_at(order, sign, t, span);
+  Real height(const Real& t) const { return primary_.height(t); }
+  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
+                                       const Real& span) const {
+    return primary_.enclosure_at(order, sign, t, span);
   }
-  typename Swing<Real, Force>::Beginning leads_of_x() const { return swing_.beginning(); }
-  Real panel(const Real& t) const { return swing_.panel(t); }
+  typename ForcedMotion<Real, Force>::Beginning leads_of_x() const { return primary_.beginning(); }
+  Real panel(const Real& t) const { return primary_.panel(t); }
   Real resolution() const { return 1; }
 
  private:
@@ -95,7 +98,7 @@ class Flight {
   Place from_wall(const Real& t) const {
     const Real u = away_ * (start_.y - wall_), u1 = away_ * start_.w;
     if (t == 0) return {start_.x, start_.v, u, u1};
-    const auto now = swing_.at(t);
+    const auto now = primary_.at(t);
     return {now.x, now.v, u + (u1 * t - away_ * now.dx), u1 - away_ * now.dv};
   }
   State<Real> state_of(const Place& place) const {
@@ -104,16 +107,16 @@ class Flight {
   // Derivatives of u: but for the first two they are those of -away x.
   template <std::size_t N>
   Derivatives<Real, N> derivatives_of_u(const Place& place, const Real& t) const {
-    auto u = swing_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
+    auto u = primary_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
     u[0] = place.u;
     u[1] = place.u1;
     return u;
   }
   // Inlined: 2 % of a decay's time.
-  [[gnu::always_inline]] std::optional<Arrival<Real>> met_from(const Real& guess_from,
-                                                               const Real& search_from, const Real& horizon,
-                                                               const Real& span) const {
-    std::optional<Arrival<Real>> met = arrive(guess_from, span);
+  [[gnu::always_inline]] std::optional<WallEvent<Real>> met_from(const Real& predict_from,
+                                                                 const Real& search_from, const Real& horizon,
+                                                                 const Real& span) const {
+    std::optional<WallEvent<Real>> met = predicted_wall(predict_from, span);
     if (!met) {
       met = search_wall(search_from, horizon, span);
     } else if (!(met->time < horizon)) {
@@ -124,7 +127,7 @@ class Flight {
   // Where the search for the next wall begins if the mass is released at rest and leaves with y''' alone
   // (M7.4); but at most so far that y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 stays below a quarter of
   // the clearance.
-  Real leap_by_jerk(const Real& span) const {
+  Real begin_by_jerk(const Real& span) const {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
     if (!(jerk > 0 && acceleration < jerk * Real(1e-6))) return 0;
@@ -150,31 +153,32 @@ class Flight {
            stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
                                fourth, halvings - 1);
   }
-  // By prediction and validation (arrival.hpp), in three pieces at most; nothing where that does not succeed.
-  [[gnu::flatten]] std::optional<Arrival<Real>> arrive(const Real& from, const Real& span) const {
-    const Real rate = swing_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
+  // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
+  // not succeed.
+  [[gnu::flatten]] std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
+    const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
       const auto u = derivatives_of_u<10>(here, begin);
-      const Real fourth = swing_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
+      const Real fourth = primary_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
-                               const Real& u1) -> std::optional<Arrival<Real>> {
+                               const Real& u1) -> std::optional<WallEvent<Real>> {
         const Real level = across ? 1 : 0;
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         const bool left = across == (wall_ == 1);
-        return Arrival<Real>{
+        return WallEvent<Real>{
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
       };
 
-      const Guess<Real> guessed = guess(u, fourth, rate, most);
-      Real h = guessed.time;
+      const Prediction<Real> predicted = predict_impact(u, fourth, rate, most);
+      Real h = predicted.time;
       if (!(h > 0)) return {};
-      if (guessed.exact) {
+      if (predicted.exact) {
         // x has departed from its own straight line by as much, the other way.
-        const auto& [by_u, by_u1] = guessed.gained;
-        return reached(guessed.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
+        const auto& [by_u, by_u1] = predicted.gained;
+        return reached(predicted.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
                        here.u1 + by_u1);
       }
       Place there;
@@ -182,11 +186,11 @@ class Flight {
         there = from_wall(begin + h);
         const auto u_there = derivatives_of_u<6>(there, begin + h);
         const bool across = there.u > Real(0.5);
-        const auto [shift, newton, close] = nearby(across ? Real(1) : Real(0), u_there, h, fourth);
+        const auto [shift, newton, close] = time_to_level(across ? Real(1) : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4 && moves_x_by_series(u_there, shift, fourth)) {
-          const auto [x1, v1] = moved<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
+          const auto [x1, v1] = shifted<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
           return reached(across, h + shift, -away_ * x1, -away_ * v1,
-                         moved(there.u, there.u1, u_there, shift).u1);
+                         shifted(there.u, there.u1, u_there, shift).u1);
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
         if (correction == 5 || !(near || beyond)) break;
@@ -200,7 +204,7 @@ class Flight {
     return {};
   }
 
-  Swing<Real, Force> swing_;
+  ForcedMotion<Real, Force> primary_;
   State<Real> start_;
   Real wall_, away_;
 };

@@ -10,54 +10,18 @@
 #include <limits>
 #include <optional>
 
-#include "impact_damper/motion/complex.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/complex.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/power_series.hpp"
+#include "impact_damper/motion/forcing.hpp"
 
 namespace impact_damper {
-
-// 1/n, by which the series are summed: a division is worth four products.
-template <class Real>
-inline const std::array<Real, 64> reciprocals = [] {
-  std::array<Real, 64> all{};
-  for (int n = 1; n < 64; ++n) all[n] = Real(1) / n;
-  return all;
-}();
 
 template <class Real>
 struct Propagator {
   Real c{1}, s{0};    // C, S
   Real c1{0}, s1{0};  // C - 1, S - t
   Real v{1};          // S' = C - 2 a S, which would cancel where overdamped
-};
-
-// f(t) = amplitude sin(frequency t) and its derivatives at one instant.
-template <class Real>
-struct Forcing {
-  Real amplitude{0}, frequency{1};
-  explicit operator bool() const { return amplitude != 0; }
-
-  template <std::size_t N>
-  std::array<Real, N> derivatives(const Real& time) const {
-    static_assert(N >= 2);
-    const auto [sin, cos] = sin_cos(frequency * time);
-    std::array<Real, N> f;
-    f[0] = amplitude * sin;
-    f[1] = amplitude * frequency * cos;
-    for (std::size_t n = 2; n < N; ++n) f[n] = -frequency * frequency * f[n - 2];
-    return f;
-  }
-};
-
-// None, known when compiled: what scenes without forcing need not ask is not there.
-template <class Real>
-struct NoForcing {
-  Real amplitude{0}, frequency{1};
-  explicit constexpr operator bool() const { return false; }
-
-  template <std::size_t N>
-  std::array<Real, N> derivatives(const Real&) const {
-    return {};
-  }
 };
 
 // Displacement and velocity, from rest, of an oscillator under f; for a short time also the integral of d.
@@ -115,30 +79,30 @@ class Oscillator {
     return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
   }
   // Bound on |free motion| that begins with u and u', from the time t on (M3.5).
-  Real left(const Real& u, const Real& u1, const Real& t) const {
+  Real bound_after(const Real& u, const Real& u1, const Real& t) const {
     const Real along = absolute(u1 + a_ * u), rate = underdamped_ ? a_ : slow_rate_;
     const Real size =
         absolute(u) + (underdamped_ ? Real(along * over_omega_) : Real(along * (t + 1 / slow_rate_)));
     return t == 0 ? size : Real(exponential(Real(-rate * t)) * size);
   }
   // The size of a free motion with u and u', which never grows: a bound on |u| from then on (M3.4).
-  Real size(const Real& u, const Real& u1) const {
+  Real bound(const Real& u, const Real& u1) const {
     const Real scaled = u1 * over_root_b_;
     return square_root(Real(u * u + scaled * scaled));
   }
   // Lower bound on exp(-a t), without an exponential where a t is small.
-  Real kept(const Real& t) const {
+  Real lower_bound_of_decay(const Real& t) const {
     const Real lost = a_ * t;
     return lost < Real(0.5) ? Real(1 - lost) : exponential(-lost);
   }
-  // Whether its own motion swings before it has died away.
+  // Whether a free motion oscillates before it has decayed.
   bool rings() const { return underdamped_ && 2 * omega_ > a_; }
   // Length of a quadrature panel that begins at the time t since the motion's beginning. Gauss's 16 points
   // integrate a product of two free motions over six radians to 3e-20 of its size; where the motion decays
   // without oscillating, over as long as it has been decaying, to 1e-17 of what it began with.
   Real panel(const Real& t) const {
-    const Real swing = 6 / rate_;
-    return !rings() && t > swing ? t : swing;
+    const Real six_radians = 6 / rate_;
+    return !rings() && t > six_radians ? t : six_radians;
   }
 
   Propagator<Real> propagate(const Real& t) const {
@@ -404,7 +368,7 @@ class Instant {
   // Bound on |u^(n)| for a time `span`, without a force for ever (M3.4 and what follows it): the smaller of
   // the energy with what the force can add, and the steady state with the energy of what is not steady.
   Real bound(std::size_t n, const Real& span) const {
-    const Real free = oscillator_.size(d_[n], d_[n + 1]);
+    const Real free = oscillator_.bound(d_[n], d_[n + 1]);
     if (!forcing_) return free;
     Real power{1};
     for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
@@ -421,7 +385,7 @@ class Instant {
   }
   // What of u^(n) is not the steady state, at most, from here on.
   Real transient(std::size_t n) const {
-    return oscillator_.size(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]);
+    return oscillator_.bound(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]);
   }
 
  private:

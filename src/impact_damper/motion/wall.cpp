@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {

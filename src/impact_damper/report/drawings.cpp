@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/files/number_text.hpp"
-#include "impact_damper/files/scene_file.hpp"
-#include "impact_damper/motion/elementary.hpp"
-#include "impact_damper/paper/series_blocks.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

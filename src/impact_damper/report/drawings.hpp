@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/paper/table.hpp"
 #include "impact_damper/report/findings.hpp"
+#include "impact_damper/reproduction/table.hpp"
 
 namespace impact_damper {
 
@@ -21,8 +21,8 @@ struct Drawing {
 // What there is to draw of the findings, in the order of the page:
 //
 //   decay        "curve" (time, amplitude), "band" (time, least, greatest) if there is an ensemble
-//   loss         as the table of a figure of the loss factor (paper/series.hpp) with one curve, that of the
-//   local
+//   loss         as the table of a figure of the loss factor (reproduction/series.hpp) with one curve, that
+//   of the local
 //                loss factor; closed forms are those of zeta = 0, on which 2 zeta is put; "fold" (amplitude)
 //   response     forced motion: "curve" (frequency, amplitude), "locked" and "empty" likewise, "given"
 //   (frequency) phase        as the table of the figure of phases, but for what the scene has nothing of

@@ -193,9 +193,9 @@ void simulate_others(Findings& findings, const EnsembleOptions& options, const P
 }  // namespace
 
 double Findings::energy_to_impacts() const {
-  const EnergyLedger& ledger = *run.energy;
-  return std::accumulate(ledger.impact_loss.begin(), ledger.impact_loss.end(), 0.0) + ledger.contact_loss +
-         ledger.bounce_down_loss;
+  const EnergyBalance& balance = *run.energy;
+  return std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), 0.0) + balance.contact_loss +
+         balance.bounce_down_loss;
 }
 
 Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "impact_damper/files/provenance.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/provenance.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/report/page_parts.hpp"
 #include "impact_damper/report/quantities.hpp"
 

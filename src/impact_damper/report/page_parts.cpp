@@ -6,7 +6,7 @@
 
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/motion/elementary.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/report/quantities.hpp"
 
 namespace impact_damper {
@@ -242,8 +242,8 @@ std::string loss_html(const Findings& findings) {
 }
 
 std::string energy_html(const Findings& findings) {
-  const EnergyLedger& ledger = *findings.run.energy;
-  const double brought = ledger.initial.total() + std::max(0.0, ledger.forcing_work);
+  const EnergyBalance& balance = *findings.run.energy;
+  const double brought = balance.initial.total() + std::max(0.0, balance.forcing_work);
   const double impacts = findings.energy_to_impacts();
   const auto& scales = findings.subject.scales;
   HtmlTable table{.caption = "The energy of both masses, from the beginning to the end of the run",
@@ -257,11 +257,11 @@ std::string energy_html(const Findings& findings) {
     table.rows.back().push_back(number_html(energy, 4));
     table.rows.back().push_back(brought > 0 ? percent_html(energy / brought) : "");
   };
-  row("At the beginning", ledger.initial.total());
-  if (findings.forced()) row("Brought by the exciting force", ledger.forcing_work);
+  row("At the beginning", balance.initial.total());
+  if (findings.forced()) row("Brought by the exciting force", balance.forcing_work);
   row("Taken by impacts", impacts);
-  row("Taken by viscous damping", ledger.viscous_work);
-  row("Left at the end", ledger.final.total());
+  row("Taken by viscous damping", balance.viscous_work);
+  row("Left at the end", balance.final.total());
 
   std::string text = "There are no impacts. ";
   if (const auto count = std::ssize(findings.run.impacts->time); count > 0) {
@@ -271,9 +271,9 @@ std::string energy_html(const Findings& findings) {
                 : ". ";
   }
   return table_html(table) +
-         paragraph_html(text + (ledger.residual == 0
+         paragraph_html(text + (balance.residual == 0
                                     ? "All of it adds up, to the last digit."
-                                    : "When all are added up, " + number_html(ledger.residual) +
+                                    : "When all are added up, " + number_html(balance.residual) +
                                           " of the energy that went through is left over: rounding."));
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/cautions.hpp"
-#include "impact_damper/files/scene_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/report/page_parts.hpp"
 #include "impact_damper/report/quantities.hpp"
 

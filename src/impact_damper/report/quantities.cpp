@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impact_damper/files/number_text.hpp"
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
 namespace {

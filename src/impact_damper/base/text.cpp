@@ -1,0 +1,142 @@
+#include "impact_damper/base/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "impact_damper/base/number_text.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+// An option or a key without what tells the two apart: "--mass-ratio" and "mass_ratio" are "mass_ratio".
+std::string bare(std::string_view word) {
+  word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
+  std::string name(word);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+// The symbols of docs/mathematics.md, and what they are called at the interface: dimensionless first, then in
+// units.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
+    {{"nu", "mass_ratio"},
+     {"e", "restitution"},
+     {"zeta", "damping_ratio"},
+     {"k", "wall_stiffness"},
+     {"k", "contact_stiffness"},
+     {"x", "x0"},
+     {"v", "v0"},
+     {"y", "y0"},
+     {"w", "w0"},
+     {"f0", "force_amplitude"},
+     {"f0", "exciting_force"},
+     {"F0", "exciting_force"},
+     {"omega_f", "force_frequency"},
+     {"omega_f", "exciting_frequency"},
+     {"omega", "force_frequency"},
+     {"omega", "exciting_frequency"},
+     {"M", "mass"},
+     {"m", "secondary_mass"},
+     {"K", "stiffness"},
+     {"C", "damping"},
+     {"epsilon", "clearance"},
+     {"gap", "clearance"},
+     {"h", "time_step"}}};
+
+// Whether `word` begins one of the parts of `name` that underscores divide: "force" in "exciting_force".
+bool begins_a_part(std::string_view word, std::string_view name) {
+  for (std::size_t at = name.find(word); at != std::string_view::npos; at = name.find(word, at + 1))
+    if (at == 0 || name[at - 1] == '_') return true;
+  return false;
+}
+
+// How many bytes the UTF-8 character at the front of `text` has; 0 if none stands there. Overlong forms and
+// surrogates, which are none either, print as they are.
+std::size_t character_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
+  }
+  return length;
+}
+
+}  // namespace
+
+bool NumberRange::allows(double value) const {
+  return (least_is_allowed ? value >= least : value > least) && value <= most;
+}
+
+std::string NumberRange::describe(std::string_view kind) const {
+  std::string text(kind);
+  const bool bounded_below = least > std::numeric_limits<double>::lowest();
+  const bool bounded_above = most < std::numeric_limits<double>::max();
+  if (bounded_below) text += (least_is_allowed ? " >= " : " > ") + number_text(least);
+  if (bounded_below && bounded_above) text += " and";
+  if (bounded_above) text += " <= " + number_text(most);
+  return text;
+}
+
+std::string cut(std::string_view text, std::size_t most) {
+  std::string line;
+  std::size_t at = 0;
+  for (std::size_t characters = 0; at < text.size() && characters < most; ++characters) {
+    const std::size_t length = character_length(text.substr(at));
+    const bool is_control = static_cast<unsigned char>(text[at]) < 0x20 || text[at] == 0x7f;
+    line += length == 0 || is_control ? "?" : text.substr(at, length);
+    at += std::max<std::size_t>(length, 1);
+  }
+  return at < text.size() ? line + "..." : line;
+}
+
+std::string in_quotes(std::string_view text) { return '"' + cut(text) + '"'; }
+
+std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
+  if (word.size() > 100) return std::nullopt;
+  const std::string asked = bare(word);
+  if (asked.empty()) return std::nullopt;
+  for (const auto& [symbol, name] : symbols) {
+    if (asked != symbol) continue;
+    for (const std::string_view candidate : known)
+      if (bare(candidate) == name) return candidate;
+  }
+  std::optional<std::string_view> found;
+  // Two slips, or one in every three letters of a long word, but no more than half of a short one; farther
+  // words are not what was meant.
+  std::size_t best = std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1;
+  for (const std::string_view candidate : known) {
+    const std::string name = bare(candidate);
+    const std::size_t distance = edit_distance(asked, name);
+    if (distance >= best || distance >= name.size()) continue;
+    best = distance;
+    found = candidate;
+  }
+  if (found || asked.size() < 3) return found;
+  for (const std::string_view candidate : known)
+    if (begins_a_part(asked, bare(candidate))) return candidate;
+  return std::nullopt;
+}
+
+}  // namespace impact_damper

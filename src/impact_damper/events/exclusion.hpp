@@ -1,0 +1,45 @@
+// Proofs that a function has no zero between two ends, by its values and slopes there and a bound on a higher
+// derivative: Lemma L2 (M7.5, M7.6) and Lemma L3.
+#pragma once
+
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/power_series.hpp"
+
+namespace impact_damper {
+
+// Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
+// (Lemma L2). slope0, slope1: its derivatives there; fourth: bound on its fourth derivative.
+template <class Real>
+bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
+                   const Real& fourth) {
+  const Real& u0 = from[0];
+  const Real& slope0 = from[1];
+  const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
+  const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
+  const auto& over = reciprocals<Real>;
+  const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) * over[6];
+  if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
+    return false;
+  if (after >= 0 && before >= 0 && middle > off) return true;
+  // It leaves by its second and third derivative: third t^3/6 outweighs |fourth| t^4/24.
+  return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;
+}
+
+// The same of one that only has to stay above 0.
+template <class Real>
+bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& slope1, const Real& h,
+                const Real& fourth) {
+  const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
+  return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
+         (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;
+}
+
+// Whether a function with the ends u0, u1 of one sign is proved to have no zero between them (Lemma L3).
+// `second`: a bound on |its second derivative|.
+template <class Real>
+bool keeps_sign(const Real& u0, const Real& u1, const Real& second, const Real& t) {
+  const Real off = second * t * t / 8;
+  return absolute(u0) > off && absolute(u1) > off;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,104 @@
+// Predicts when a motion meets a wall, and validates afterwards that it met none before.
+//
+// root_isolation.hpp proves each step before it takes it, and needs many. Most impact times need none of
+// that: the series at the beginning predicts the time; one evaluation there and the series about it (M7.7)
+// give it to rounding; and the two ends exclude an earlier impact (Lemma L2, M7.5, M7.6).
+// docs/mathematics.md, 7.4 and 7.5. Where the validation fails, root_isolation.hpp searches.
+#pragma once
+
+#include <limits>
+
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/power_series.hpp"
+
+namespace impact_damper {
+
+// When y meets a level nearby, by reversion of its series to third order (M7.7). `close`: the terms left out,
+// of the reversion and of the series, are below rounding of the time h that has led here.
+template <class Real>
+struct TimeToLevel {
+  Real shift, newton;  // the time until then; the same to first order
+  bool close;
+};
+template <class Real>
+TimeToLevel<Real> time_to_level(const Real& level, const Derivatives<Real, 6>& y, const Real& h,
+                                const Real& fourth) {
+  const Real over = 1 / y[1], t = (level - y[0]) * over;
+  const Real a = t * (y[2] * over / 2), b = t * t * (y[3] * over * reciprocals<Real>[6]);
+  const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
+  const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
+  // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
+  return {shift, t,
+          absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
+              fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
+}
+
+// u and u' a time t later, to third order, for a correction t that is `close`. d: the derivatives of u from
+// the second on.
+template <class Real>
+struct Shifted {
+  Real u, u1;
+};
+template <class Real>
+Shifted<Real> shifted(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, const Real& t) {
+  const Real half = t / 2, third = t * reciprocals<Real>[3];
+  return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
+}
+
+// Predicts when a mass that has left one wall of a gap of 1 meets either, and `most` at the latest: by the
+// parabola through its beginning, then by Halley's method on the series (docs/mathematics.md, 7.5). u:
+// distance from the wall it left; it may begin with its third derivative alone. `fourth`: bound on |u''''|;
+// each further derivative is at most `rate` times the one before. `exact`: the terms left out of the series
+// are below rounding, and `gained` is then by how much u and u' differ from the straight line u + u' t, with
+// digits that a fast mass's own u and u' do not have.
+template <class Real>
+struct Prediction {
+  Real time;
+  bool across;  // at the other wall
+  bool exact;
+  Shifted<Real> gained;
+};
+inline constexpr double two_to_the_25 = 33554432, nine_factorial = 362880;
+template <class Real>
+Prediction<Real> predict_impact(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate,
+                                const Real& most) {
+  const bool from_rest = u[1] == 0 && u[2] == 0;
+  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
+  const Real ahead = rising ? Real(1 - u[0]) : u[0];
+  const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
+  const Real reach = speed * speed + 2 * push * ahead;
+  const bool arrives = reach >= 0, across = arrives == rising;
+  Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
+           : u[0] == 0 ? Real(2 * speed / -push)
+                       : Real((speed + square_root(Real(reach - 2 * push))) / -push);
+  if (!(t < most)) t = from_rest ? Real(most * Real(0.75)) : most;
+  const Real gap = (across ? Real(1) : Real(0)) - u[0];
+  const auto departure = departure_of(u);
+  // First by few terms, as a parabola may be far off.
+  const SeriesAt<Real> rough = sum_of_first<Real, 3>(departure, t);
+  const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
+  const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
+  if (absolute(nearer) < t / 2) t += nearer;
+  for (int i = 0;; ++i) {
+    const SeriesAt<Real> at = sum<Real>(departure, t);
+    const Real u1 = u[1] + at.u1, over = 1 / u1;
+    const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
+    const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const Real size = absolute(step);
+    if (size * two_to_the_25 < t && t < most) {
+      // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!: beside
+      // u' for the time, and beside the motion of x, which may be far smaller, for what is gained.
+      const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2, omitted = rt_4 * rt_4 * rt;
+      const Real tiny = nine_factorial * std::numeric_limits<Real>::epsilon() / 16;
+      if (omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate))
+        return {t + step, across, true, {at.u + step * at.u1, at.u1 + step * at.u2}};
+      return {t, across, false, {}};
+    }
+    if (i == 4 || !(size < t / 2)) break;
+    t += step;
+    if (rate * t > Real(0.05) && size * 32 < t) break;
+  }
+  return {t < most ? t : most, across, false, {}};
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,178 @@
+// The first fall of a function through zero, found by a Taylor lower bound (Lemma L1, M7.3): none is missed,
+// however grazing. Each step leads to the first root of the bound's cubic, which no root of the function
+// precedes; the steps converge with third order where the slope is not zero.
+//
+// Where g = main + rest with a bound on |rest| (a slow motion with a fast ringing on top; a straight flight
+// with an oscillation on top), main - bound > 0 is a second proof, which steps over many periods of the rest.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "impact_damper/events/step_budget.hpp"
+#include "impact_damper/math/elementary.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct Jet {
+  Real g{0}, g1{0}, g2{0};  // a function and its first two derivatives at a point
+  Real third{0};            // bound on |g'''| from there on
+};
+
+template <class Real>
+struct LocalEnclosure {
+  Jet<Real> whole;
+  Jet<Real> main;  // whole = main + rest
+  Real rest{0};    // bound on |rest| from there on; infinity: no such splitting
+};
+
+// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
+// or `most` where it has none up to there. Needs jet.g >= 0.
+template <class Real>
+Real step_without_root(const Jet<Real>& jet, Real most) {
+  const Real &g = jet.g, &g1 = jet.g1, &g2 = jet.g2, &third = jet.third;
+  // From `far` on the cube outdoes each other term three times, and p is negative.
+  const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
+  Real far = by_g > 1 ? square_root(by_g) : Real(1);
+  if (by_g1 > far * far) far = square_root(by_g1);
+  if (by_g2 > far) far = by_g2;
+  if (far < most) most = far;
+  const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
+  const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
+  const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };
+  Real low{0};
+  // Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
+  // rising ground there is none.
+  const Real inflection = g2 > 0 ? (third * most > g2 ? Real(g2 / third) : most) : Real(0);
+  if (g1 < 0 && g2 > 0) {
+    bool falling = true;
+    for (int i = 0; falling && i < 8; ++i) {
+      const Real next = low - p(low) / slope(low);
+      if (!(next < inflection)) break;
+      if (next - low <= next / 1048576) return low > 0 ? low : next;
+      low = next;
+      falling = slope(low) < 0;
+      if (i == 7 && falling) return low;
+    }
+  }
+  // Beyond it p is concave, and has one root: chords come from below, Newton's steps from above.
+  if (low < inflection) low = inflection;
+  if (!(low < most) || p(most) >= 0) return most;
+  Real high = most;
+  if (slope(low) < 0) {
+    const Real tangent = low - p(low) / slope(low);
+    if (tangent < high) high = tangent;
+  } else if (g2 < 0) {
+    const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
+    if (parabola < high) high = parabola;
+  }
+  // From zero on quartering is exact, so many at once come to the same number: the root may be 1e300 times
+  // nearer.
+  const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
+  while (low == 0 && p(high * much_nearer) < 0) high *= much_nearer;
+  // Wherever p is still positive lies before the root.
+  Real nearer = low + (high - low) / 4;
+  while (p(nearer) < 0) {
+    high = nearer;
+    nearer = low + (high - low) / 4;
+    if (!(low < nearer)) return low;
+  }
+  low = nearer;
+  for (int i = 0; i < 8 && high - low > high / 1048576; ++i) {
+    const Real below = p(low), above = p(high);
+    if (!(above < 0)) return high;
+    const Real chord = low + (high - low) * (below / (below - above));
+    const Real newton = high - above / slope(high);
+    if (!(chord > low) && !(newton < high)) break;
+    low = chord;
+    if (newton < high) high = newton;
+  }
+  return low;
+}
+
+template <class Real>
+struct Root {
+  Real time;
+  std::size_t which;  // of the functions that were watched
+};
+
+// The first time in [from, horizon) at which one of several functions reaches zero from above.
+// enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
+// time `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
+// A function that is not positive but rising is one that has just been left. While it does not rise by more
+// than rounding, steps double: what it does meanwhile is lost in rounding errors. Every step is an effort
+// (step_budget.hpp). No step is chosen by the horizon: a search that ends earlier is the beginning of one
+// that ends later, to the bit.
+template <class Real, class Watch>
+std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon, const Real& span,
+                                     const Real& resolution) {
+  const Real later_than_any_run = 1e13, most = span < later_than_any_run ? span : later_than_any_run;
+  Real time = from, wait{0};
+  while (time < horizon) {
+    if (!spend_effort()) return std::nullopt;
+    const auto functions = enclose(time);
+    const Real rest_of_horizon = horizon - time;
+    const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
+    Real step = most;
+    bool waits = false;
+    std::optional<Root<Real>> near;
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+      Jet<Real> jet = functions[i].whole;
+      const bool departed = jet.g <= 0;
+      if (departed && jet.g1 < 0) return Root<Real>{time, i};
+      if (departed) jet.g = 0;
+      Real proven = step_without_root(jet, most);
+      const LocalEnclosure<Real>& function = functions[i];
+      if (proven < most && function.main.g > function.rest) {
+        Jet<Real> main = function.main;
+        main.g -= function.rest;
+        const Real proven_without_rest = step_without_root(main, most);
+        if (proven_without_rest > proven) proven = proven_without_rest;
+      }
+      if (departed && proven < wait) proven = wait;
+      waits = waits || (departed && !(proven > least && proven > wait));
+      if (!(proven < step)) continue;
+      step = proven;
+      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
+      // if it has one, that is met at no less than half the slope here.
+      near.reset();
+      const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
+      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1) {
+        const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
+        const bool nothing_between = root <= proven + proven / 1024;
+        const Real rounding = 2 * std::numeric_limits<Real>::epsilon() * (time + root);
+        if (nothing_between && jet.third * root * root * root < -jet.g1 * rounding)
+          near = Root<Real>{time + root, i};
+      }
+    }
+    if (step >= rest_of_horizon) return std::nullopt;
+    if (near) return near->time < horizon ? near : std::nullopt;
+    if (!(step > least)) step = least;
+    time += step;
+    wait = waits ? 2 * step : Real(0);
+  }
+  return std::nullopt;
+}
+
+// The first time in [from, until) at which a function falls through zero, by its outlooks.
+template <class Real, class Enclose>
+std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const Real& until,
+                                 const Real& span, const Real& resolution) {
+  const auto root = first_root<Real>([&](const Real& t) { return std::array{enclosure_at(t)}; }, from, until,
+                                     span, resolution);
+  return root ? std::optional(root->time) : std::nullopt;
+}
+
+// Where to begin a search if a function begins with its third derivative alone (M7.4): before that the sign
+// of a u'' that is zero to rounding would decide. At most `span`, for which the bound `fourth` holds.
+template <class Real>
+Real begin_by_third(const Real& third, const Real& fourth, const Real& span) {
+  const Real leap = 2 * absolute(third) / fourth;
+  return leap < span ? leap : span;
+}
+
+}  // namespace impact_damper

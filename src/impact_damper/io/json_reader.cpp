@@ -1,0 +1,371 @@
+#include "impact_damper/io/json_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_parser.hpp"
+
+namespace impact_damper {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string described(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::null:
+      return "null";
+    case Json::value_t::object:
+      return "an object";
+    case Json::value_t::array:
+      return "an array";
+    case Json::value_t::string:
+      return "the string " + in_quotes(value.get_ref<const std::string&>());
+    case Json::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    case Json::value_t::number_integer:
+      return std::to_string(value.get<std::int64_t>());
+    case Json::value_t::number_unsigned:
+      return std::to_string(value.get<std::uint64_t>());
+    case Json::value_t::number_float: {
+      const std::string text = number_text(value.get<double>());  // 3.0 must not read like the integer 3
+      return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+    }
+    case Json::value_t::binary:
+    case Json::value_t::discarded:
+      break;
+  }
+  return "nothing";
+}
+
+// Each read_into says whether `value` is allowed, and only then writes the target.
+bool read_into(double& target, const Json& value, const NumberRange& range) {
+  if (!value.is_number()) return false;
+  const double number = value.get<double>();
+  if (!range.allows(number)) return false;
+  target = number;
+  return true;
+}
+
+bool read_into(std::optional<double>& target, const Json& value, const NumberRange& range) {
+  if (value.is_null()) {
+    target.reset();
+    return true;
+  }
+  double number = 0;
+  if (!read_into(number, value, range)) return false;
+  target = number;
+  return true;
+}
+
+bool read_into(std::int64_t& target, const Json& value, const NumberRange& range) {
+  // Whatever is not negative is kept as unsigned by the parser, so the upper half must be rejected here.
+  if (!value.is_number_integer()) return false;
+  if (value.is_number_unsigned() &&
+      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
+    return false;
+  }
+  const auto number = value.get<std::int64_t>();
+  if (!range.allows(static_cast<double>(number))) return false;
+  target = number;
+  return true;
+}
+
+bool read_into(std::string& target, const Json& value, const TextRule& rule) {
+  if (!value.is_string() || !rule.allows(value.get_ref<const std::string&>())) return false;
+  target = value.get_ref<const std::string&>();
+  return true;
+}
+
+bool read_into(bool& target, const Json& value) {
+  if (!value.is_boolean()) return false;
+  target = value.get<bool>();
+  return true;
+}
+
+// What is allowed, in words, by the type of the target.
+std::string wanted(const double&, const NumberRange& range, const Json&) {
+  return range.describe("a number");
+}
+std::string wanted(const std::optional<double>&, const NumberRange& range, const Json&) {
+  return range.describe("null or a number");
+}
+std::string wanted(const std::int64_t&, const NumberRange& range, const Json& given) {
+  std::string words = range.describe("a whole number");
+  if (!given.is_number_float()) return words;
+  const auto number = given.get<double>();  // 3.0 and 3e0 are whole, but not written so
+  const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63 && range.allows(number);
+  return is_whole ? words + ", written without point or exponent" : words;
+}
+std::string wanted(const std::string&, const TextRule& rule, const Json&) { return rule.describe(); }
+
+[[noreturn]] void reject_length(const std::string& name, const FileKind& kind, const std::string& given) {
+  throw InputError({name + ": too long, allowed are " + std::to_string(kind.most_bytes) + " bytes for a " +
+                    std::string(kind.name) + ", got " + given});
+}
+
+constexpr std::size_t any_length = std::numeric_limits<std::size_t>::max();
+
+// Control characters break lines and tables; 0x7f is one too.
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+bool is_alphanumeric(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+// Every byte of UTF-8 but those that continue a character.
+bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }
+
+}  // namespace
+
+bool TextRule::allows(std::string_view text) const {
+  const auto length = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+  if (length < least || length > most) return false;
+  if (!is_name) return std::none_of(text.begin(), text.end(), is_control);
+  return is_alphanumeric(text.front()) && std::all_of(text.begin(), text.end(), [](char c) {
+           return is_alphanumeric(c) || c == '-' || c == '_' || c == '.';
+         });
+}
+
+std::string TextRule::describe() const {
+  const std::string longest = std::to_string(most) + " characters";
+  if (is_name)
+    return "a name of letters, digits, '-', '_' and '.', the first a letter or digit, of up to " + longest;
+  return "a text of one line and " + (least > 0 ? std::to_string(least) + " to " : "up to ") + longest;
+}
+
+std::string read_text(const std::filesystem::path& file) { return read_text(file, {"file", any_length}); }
+
+std::string read_text(const std::filesystem::path& file, const FileKind& kind) {
+  const std::string name = file.string();
+  std::error_code ignored, unknown;
+  if (std::filesystem::is_directory(file, ignored)) throw IoError(name + ": cannot be read: is a directory");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  if (stream) {
+    const auto size = std::filesystem::file_size(file, unknown);
+    if (!unknown && size > kind.most_bytes) reject_length(name, kind, std::to_string(size));
+    // A pipe has no size, and a file may grow while it is read. Growing by doubling would need three times as
+    // much memory; what is reserved and not written takes none.
+    std::vector<char> part(1 << 16);
+    if (!unknown || kind.most_bytes < any_length)
+      text.reserve((unknown ? kind.most_bytes : size) + part.size());
+    while (text.size() <= kind.most_bytes && stream) {
+      stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+      text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+    }
+    if (text.size() > kind.most_bytes) reject_length(name, kind, "more");
+  }
+  if (stream.bad() || !stream.is_open()) {
+    throw IoError(name + ": cannot be read: " + std::strerror(errno ? errno : EIO));
+  }
+  return text;
+}
+
+JsonDocument::JsonDocument() = default;
+JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;
+JsonDocument& JsonDocument::operator=(JsonDocument&&) noexcept = default;
+JsonDocument::~JsonDocument() = default;
+
+JsonDocument JsonDocument::read(const std::filesystem::path& file, const FileKind& kind) {
+  return parse(file.string(), read_text(file, kind));
+}
+
+JsonDocument JsonDocument::parse(const std::string& name, const std::string& text) {
+  JsonDocument document;
+  document.value_ = std::make_unique<Json>();
+  document.problems_ = std::make_unique<JsonProblems>(name);
+  if (!parse_json(text, *document.value_, *document.problems_)) document.problems_->throw_if_any();
+  return document;
+}
+
+ObjectReader JsonDocument::root() {
+  const bool is_object = value_->is_object();
+  if (!is_object) problems_->add({}, "must be an object, got " + described(*value_));
+  return {problems_.get(), {}, is_object ? value_.get() : nullptr};
+}
+
+void JsonDocument::finish() const { problems_->throw_if_any_or_unknown(); }
+
+ObjectReader::ObjectReader(JsonProblems* problems, std::string pointer, const Json* object)
+    : problems_(problems), pointer_(std::move(pointer)), object_(object) {
+  if (object_) opened_ = problems_->open(pointer_, *object_);
+}
+
+const Json* ObjectReader::find(std::string_view key) {
+  if (!object_) return nullptr;
+  problems_->know(opened_, key);
+  const auto found = object_->find(std::string(key));
+  return found == object_->end() ? nullptr : &*found;
+}
+
+std::string ObjectReader::pointer_to(std::string_view key) const {
+  return key.empty() ? pointer_ : pointer_ + '/' + json_token(key);
+}
+
+bool ObjectReader::holds(std::string_view key) const {
+  return object_ && object_->contains(std::string(key));
+}
+
+bool ObjectReader::has(std::string_view key) { return find(key) != nullptr; }
+
+bool ObjectReader::require(std::string_view key) {
+  if (has(key)) return true;
+  if (object_) problems_->add(pointer_to(key), "missing, a value must be given");
+  return false;
+}
+
+void ObjectReader::reject(std::string_view key, std::string_view what) {
+  problems_->add(pointer_to(key), what);
+}
+
+void ObjectReader::reject(std::string_view key, std::size_t element, std::string_view what) {
+  problems_->add(pointer_to(key) + '/' + std::to_string(element), what);
+}
+
+std::vector<std::string> ObjectReader::keys() {
+  std::vector<std::string> found;
+  if (!object_) return found;
+  for (const auto& item : object_->items()) {
+    problems_->know(opened_, item.key());
+    found.push_back(item.key());
+  }
+  return found;
+}
+
+bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {
+  reject(key, "must be " + wanted + ", got " + described(given));
+  return false;
+}
+
+bool ObjectReader::optional(std::string_view key, double& target, NumberRange range) {
+  const Json* const value = find(key);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
+}
+
+bool ObjectReader::optional(std::string_view key, std::int64_t& target, NumberRange range) {
+  const Json* const value = find(key);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
+}
+
+bool ObjectReader::optional(std::string_view key, std::optional<double>& target, NumberRange range) {
+  const Json* const value = find(key);
+  return !value || read_into(target, *value, range) || wrong(key, wanted(target, range, *value), *value);
+}
+
+bool ObjectReader::optional(std::string_view key, bool& target) {
+  const Json* const value = find(key);
+  return !value || read_into(target, *value) || wrong(key, "true or false", *value);
+}
+
+bool ObjectReader::optional(std::string_view key, std::string& target, TextRule rule) {
+  const Json* const value = find(key);
+  return !value || read_into(target, *value, rule) || wrong(key, wanted(target, rule, *value), *value);
+}
+
+bool ObjectReader::too_long(std::string_view key, std::size_t most, const Json& array) {
+  if (array.size() <= most) return false;
+  reject(key, "must have at most " + std::to_string(most) + " elements, got " + std::to_string(array.size()));
+  return true;
+}
+
+template <typename Element, typename Rule>
+bool ObjectReader::array(std::string_view key, std::vector<Element>& target, const Rule& rule) {
+  const Json* const value = find(key);
+  if (!value) return true;
+  if (!value->is_array()) return wrong(key, "an array", *value);
+  std::vector<Element> elements(value->size());
+  bool all_read = true;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (read_into(elements[i], (*value)[i], rule)) continue;
+    all_read = false;
+    reject(key, i, "must be " + wanted(elements[i], rule, (*value)[i]) + ", got " + described((*value)[i]));
+  }
+  if (all_read) target = std::move(elements);
+  return all_read;
+}
+
+bool ObjectReader::optional(std::string_view key, std::vector<double>& target, NumberRange range) {
+  return array(key, target, range);
+}
+
+bool ObjectReader::optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range) {
+  return array(key, target, range);
+}
+
+bool ObjectReader::optional(std::string_view key, std::vector<std::optional<double>>& target,
+                            NumberRange range) {
+  return array(key, target, range);
+}
+
+bool ObjectReader::optional(std::string_view key, std::vector<std::string>& target, TextRule rule,
+                            std::size_t most) {
+  const Json* const value = find(key);
+  if (value && value->is_array() && too_long(key, most, *value)) return false;
+  std::vector<std::string> texts;
+  if (!array(key, texts, rule)) return false;
+  for (std::size_t i = 1; i < texts.size(); ++i) {
+    const auto here = texts.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(texts.begin(), here, *here) == here) continue;
+    reject(key, i, "must differ from those before it, got the string " + in_quotes(*here));
+    return false;
+  }
+  if (value) target = std::move(texts);
+  return true;
+}
+
+std::optional<std::size_t> ObjectReader::word(std::string_view key,
+                                              const std::vector<std::string_view>& words) {
+  const Json* const value = find(key);
+  if (!value) return std::nullopt;
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (value->is_string() && value->get_ref<const std::string&>() == words[i]) return i;
+    list += (i == 0 ? "" : ", ") + in_quotes(words[i]);
+  }
+  constexpr std::size_t at_a_glance = 10;
+  const auto meant = value->is_string() && words.size() > at_a_glance
+                         ? nearest(value->get_ref<const std::string&>(), words)
+                         : std::nullopt;
+  reject(key, meant ? "unknown, did you mean " + in_quotes(*meant) + "? Got " + described(*value)
+                    : "must be one of " + list + ", got " + described(*value));
+  return std::nullopt;
+}
+
+std::optional<ObjectReader> ObjectReader::optional_object(std::string_view key) {
+  const Json* const value = find(key);
+  if (!value || value->is_null()) return std::nullopt;
+  if (!value->is_object()) reject(key, "must be an object, got " + described(*value));
+  return ObjectReader(problems_, pointer_to(key), value->is_object() ? value : nullptr);
+}
+
+ObjectReader ObjectReader::required_object(std::string_view key) {
+  if (const auto object = optional_object(key)) return *object;
+  if (require(key)) reject(key, "must be an object, got null");
+  return {problems_, pointer_to(key), nullptr};
+}
+
+std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, std::size_t most) {
+  std::vector<ObjectReader> objects;
+  const Json* const value = find(key);
+  if (!value) return objects;
+  if (!value->is_array()) {
+    reject(key, "must be an array, got " + described(*value));
+    return objects;
+  }
+  if (too_long(key, most, *value)) return objects;
+  for (std::size_t i = 0; i < value->size(); ++i) {
+    const Json& element = (*value)[i];
+    std::string place = pointer_to(key) + '/' + std::to_string(i);
+    if (!element.is_object()) problems_->add(place, "must be an object, got " + described(element));
+    objects.push_back({problems_, std::move(place), element.is_object() ? &element : nullptr});
+  }
+  return objects;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,161 @@
+// A strict reader for the project's JSON files: every problem of a file is found in one reading and
+// named by its JSON pointer; nothing is predicted, defaulted or overlooked in silence.
+//
+//   JsonDocument document = JsonDocument::read("data/claims.json");
+//   for (ObjectReader claim : document.root().required_objects("claims")) {
+//     claim.required("id", id);                          // std::string
+//     claim.required("tolerance", tolerance, above(0));  // double, in a range
+//     claim.optional("window", window, within(2, 99));   // keeps its default when the key is missing
+//     claim.required("verdict", verdict, {Verdict::reproduced, Verdict::corrected});  // by name_of
+//   }
+//   document.finish();  // throws InputError with all that was wrong, unknown keys included
+//
+// What is too long is rejected before it takes memory: the file by its kind, a text and an array by the rule
+// they are read with, all of a file together by the parser (json_parser.hpp).
+//
+// A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
+// do not act on what was read before finish() has returned.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/text.hpp"
+
+namespace impact_damper {
+
+// A kind of file, and how long the longest allowed is.
+struct FileKind {
+  std::string_view name;  // "scene"
+  std::size_t most_bytes;
+};
+
+// The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and InputError
+// if it is longer than its kind allows: before reading it where its size is known, else on reading so much.
+std::string read_text(const std::filesystem::path& file);
+std::string read_text(const std::filesystem::path& file, const FileKind& kind);
+
+// Which texts are allowed: all are of one line, without control characters. Lengths are in characters.
+struct TextRule {
+  std::size_t least = 0, most = 4000;
+  bool is_name = false;  // ASCII letters, digits, '-', '_' and '.', the first of them a letter or digit
+
+  bool allows(std::string_view text) const;
+  std::string describe() const;
+};
+inline constexpr TextRule some_text{1};
+inline constexpr TextRule a_name{1, 64, true};  // of a scene, a claim, a file
+
+class JsonProblems;  // what a document collects while it is read
+
+// One object of a document; a handle, valid as long as the document. Asking for a key makes it known:
+// JsonDocument::finish() reports the keys nobody asked for. An object that was itself missing or of the
+// wrong type reads as empty and reports nothing further.
+class ObjectReader {
+ public:
+  // Reads the field `key` into `target`, which keeps its default if the key is missing. Integers are
+  // JSON integers: neither 3.0 nor 3e0. Every element of an array obeys `range`. Where the target is
+  // optional, null means absent. False if there is a value and it is not valid.
+  bool optional(std::string_view key, double& target, NumberRange range = {});
+  bool optional(std::string_view key, std::int64_t& target, NumberRange range = {});
+  bool optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
+  bool optional(std::string_view key, bool& target);
+  bool optional(std::string_view key, std::string& target, TextRule rule = {});
+  bool optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
+  bool optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
+  bool optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
+  // At most `most` texts, no two of them equal.
+  bool optional(std::string_view key, std::vector<std::string>& target, TextRule rule, std::size_t most);
+
+  // The same for each of these types, a missing key being a problem (and false).
+  template <typename Target, typename... Range>
+  bool required(std::string_view key, Target& target, Range... range) {
+    return require(key) && optional(key, target, range...);
+  }
+
+  // One of the words name_of(value) gives for the `allowed` values.
+  template <typename Enum>
+  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
+    std::vector<std::string_view> words;
+    for (const Enum value : allowed) words.push_back(name_of(value));
+    const std::optional<std::size_t> index = word(key, words);
+    if (index) target = allowed.begin()[*index];
+    return index || !has(key);
+  }
+  template <typename Enum>
+  bool required(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
+    return require(key) && optional(key, target, allowed);
+  }
+  // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
+  std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
+
+  // Objects within. An optional one that is missing (or null) is absent.
+  ObjectReader required_object(std::string_view key);
+  std::optional<ObjectReader> optional_object(std::string_view key);
+  // The elements of an array of at most `most` objects.
+  std::vector<ObjectReader> required_objects(std::string_view key, std::size_t most) {
+    return require(key) ? optional_objects(key, most) : std::vector<ObjectReader>{};
+  }
+  std::vector<ObjectReader> optional_objects(std::string_view key, std::size_t most);
+
+  // Every key that is there, sorted, and known from now on: for objects whose keys are data.
+  std::vector<std::string> keys();
+  bool has(std::string_view key);          // makes it known
+  bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
+
+  // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
+  // is allowed and what was given. For checks that the reader cannot do.
+  void reject(std::string_view key, std::string_view what);
+  void reject(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
+  // Reports the field as missing unless it is there. True if it is there.
+  bool require(std::string_view key);
+  const std::string& pointer() const { return pointer_; }
+
+ private:
+  friend class JsonDocument;
+  ObjectReader(JsonProblems* problems, std::string pointer, const nlohmann::json* object);
+  const nlohmann::json* find(std::string_view key);
+  std::string pointer_to(std::string_view key) const;
+  bool wrong(std::string_view key, const std::string& wanted, const nlohmann::json& given);
+  template <typename Element, typename Rule>
+  bool array(std::string_view key, std::vector<Element>& target, const Rule& rule);
+  bool too_long(std::string_view key, std::size_t most, const nlohmann::json& array);
+
+  JsonProblems* problems_;
+  std::string pointer_;
+  const nlohmann::json* object_;  // null: missing or of the wrong type, already reported
+  std::size_t opened_ = 0;        // index of this object's known keys in problems_
+};
+
+class JsonDocument {
+ public:
+  // Reads and parses `file`. Throws IoError if it cannot be read, InputError for what cannot be gone on with:
+  // a file longer than its kind allows, what is not JSON (with line and column), text behind the value, too
+  // much of it. A duplicate key is a problem among the others.
+  static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
+  // The same for a text in memory; `name` stands for the file in messages.
+  static JsonDocument parse(const std::string& name, const std::string& text);
+
+  ObjectReader root();  // reported unless it is an object
+  // Throws InputError if anything was wrong; unknown keys come last, each with the nearest known name.
+  void finish() const;
+
+  JsonDocument(JsonDocument&&) noexcept;
+  JsonDocument& operator=(JsonDocument&&) noexcept;
+  ~JsonDocument();
+
+ private:
+  JsonDocument();
+  std::unique_ptr<nlohmann::json> value_;
+  std::unique_ptr<JsonProblems> problems_;
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,294 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/sha256.hpp"
+#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
+
+namespace impact_damper {
+namespace {
+
+// The columns of one section: reads each, and holds its length against that of the first.
+class Columns {
+ public:
+  explicit Columns(ObjectReader& object) : object_(object) {}
+
+  template <typename Element>
+  bool read(std::string_view name, std::vector<Element>& column, NumberRange range = {}) {
+    if (!object_.required(name, column, range)) return false;
+    if (!length_) length_ = column.size();
+    if (column.size() == *length_) return true;
+    object_.reject(name, "must be as long as the section's first column, " + std::to_string(*length_) +
+                             ", got a length of " + std::to_string(column.size()));
+    return false;
+  }
+
+  bool read(std::string_view name, std::vector<Wall>& column) {
+    std::vector<std::int64_t> numbers;
+    const bool is_read = read(name, numbers, within(0, 1));
+    for (const std::int64_t number : numbers) column.push_back(number == 0 ? Wall::left : Wall::right);
+    return is_read;
+  }
+
+  bool read_times(std::string_view name, std::vector<double>& column) {
+    if (!read(name, column, at_least(0))) return false;
+    const auto drop = std::is_sorted_until(column.begin(), column.end());
+    if (drop == column.end()) return true;
+    object_.reject(
+        name, static_cast<std::size_t>(drop - column.begin()),
+        "must not be below the one before it, " + number_text(*(drop - 1)) + ", got " + number_text(*drop));
+    return false;
+  }
+
+ private:
+  ObjectReader& object_;
+  std::optional<std::size_t> length_;
+};
+
+Calibration read_calibration(ObjectReader& object) {
+  Calibration calibration{};
+  object.required("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
+  return calibration;
+}
+
+Exact read_options(ObjectReader& object, Exact engine) {
+  engine.calibration = read_calibration(object);
+  return engine;
+}
+
+Restitution read_options(ObjectReader& object, Restitution engine) {
+  object.required("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
+  return engine;
+}
+
+Cem read_options(ObjectReader& object, Cem engine) {
+  if (double step = 0; object.required("time_step", step, above(0))) engine.time_step = step;
+  object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
+  object.required("locate", engine.locate);
+  if (double step = 0; object.has("large_step") && object.optional("large_step", step, above(0)))
+    engine.large_step = step;
+  if (double speed = 0; object.has("stuck_speed") && object.optional("stuck_speed", speed, above(0)))
+    engine.stuck_speed = speed;
+  object.required("unstable", engine.unstable);
+  engine.calibration = read_calibration(object);
+  return engine;
+}
+
+Engine read_engine(ObjectReader& object) {
+  constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
+  if (!object.require("name")) return {};
+  const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
+  if (!name) {
+    object.keys();  // which of them are known depends on the name
+    return {};
+  }
+  Engine engine = *name == 0 ? Engine(Exact{}) : *name == 1 ? Engine(Restitution{}) : Engine(Cem{});
+  std::visit(
+      [&](auto& options) {
+        options = read_options(object, options);
+        // Files of before it was an option of all engines have none: the default was what they were made
+        // with.
+        if (object.has("max_steps") || std::holds_alternative<Cem>(engine))
+          object.required("max_steps", options.max_steps, at_least(1));
+        object.required("max_impacts", options.budget.max_impacts, at_least(0));
+        object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
+        if (double time = 0; object.required("max_time", time, NumberRange{0, 1e12, false}))
+          options.budget.max_time = time;
+      },
+      engine);
+  return engine;
+}
+
+HalfCycles read_half_cycles(ObjectReader object) {
+  HalfCycles half_cycles;
+  Columns columns(object);
+  columns.read_times("zero_crossing", half_cycles.zero_crossing);
+  columns.read_times("peak_time", half_cycles.peak_time);
+  columns.read("amplitude", half_cycles.amplitude, at_least(0));
+  columns.read("impacts", half_cycles.impacts, at_least(0));
+  return half_cycles;
+}
+
+Impacts read_impacts(ObjectReader object) {
+  Impacts impacts;
+  Columns columns(object);
+  columns.read_times("time", impacts.time);
+  columns.read("wall", impacts.wall);
+  columns.read("relative_velocity", impacts.relative_velocity);
+  columns.read("phase_deg", impacts.phase_deg, within(0, 180));
+  columns.read("amplitude", impacts.amplitude, at_least(0));
+  columns.read("displacement", impacts.displacement);
+  return impacts;
+}
+
+Contacts read_contacts(ObjectReader object) {
+  Contacts contacts;
+  Columns columns(object);
+  const bool begun = columns.read_times("begin", contacts.begin);
+  const bool ended = columns.read_times("end", contacts.end);
+  columns.read("wall", contacts.wall);
+  for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
+    if (contacts.begin[i] <= contacts.end[i]) continue;
+    object.reject("end", i,
+                  "must not be before its begin, " + number_text(contacts.begin[i]) + ", got " +
+                      number_text(contacts.end[i]));
+    break;
+  }
+  return contacts;
+}
+
+// A sum that the file states beside its parts.
+void check_sum(ObjectReader& object, std::string_view name, double sum) {
+  double given = 0;
+  if (object.required(name, given) && given != sum) {
+    object.reject(name, "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
+  }
+}
+
+Energy read_energy(ObjectReader object) {
+  Energy energy;
+  bool all_read = object.required("kinetic", energy.kinetic);
+  all_read = object.required("spring", energy.spring) && all_read;
+  all_read = object.required("wall", energy.wall) && all_read;
+  object.required("paper", energy.paper);
+  if (all_read || !object.has("total")) check_sum(object, "total", energy.total());
+  return energy;
+}
+
+EnergyBalance read_energy_balance(ObjectReader object) {
+  EnergyBalance balance;
+  balance.initial = read_energy(object.required_object("initial"));
+  balance.final = read_energy(object.required_object("final"));
+  if (object.required("impact_loss", balance.impact_loss) || !object.has("impact_loss_total")) {
+    check_sum(object, "impact_loss_total",
+              std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), 0.0));
+  }
+  object.required("contact_loss", balance.contact_loss);
+  object.required("bounce_downs", balance.bounce_downs, at_least(0));
+  object.required("bounce_down_loss", balance.bounce_down_loss);
+  object.required("viscous_work", balance.viscous_work);
+  object.required("forcing_work", balance.forcing_work);
+  object.required("residual", balance.residual);
+  return balance;
+}
+
+History read_history(ObjectReader object) {
+  History history;
+  Columns columns(object);
+  columns.read_times("time", history.time);
+  columns.read("x", history.x);
+  columns.read("v", history.v);
+  columns.read("y", history.y);
+  columns.read("w", history.w);
+  return history;
+}
+
+// Six numbers of three scales: they must go together.
+void check_units(ObjectReader object) {
+  SiUnits units{};
+  bool all_read = true;
+  for (const SiUnit& unit : si_units)
+    all_read = object.required(unit.name, units.*unit.member, above(0)) && all_read;
+  if (!all_read) return;
+  const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
+    constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
+    if (std::abs(given - wanted) <= rounding * std::abs(wanted)) return;
+    object.reject(
+        name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
+  };
+  must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
+  must_be("energy_J", units.energy, units.mass * units.velocity * units.velocity,
+          "mass_kg times velocity_m_per_s squared");
+  must_be("force_N", units.force, units.energy / units.length, "energy_J divided by length_m");
+}
+
+// Every field of a run file's scene is there, absent stops as null.
+Scene read_full_scene(ObjectReader& object) {
+  for (const SceneField& field : scene_fields) object.require(field.name);
+  object.require("until_time");
+  object.require("until_amplitude");
+  return read_scene_fields(object);
+}
+
+// What the engine would reject of the scene: a run of it cannot have been.
+void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
+  if (!problems_of(run.scene).empty()) return;
+  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).allows(run.scene.y0)) {
+    scene.reject("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
+                           number_text(run.scene.y0));
+  }
+  if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && cem->time_step) {
+    for (const Problem& problem : problems_of(run.scene, *cem)) engine.reject(problem.field, problem.message);
+  }
+}
+
+// Whether a run file ends with the digest of what stands before it.
+bool is_sealed(std::string_view text) {
+  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
+  if (text.size() < length) return false;
+  const std::string_view seal = text.substr(text.size() - length),
+                         digest = seal.substr(seal_begin.size(), digits);
+  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
+         digest == sha256(text.substr(0, text.size() - length));
+}
+
+Run read_whole(JsonDocument document, bool sealed) {
+  Run run;
+  ObjectReader object = document.root();
+  if (object.require("schema")) object.word("schema", {run_schema});
+  ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
+  run.scene = read_full_scene(scene);
+  run.engine = read_engine(engine);
+  check_together(scene, engine, run);
+  object.required("stop_reason", run.stop_reason,
+                  {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
+                   StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
+  object.required("end_time", run.end_time, at_least(0));
+  if (const auto section = object.optional_object("units")) check_units(*section);
+  if (const auto section = object.optional_object("half_cycles"))
+    run.half_cycles = read_half_cycles(*section);
+  if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section);
+  if (const auto section = object.optional_object("contacts")) run.contacts = read_contacts(*section);
+  if (const auto section = object.optional_object("energy")) run.energy = read_energy_balance(*section);
+  if (const auto section = object.optional_object("history")) run.history = read_history(*section);
+  if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
+    object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
+                                " impacts, got " + std::to_string(run.energy->impact_loss.size()));
+  }
+  ObjectReader made_by = object.required_object("provenance");  // who made the file, not what is in it
+  for (const std::string& key : made_by.keys()) {
+    std::string any;
+    made_by.optional(key, any);
+  }
+  made_by.require("sha256");
+  document.finish();
+  if (!sealed) {  // says nothing new beside other problems
+    made_by.reject(
+        "sha256",
+        "must be the digest of the content, got another one: the file was altered or laid out anew "
+        "since it was written; make the run again");
+    document.finish();
+  }
+  return run;
+}
+
+}  // namespace
+
+Run read_run(const std::filesystem::path& file) {
+  std::string text = read_text(file, run_kind);
+  const bool sealed = is_sealed(text);
+  JsonDocument document = JsonDocument::parse(file.string(), text);
+  std::string().swap(text);  // its memory is as large as that of the columns
+  return read_whole(std::move(document), sealed);
+}
+
+Run parse_run(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
+}
+
+}  // namespace impact_damper

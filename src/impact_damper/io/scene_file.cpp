@@ -1,0 +1,128 @@
+#include "impact_damper/io/scene_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/run_file.hpp"
+
+namespace impact_damper {
+namespace {
+
+// The given keys that only a scene in units has, and those that only a dimensionless one has.
+struct GivenKeys {
+  std::string in_units, dimensionless;
+};
+
+GivenKeys given_keys(const ObjectReader& object) {
+  GivenKeys given;
+  const auto add = [&](std::string& list, std::string_view key) {
+    if (object.holds(key)) list += (list.empty() ? "" : ", ") + std::string(key);
+  };
+  const auto is_in_both = [](std::string_view name) {
+    const auto* const field = std::ranges::find(unit_fields, name, &UnitField::name);
+    return field != unit_fields.end() && field->also_dimensionless;
+  };
+  for (const UnitField& field : unit_fields)
+    if (!field.also_dimensionless) add(given.in_units, field.name);
+  for (const SceneField& field : scene_fields)
+    if (!is_in_both(field.name)) add(given.dimensionless, field.name);
+  for (const std::string_view stop : {"until_time", "until_amplitude"}) add(given.dimensionless, stop);
+  return given;
+}
+
+SceneInUnits read_unit_fields(ObjectReader& object) {
+  SceneInUnits scene;
+  std::vector<std::string_view> unreadable;
+  for (const UnitField& field : unit_fields) {
+    if (!object.has(field.name)) continue;
+    // What cannot be read is neither missing nor a number that something can be made of.
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (!object.optional(field.name, value)) unreadable.push_back(field.name);
+    scene.*field.member = value;
+  }
+  for (const Problem& problem : problems_of(scene))
+    if (std::ranges::find(unreadable, problem.field) == unreadable.end())
+      object.reject(problem.field, problem.message);
+  return scene;
+}
+
+SceneFile read_whole(JsonDocument document) {
+  ObjectReader object = document.root();
+  SceneFile file;
+  object.optional("description", file.description);
+  const auto [in_units, without_units] = given_keys(object);
+  if (in_units.empty()) {
+    file.scene = read_scene_fields(object);
+    document.finish();
+    return file;
+  }
+  const SceneInUnits scene = read_unit_fields(object);
+  if (!without_units.empty()) {
+    for (const SceneField& field : scene_fields) object.has(field.name);
+    object.has("until_time"), object.has("until_amplitude");
+    object.reject("",
+                  "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
+  }
+  document.finish();
+  file.scene = dimensionless(scene);
+  file.scales = scales_of(scene);
+  return file;
+}
+
+// A run given for a scene would be a list of problems, or too long.
+void reject_run(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return;  // a pipe is read once
+  constexpr std::size_t enough = 100;                            // the schema is the first key of a run
+  std::string head(enough, ' ');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(enough));
+  if (head.find('"' + std::string(run_schema) + '"') == std::string::npos) return;
+  throw InputError(
+      {file.string() + ": this is a run, must be a scene; the scene of a run is the object \"scene\" in it"});
+}
+
+}  // namespace
+
+Scene read_scene_fields(ObjectReader& object) {
+  Scene scene;
+  for (const SceneField& field : scene_fields) object.optional(field.name, scene.*field.member);
+  const bool time_is_read = object.optional("until_time", scene.until_time);
+  const bool amplitude_is_read = object.optional("until_amplitude", scene.until_amplitude);
+  for (const Problem& problem : problems_of(scene)) {
+    // A stop that was given but could not be read is not missing as well.
+    const bool given = problem.field == "until_time" && !(time_is_read && amplitude_is_read);
+    if (!given) object.reject(problem.field, problem.message);
+  }
+  return scene;
+}
+
+SceneFile read_scene_file(const std::filesystem::path& file) {
+  reject_run(file);
+  return read_whole(JsonDocument::read(file, scene_kind));
+}
+
+Scene read_scene(const std::filesystem::path& file) { return read_scene_file(file).scene; }
+
+SceneFile parse_scene_file(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text));
+}
+
+Scene parse_scene(const std::string& name, const std::string& text) {
+  return parse_scene_file(name, text).scene;
+}
+
+std::string scene_text(const Scene& scene) {
+  std::string text = "{";
+  const auto field = [&](std::string_view name, const std::optional<double>& value) {
+    if (text.size() > 1) text += ", ";
+    text += '"' + std::string(name) + "\": " + (value ? number_text(*value) : "null");
+  };
+  for (const SceneField& each : scene_fields) field(each.name, scene.*each.member);
+  field("until_time", scene.until_time);
+  field("until_amplitude", scene.until_amplitude);
+  return text + '}';
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,45 @@
+// Scenes as JSON files: the names of scene_fields, until_time and until_amplitude as keys,
+//
+//   {"mass_ratio": 0.04, "until_amplitude": 0.01}
+//
+// or, in kilograms, newtons per metre and millimetres, those of unit_fields,
+//
+//   {"mass": 40, "stiffness": 1e6, "secondary_mass": 1.6, "clearance": 2, "initial_displacement": 12,
+//    "until_millimetres": 0.02}
+//
+// never both in one file but for those that mean the same in both. A key may be left out and then has the
+// default of Scene or SceneInUnits, but one of the two stops must be given, and in units the four that Scales
+// and the mass ratio need. An optional "description" says in a sentence what the scene is.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+inline constexpr FileKind scene_kind{"scene", 1 << 16};
+
+struct SceneFile {
+  Scene scene;                   // dimensionless, however it was given
+  std::optional<Scales> scales;  // of a scene in units
+  std::string description;
+};
+
+// Throws IoError if `file` cannot be read, InputError naming everything in it that is not valid.
+SceneFile read_scene_file(const std::filesystem::path& file);
+SceneFile parse_scene_file(const std::string& name, const std::string& text);
+// The same where nobody asks for units.
+Scene read_scene(const std::filesystem::path& file);
+Scene parse_scene(const std::string& name, const std::string& text);
+
+// The fields of a scene out of an object that may hold others beside them; problems are reported there.
+Scene read_scene_fields(ObjectReader& object);
+
+// The scene on one line with every field in the order of Scene, absent stops as null: reads back as equal.
+std::string scene_text(const Scene& scene);
+
+}  // namespace impact_damper

@@ -1,0 +1,82 @@
+// Power series in time, which follow a motion for a short time without a sine.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "impact_damper/math/simd_pair.hpp"
+
+namespace impact_damper {
+
+// Derivatives u, u', ... at one instant.
+template <class Real, std::size_t N>
+using Derivatives = std::array<Real, N>;
+
+// u and its first derivatives at one time, as a series has them.
+template <class Real>
+struct SeriesAt {
+  Real u, u1, u2;
+};
+
+// c_0 + c_1 s + c_2 s^2 + ...: coefficients of an even power and the odd one behind it in pairs. Summed as
+// E(z) + s O(z), z = s^2, together with the derivatives of E and O:
+//     u' = O + 2s (E' + s O'),      u'' = 2 (E' + 3s O') + 4z (E'' + s O'').
+template <class Real, std::size_t pairs>
+using PairedSeries = std::array<SimdPair<Real>, pairs>;
+template <class Real, std::size_t summed, std::size_t pairs>
+SeriesAt<Real> sum_of_first(const PairedSeries<Real, pairs>& c, const Real& s) {
+  static_assert(summed >= 3 && summed <= pairs);
+  const Real z = s * s;
+  SimdPair<Real> second = c[summed - 1], before = c[summed - 2] + second * z;  // E''/2 and O''/2
+  SimdPair<Real> value = c[summed - 3] + before * z, first = before + second * z;
+  for (std::size_t n = summed - 3; n > 0; --n) {
+    second = first + second * z;
+    first = value + first * z;
+    value = c[n - 1] + value * z;
+  }
+  return {value[0] + s * value[1], value[1] + 2 * s * (first[0] + s * first[1]),
+          2 * (first[0] + 3 * s * first[1]) + 8 * z * (second[0] + s * second[1])};
+}
+template <class Real, std::size_t pairs>
+SeriesAt<Real> sum(const PairedSeries<Real, pairs>& c, const Real& s) {
+  return sum_of_first<Real, pairs>(c, s);
+}
+
+// 1/n, by which the series are summed: a division is worth four products.
+template <class Real>
+inline const std::array<Real, 64> reciprocals = [] {
+  std::array<Real, 64> all{};
+  for (int n = 1; n < 64; ++n) all[n] = Real(1) / n;
+  return all;
+}();
+
+// (1/0!, 1/1!), (1/2!, 1/3!), ...
+template <class Real>
+inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
+  PairedSeries<Real, 5> all;
+  Real even{1};
+  double power = 0;
+  for (SimdPair<Real>& both : all) {
+    const Real odd = even / Real(power + 1);
+    both = SimdPair<Real>{even, odd};
+    even = odd / Real(power + 2);
+    power += 2;
+  }
+  return all;
+}();
+
+// The series about one instant of what a motion departs from a straight line by: from its second derivative
+// on.
+template <class Real>
+PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
+  const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;
+  PairedSeries<Real, 5> c;
+  c[0] = SimdPair<Real>{Real(0), Real(0)};
+  for (std::size_t n = 1; n < c.size(); ++n) {
+    const SimdPair<Real> both{u[2 * n], u[2 * n + 1]};
+    c[n] = over[n] * both;
+  }
+  return c;
+}
+
+}  // namespace impact_damper

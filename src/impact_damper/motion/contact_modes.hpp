@@ -1,0 +1,131 @@
+// The walls of a scene: what all contacts (M2.2) with them have in common, made once for a scene.
+//
+// The characteristic polynomial is factored into a slow and a fast quadratic (M5.3, contact_factors.hpp). A
+// state is split into its two modes by (M5.4), applied to q and to the centre of both masses, X (M5.5): these
+// two are weakly coupled, so that nothing cancels. Each mode moves as its own oscillator.
+//
+// Where the factors are equal or nearly so, and where the primary mass is strongly damped, the parts are
+// large and cancel, as the split's norm (M5.6) tells. Such contacts are followed without modes
+// (contact_without_modes.hpp).
+#pragma once
+
+#include "impact_damper/motion/contact_exponential.hpp"
+#include "impact_damper/motion/contact_factors.hpp"
+#include "impact_damper/motion/forced_motion.hpp"
+#include "impact_damper/motion/short_contact_map.hpp"
+
+namespace impact_damper {
+
+template <class Real, class Force = Forcing<Real>>
+class ContactModes {
+ public:
+  ContactModes(const System<Real, Force>& system, const Real& zeta_m)
+      : nu(system.nu),
+        zeta(system.zeta),
+        stiffness(system.k / system.nu),
+        damping(2 * zeta_m * square_root(stiffness)),
+        forcing(system.forcing),
+        joined_(1 / (1 + nu)),
+        share_(nu / (1 + nu)) {
+    const auto& [p, b, p2, b2, dp, db, db2] = factors_ = factor_contact(nu, zeta, stiffness, damping);
+    slow = Oscillator<Real>(p / 2, b);
+    fast = Oscillator<Real>(p2 / 2, b2);
+    const Real alpha = p2 - p, beta = b2 - b, resultant = beta * (beta - alpha * p) + alpha * alpha * b;
+    alpha_ = alpha / resultant;
+    beta_ = beta / resultant;
+    slow_ = (beta - alpha * p) / resultant;
+    fast_ = (beta - alpha * p2) / resultant;
+    // What one unit of forcing accelerates: x'' by 1, q'' by -1.
+    split({0, 1, 0, -1}, drive_slow, drive_fast);
+    std::array<Touch<Real>, 3> touch;
+    touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
+    slow_piece = slow.propagate(piece);
+    fast_piece = fast.propagate(piece);
+    const bool stiff = stiffness > stiff_above(zeta);
+    if (!stiff && !(zeta <= 4 && norm_of_split() <= 3)) {
+      coupled.emplace(
+          ContactEquations<Real>{nu, zeta, stiffness, damping, {forcing.amplitude, forcing.frequency}});
+    } else if (!forcing)
+      short_contact = ShortContactMap<Real>(
+          slow, fast, share_, zeta, touch,
+          [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
+  }
+
+  // u = slow + fast. Returns what the fast part moves the centre X by.
+  Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
+                     ContactState<Real>& fast_part) const {
+    const auto& [p, b, p2, b2, dp, db, db2] = factors_;
+    const Real dx = 2 * zeta * u.v + u.x;  // D x
+    const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
+    // So that rounding does not show where the secondary mass stands still, however heavy it is.
+    const Real X = joined_ * (u.x + nu * (u.x + u.q)), X1 = joined_ * (u.v + nu * (u.v + u.w));
+    const Real X2 = -joined_ * dx;
+
+    const Real r = 2 * zeta * X1 + X - dp * u.w + db2 * u.q;  // Q2 q and its derivative
+    const Real r1 = 2 * zeta * X2 + X1 - dp * q2 + db2 * u.w;
+    slow_part.q = slow_ * r - alpha_ * r1;
+    slow_part.w = beta_ * r1 + alpha_ * b * r;
+    fast_part.q = u.q - slow_part.q;
+    fast_part.w = u.w - slow_part.w;
+
+    const Real f = share_ * joined_ * (2 * zeta * u.w + u.q) + dp * X1 + db * X;  // Q1 X and its derivative
+    const Real f1 = share_ * joined_ * (2 * zeta * q2 + u.w) + dp * X2 + db * X1;
+    const Centre<Real> centre{alpha_ * f1 - fast_ * f, -(beta_ * f1 + alpha_ * b2 * f)};
+    fast_part.x = centre.x - share_ * fast_part.q;
+    fast_part.v = centre.v - share_ * fast_part.w;
+    slow_part.x = u.x - fast_part.x;
+    slow_part.v = u.v - fast_part.v;
+    return centre;
+  }
+
+  // Derivatives of x and q without forcing, from the equations themselves.
+  template <std::size_t N>
+  void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q) const {
+    x[0] = state.x;
+    x[1] = state.v;
+    q[0] = state.q;
+    q[1] = state.w;
+    for (std::size_t n = 2; n < N; ++n) {
+      const Real force = damping * q[n - 1] + stiffness * q[n - 2];
+      x[n] = nu * force - 2 * zeta * x[n - 1] - x[n - 2];
+      q[n] = -force - x[n];
+    }
+  }
+
+  Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
+  Force forcing;
+  Oscillator<Real> slow, fast;
+  ContactState<Real> drive_slow, drive_fast;
+
+  std::optional<ContactExponential<Real>> coupled;  // instead of all that follows
+  ShortContactMap<Real> short_contact;
+  // Both parts' motion for a time in which the fast one moves little: a quarter of its period.
+  Real piece;
+  Propagator<Real> slow_piece, fast_piece;
+
+ private:
+  // How much larger than a motion its fast part can be, both masses counted alike: the square root of the sum
+  // of squares over four orthogonal states of norm 1.
+  Real norm_of_split() const {
+    const Real root_k = square_root(stiffness);
+    Real sum{0};
+    for (const ContactState<Real>& u :
+         {ContactState<Real>{1, 0, 0, 0}, ContactState<Real>{0, 1, 0, -1}, ContactState<Real>{0, 0, 0, 1},
+          ContactState<Real>{0, 0, 1 / root_k, 0}}) {
+      ContactState<Real> slow_part, fast_part;
+      split(u, slow_part, fast_part);
+      const Real z1 = fast_part.v + fast_part.w, depth = root_k * fast_part.q;
+      sum += fast_part.x * fast_part.x + fast_part.v * fast_part.v + z1 * z1 + depth * depth;
+    }
+    return square_root(sum);
+  }
+
+  Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
+  ContactFactors<Real> factors_;
+  Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2, by the resultant
+};
+
+}  // namespace impact_damper

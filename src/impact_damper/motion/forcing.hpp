@@ -1,0 +1,41 @@
+// The force f0 sin(omega_f t), divided by K epsilon as in the paper's (2).
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "impact_damper/math/elementary.hpp"
+
+namespace impact_damper {
+
+// f(t) = amplitude sin(frequency t) and its derivatives at one instant.
+template <class Real>
+struct Forcing {
+  Real amplitude{0}, frequency{1};
+  explicit operator bool() const { return amplitude != 0; }
+
+  template <std::size_t N>
+  std::array<Real, N> derivatives(const Real& time) const {
+    static_assert(N >= 2);
+    const auto [sin, cos] = sin_cos(frequency * time);
+    std::array<Real, N> f;
+    f[0] = amplitude * sin;
+    f[1] = amplitude * frequency * cos;
+    for (std::size_t n = 2; n < N; ++n) f[n] = -frequency * frequency * f[n - 2];
+    return f;
+  }
+};
+
+// None, known when compiled: what scenes without forcing need not ask is not there.
+template <class Real>
+struct NoForcing {
+  Real amplitude{0}, frequency{1};
+  explicit constexpr operator bool() const { return false; }
+
+  template <std::size_t N>
+  std::array<Real, N> derivatives(const Real&) const {
+    return {};
+  }
+};
+
+}  // namespace impact_damper

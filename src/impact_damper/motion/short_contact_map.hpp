@@ -1,0 +1,239 @@
+// The short-contact map (M7.8): a contact that begins on the wall and lasts about T, half a period of the
+// fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene.
+//
+// The series in s, the time since T, is as long as its first term left out needs to be below rounding. A
+// rounding error that is the same in every impact adds up; so what is tabulated for x is the change of the
+// centre of both masses, which is small, and for y' what differs from -E y', E = exp(-a T).
+//
+// That q has not been back at zero before is proved by Lemma L2 for exp(a t) q, a the decay rate of the fast
+// mode (docs/mathematics.md, 7.6).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/math/power_series.hpp"
+#include "impact_damper/motion/oscillator.hpp"
+
+namespace impact_damper {
+
+template <class Real>
+struct ContactState {
+  Real x, v, q, w;
+};
+
+template <class Real>
+struct ContactParts {
+  ContactState<Real> slow, fast;
+};
+
+// The masses' centre X = x + nu/(1+nu) q, which the wall does not move.
+template <class Real>
+struct Centre {
+  Real x, v;
+};
+
+template <class Real>
+struct Touch {
+  ContactState<Real> slow, fast;
+  Centre<Real> fast_centre;
+};
+
+template <class Real>
+class ShortContactMap {
+ public:
+  ShortContactMap() = default;
+  // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: what x, v and w at the touch, one each, are
+  // split into. `derive` extends (x, v, q, w) by the higher derivatives.
+  template <class Derive>
+  ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
+                  const Real& zeta, const std::array<Touch<Real>, 3>& start, Derive&& derive)
+      : share_(share), zeta_(zeta) {
+    half_period_ = fast.half_period();
+    if (!(half_period_ < std::numeric_limits<Real>::infinity())) return;
+    const Real epsilon = std::numeric_limits<Real>::epsilon();
+    decay_factor_ = exponential(Real(-fast.a() * half_period_));
+    const Propagator<Real> p = slow.propagate(half_period_);
+    const Real omega = half_turn<Real>() / half_period_;
+    few_ = reach_of(few, fast);
+    more_ = reach_of(more, fast);
+    many_ = reach_of(many, fast);
+    most_ = reach_of(most, fast);
+    accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
+    decay_ = fast.a();
+    unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
+    growth_ = exponential(Real(fast.a() * half_period_));
+    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
+    const auto fastest = [](const Oscillator<Real>& o) {
+      const Real root_b = square_root(o.b()), z = o.a() / root_b;
+      return Real(root_b * (z + square_root(Real(1 + z * z))));
+    };
+    const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& [s, f, fast_centre] = start[i];
+      const Real b = slow.b(), gone = 1 + decay_factor_;
+      const Real centre_x = i == 0 ? 1 : 0, centre_v = i == 1 ? Real(1) : i == 2 ? share : Real(0);
+      const Centre<Real> slow_centre{centre_x - fast_centre.x, centre_v - fast_centre.v};
+      // By how much the centre has changed after T.
+      const Centre<Real> change{
+          p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
+          (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v};
+      const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
+      const Real q_then = slow_q - decay_factor_ * f.q;
+      const Real w_then =
+          i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w);  // but for -E w
+      const Real w_whole = i == 2 ? Real(w_then - decay_factor_) : w_then;
+      constexpr std::size_t terms = 2 * most;
+      std::array<Real, terms> x, q, centre;
+      derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
+             x, q);
+      q[1] = w_then;
+      Real factorial{1};
+      for (std::size_t n = 0; n < terms; ++n) {
+        if (n > 1) factorial *= Real(double(n));
+        q[n] /= factorial;
+        centre[n] = n == 0   ? change.x
+                    : n == 1 ? change.v
+                             : Real(-(1 - share) * (2 * zeta * x[n - 1] + x[n - 2]) / factorial);
+      }
+      for (std::size_t n = 0; n < most; ++n) {
+        q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
+        centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
+      }
+      const Real along = (f.w + fast.a() * f.q) / omega;
+      fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
+      slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * slow.bound(s.q, s.w);
+      const Real slow_x = slow_rate * slow_rate * slow.bound(s.x, s.v);
+      const Real fast_x = fast_rate * fast_rate * fast.bound(f.x, f.v);
+      second_of_x_[i] = slow_x + fast_x;
+      third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
+    }
+  }
+
+  explicit operator bool() const { return accurate_ > 0; }
+
+  // The end of a contact that begins with x, v and w, inwards; nothing if it is too long for the series, or
+  // not proved.
+  struct End {
+    Real time, x, v, w;
+  };
+  std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
+    const Start start{x, v, w};
+    const auto q = overlap_after<few>(start);
+    const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
+               b = t * t * (q[1][1] * over);
+    Real s = t * (1 - a + (2 * a * a - b));
+    if (absolute(s) < few_.s)
+      if (const auto end = end_within(start, q, s, few_)) return end;
+    if (!(absolute(s) < most_.s)) return {};
+    // Nearer by few terms, before all that it takes are summed.
+    for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
+    if (absolute(s) < more_.s)
+      if (const auto end = end_within(start, overlap_after<more>(start), s, more_)) return end;
+    if (absolute(s) < many_.s)
+      if (const auto end = end_within(start, overlap_after<many>(start), s, many_)) return end;
+    if (!(absolute(s) < most_.s)) return {};
+    return end_within(start, overlap_after<most>(start), s, most_);
+  }
+  // Bounds on the second and third derivative of x in it.
+  Real second_of_x(const Real& x, const Real& v, const Real& w) const {
+    return bound(second_of_x_, {x, v, w});
+  }
+  Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
+
+ private:
+  static constexpr std::size_t few = 5, more = 7, many = 9, most = 12;  // pairs of terms
+  using Start = std::array<Real, 3>;                                    // by x, v and w at the touch
+  using Table = std::array<PairedSeries<Real, most>, 3>;
+  template <std::size_t pairs>
+  static PairedSeries<Real, pairs> combine(const Table& by, const Start& start) {
+    PairedSeries<Real, pairs> all;
+    for (std::size_t n = 0; n < pairs; ++n)
+      all[n] = by[0][n] * start[0] + by[1][n] * start[1] + by[2][n] * start[2];
+    return all;
+  }
+
+  // What a number of terms is good for.
+  struct Reach {
+    Real s{0};       // the longest |s|
+    Real growth{0};  // of exp(a t) in it, from T on
+  };
+  static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
+    const std::size_t terms = 2 * pairs;
+    Real factorial{1};
+    for (std::size_t n = 2; n < terms; ++n) factorial *= Real(double(n));
+    // The term left out, (omega s)^(terms - 1) / (terms - 1)! in the velocity.
+    const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
+    const Real s = exponential(Real(logarithm(enough) / Real(double(terms - 1)))) / fast.rate();
+    return {s, exponential(Real(fast.a() * s))};
+  }
+
+  // The terms of q(T + s).
+  template <std::size_t pairs>
+  PairedSeries<Real, pairs> overlap_after(const Start& start) const {
+    PairedSeries<Real, pairs> q = combine<pairs>(q_, start);
+    q[0] = q[0] - SimdPair<Real>{Real(0), decay_factor_ * start[2]};
+    return q;
+  }
+  // From s on to where q vanishes, with q' and q'' at s.
+  struct Step {
+    Real rest, w, w1;
+  };
+  template <std::size_t pairs>
+  static Step step_to_zero(const std::array<SimdPair<Real>, pairs>& q, const Real& s) {
+    const auto [depth, w, w1] = sum<Real>(q, s);
+    const Real over = 1 / w, newton = -depth * over;
+    return {newton * (1 - newton * (w1 * over) / 2), w, w1};
+  }
+  template <std::size_t pairs>
+  std::optional<End> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
+                                const Reach& reach) const {
+    const auto& [x, v, w] = start;
+    Step step;
+    for (int i = 0;; ++i) {
+      if (i == 8 || !(absolute(s) < reach.s)) return {};
+      step = step_to_zero(q, s);
+      if (absolute(step.rest) < accurate_) break;
+      s += step.rest;
+    }
+    // All else that is a sum by powers of s need not wait for the last step, and is moved on by it.
+    const Real rest = step.rest, whole = s + rest, time = half_period_ + whole;
+    const Real end_w = step.w + rest * (step.w1 + rest * (3 * q[1][1] + 12 * s * q[2][0]));
+    if (!(end_w * w < 0)) return {};
+    const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(end_w);
+    const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
+    // exp(a s) >= 1 + a s.
+    bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * whole) * out), time,
+                             Real(fast_fourth + reach.growth * slow_fourth));
+    if (!proved && whole > 0) {
+      // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
+      const Real depth = inward * q[0][0], slope = inward * q[0][1];
+      proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
+                          half_period_, Real(fast_fourth + slow_fourth)) &&
+               stays_open(depth, slope, Real(0), Real(-out), whole,
+                          Real(decay_factor_ * (unweighted_ * fast_fourth + slow_fourth)));
+    }
+    if (!proved) return {};
+    const SeriesAt<Real> change = sum<Real>(combine<pairs>(centre_, start), s);
+    const Real centre_v = v + share_ * w;
+    const Real end_x = x + (centre_v * whole + (change.u + rest * change.u1));
+    const Real v_before = v + (share_ * (w - end_w) + change.u1);
+    return End{time, end_x, v_before - rest * ((1 - share_) * (2 * zeta_ * v_before + end_x)), end_w};
+  }
+  static Real bound(const Start& row, const Start& start) {
+    return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
+  }
+
+  Real half_period_{0}, decay_factor_{0};  // T and E = exp(-a T)
+  Real decay_{0}, growth_{0};              // a and exp(a T)
+  Real unweighted_{0};                     // (b / omega^2)^2
+  Real accurate_{0};                       // the largest correction of s whose third power is below rounding
+  Reach few_, more_, many_, most_;
+  Real share_{0}, zeta_{0};
+  Table centre_{}, q_{};
+  Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,73 @@
+// Sticking: both masses move as one, the secondary at rest on a wall (M2.3); y'' = 0 in place of the paper's
+// (10).
+#pragma once
+
+#include "impact_damper/motion/forced_motion.hpp"
+#include "impact_damper/motion/state.hpp"
+
+namespace impact_damper {
+
+template <class Real, class Force = Forcing<Real>>
+class Stuck {
+ public:
+  Stuck(const System<Real, Force>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
+      : primary_(system.stuck, {system.forcing.amplitude / (1 + system.nu), system.forcing.frequency}, begin,
+                 x, v),
+        start_{x, v, wall == Wall::left ? Real(0) : Real(1), Real(0)},
+        push_(wall == Wall::left ? 1 : -1) {}
+
+  State<Real> at(const Real& t) const {
+    if (t == 0) return start_;
+    const auto now = primary_.at(t);
+    return {now.x, now.v, start_.y, Real(0)};
+  }
+  // The state when it vanishes, release(): x' has its turn there, and x'' = 0 tells x, to the last bit.
+  State<Real> released(const Real& t) const {
+    if (t == 0) return start_;
+    const auto v = primary_.speed_at_turn(t);
+    return v ? State<Real>{-push_ * *v * primary_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
+  }
+  // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
+  std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) {
+    // The push with which the mass was held is that of the flight before: a rounding error may leave none. To
+    // look on from `from` > 0 would find the next time that it vanishes, a period later.
+    const auto start = primary_.beginning();
+    const Real push = push_ * start[2], change_of_push = push_ * start[3];
+    if (push <= 0 && change_of_push < 0) return from < horizon ? std::optional(from) : std::nullopt;
+    const auto released = primary_.falls(2, push_, from, horizon, span);
+    if (released) turn_ = primary_.turn_before(*released);
+    return released;
+  }
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    return primary_.keeps_side(side, end.x, t);
+  }
+  bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
+    return primary_.keeps_course(end.v, t);
+  }
+  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
+    return primary_.leaves_zero(from, t);
+  }
+  Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            const Real& span) const {
+    // Until then x'' keeps its sign, and so x' rises, the way the wall pushes, through one zero at most.
+    if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
+    return primary_.falls(order, sign, from, until, span);
+  }
+  Real height(const Real& t) const { return primary_.height(t); }
+  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
+                                       const Real& span) const {
+    return primary_.enclosure_at(order, sign, t, span);
+  }
+  typename ForcedMotion<Real, Force>::Beginning leads_of_x() const { return primary_.beginning(); }
+  Real panel(const Real& t) const { return primary_.panel(t); }
+  Real resolution() const { return 1; }
+
+ private:
+  ForcedMotion<Real, Force> primary_;
+  State<Real> start_;
+  Real push_;
+  std::optional<Real> turn_;  // of x before the release, once that is known
+};
+
+}  // namespace impact_damper

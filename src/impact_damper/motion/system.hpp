@@ -1,0 +1,41 @@
+// A scene in the engine's scalar type, with its oscillators.
+#pragma once
+
+#include <limits>
+
+#include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/scene.hpp"
+
+namespace impact_damper {
+
+// The scene's numbers in the engine's scalar type.
+template <class Real, class Force = Forcing<Real>>
+struct System {
+  explicit System(const Scene& scene)
+      : nu(scene.mass_ratio),
+        e(scene.restitution),
+        zeta(scene.damping_ratio),
+        k(scene.wall_stiffness),
+        forcing{Real(scene.force_amplitude), Real(scene.force_frequency)},
+        free(zeta, Real(1)),
+        stuck(zeta / (1 + nu), 1 / (1 + nu)) {}
+
+  Real nu, e, zeta, k;
+  Force forcing;
+  Oscillator<Real> free;   // (M2.1), the paper's (3)
+  Oscillator<Real> stuck;  // (M2.3), the paper's (9) with the factor 1/(1+nu) that its force lacks
+};
+
+// Calls `then` with the scene's numbers, whose type tells whether there is a forcing.
+template <class Real, class Then>
+auto with_system(const Scene& scene, Then&& then) {
+  return scene.force_amplitude == 0 ? then(System<Real, NoForcing<Real>>(scene)) : then(System<Real>(scene));
+}
+
+// How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
+template <class Real, class Force>
+Real bounded_span(const System<Real, Force>& system) {
+  return system.forcing ? Real(1) : std::numeric_limits<Real>::infinity();
+}
+
+}  // namespace impact_damper

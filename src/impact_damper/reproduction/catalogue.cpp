@@ -1,0 +1,279 @@
+#include "impact_damper/reproduction/catalogue.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_reader.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr TextRule a_number{1, 8, true};           // of a figure: its files are called after it
+constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
+constexpr auto ordinates = {LossOrdinate::eta,
+                            LossOrdinate::specific,
+                            LossOrdinate::specific_secondary,
+                            LossOrdinate::amplitude_times,
+                            LossOrdinate::by_restitution,
+                            LossOrdinate::carried};
+
+Record read_record(ObjectReader& scene) {
+  Record record;
+  record.half_cycles = false;
+  bool history = false;
+  std::vector<std::string> words;
+  scene.required("record", words, TextRule{}, std::size_t{5});
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word == "half_cycles") {
+      record.half_cycles = true;
+    } else if (word == "impacts") {
+      record.impacts = true;
+    } else if (word == "contacts") {
+      record.contacts = true;
+    } else if (word == "energy") {
+      record.energy = true;
+    } else if (word == "history") {
+      history = true;
+    } else {
+      scene.reject("record", i,
+                   "must be one of half_cycles, impacts, contacts, energy, history, got the string " +
+                       in_quotes(word));
+    }
+  }
+  double before = std::numeric_limits<double>::infinity();
+  for (ObjectReader item : scene.optional_objects("history_below", 100)) {
+    AmplitudeWindow window;
+    const bool is_read = item.required("amplitude", window.amplitude, amplitudes);
+    item.required("length", window.length, amplitudes);
+    item.required("count", window.count, within(2, double(most_samples)));
+    if (is_read && !(window.amplitude < before)) {
+      item.reject("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
+                                   number_text(window.amplitude));
+    }
+    if (is_read) before = window.amplitude;
+    record.history_below.push_back(window);
+  }
+  if (history == record.history_below.empty()) {
+    scene.reject("history_below", "must be given if, and only if, history is recorded");
+  }
+  return record;
+}
+
+std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
+  std::vector<FigureCurve> curves;
+  for (ObjectReader item : figure.optional_objects("curves", 100)) {
+    FigureCurve curve;
+    item.required("scene", curve.scene, a_name);
+    if (table == TableKind::loss_factor) {
+      std::int64_t half_cycles = curve.loss_factor.half_cycles;
+      item.optional("half_cycles", half_cycles, within(10, 18));
+      if (half_cycles % 2 != 0) {
+        item.reject("half_cycles",
+                    "must be even, so that one peak is the middle one, got " + std::to_string(half_cycles));
+      }
+      curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
+      item.optional("ensemble", curve.ensemble, within(0, 1000));
+    }
+    curves.push_back(curve);
+  }
+  return curves;
+}
+
+// A null pointer if `record` holds what a table of this kind draws, else the first part that is missing.
+const char* missing_record(TableKind table, const Record& record) {
+  switch (table) {
+    case TableKind::motion:
+      if (record.history_below.empty()) return "history";
+      return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
+                                : "half_cycles";
+    case TableKind::decay:
+    case TableKind::loss_factor:
+      return record.half_cycles ? nullptr : "half_cycles";
+    case TableKind::phase:
+      return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
+                                : "half_cycles";
+    case TableKind::drawing:
+      return nullptr;
+  }
+  return nullptr;
+}
+
+void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& catalogue) {
+  const std::size_t count = figure.curves.size();
+  const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase;
+  const bool drawn_only = figure.table == TableKind::drawing;
+  if (single ? count != 1 : drawn_only ? count != 0 : count == 0) {
+    item.reject("curves", "must be " +
+                              std::string(single       ? "one curve"
+                                          : drawn_only ? "empty"
+                                                       : "at least one curve") +
+                              " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
+                              std::to_string(count));
+  }
+  if ((count > 1) != item.has("varied")) {
+    item.reject("varied", "must be given if, and only if, there are several curves, got " +
+                              std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& name = figure.curves[i].scene;
+    const CatalogueScene* scene = find_scene(catalogue, name);
+    if (!scene) {
+      if (!name.empty())
+        item.reject("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
+      continue;
+    }
+    if (const char* missing = missing_record(figure.table, scene->record)) {
+      item.reject("curves", i,
+                  "needs \"" + std::string(missing) + "\" in the scene's record, which " + name + " lacks");
+    }
+    const auto opens_window = [&](const AmplitudeWindow& window) {
+      return window.amplitude == figure.window;
+    };
+    if (figure.window && std::ranges::none_of(scene->record.history_below, opens_window)) {
+      item.reject("window", "must be the amplitude of a history window of scene " + name + ", got " +
+                                number_text(*figure.window));
+    }
+  }
+}
+
+Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
+  Figure figure;
+  if (item.required("figure", figure.number, a_number) && find_figure(catalogue, figure.number))
+    item.reject("figure", "must be given once, got the string " + in_quotes(figure.number));
+  item.required("title", figure.title, some_text);
+  item.required("script", figure.script, a_name);
+  item.optional("claims", figure.claims, a_name, 100);
+  if (!item.required("table", figure.table,
+                     {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
+                      TableKind::drawing})) {
+    item.keys();  // which others are known depends on the table
+    return figure;
+  }
+  if (item.has("varied")) {
+    figure.varied = Varied::mass_ratio;
+    item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
+  }
+  figure.curves = read_curves(item, figure.table);
+  if (figure.table == TableKind::loss_factor) {
+    figure.ordinate = LossOrdinate::eta;
+    item.required("ordinate", *figure.ordinate, ordinates);
+    if (item.has("second_ordinate"))
+      item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta), ordinates);
+    if (item.has("range") && item.optional("range", figure.range, amplitudes) &&
+        !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
+      item.reject("range", "must be two amplitudes, the lower first, got " +
+                               (figure.range.size() == 2
+                                    ? number_text(figure.range[0]) + " and " + number_text(figure.range[1])
+                                    : std::to_string(figure.range.size())));
+    }
+  }
+  if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
+  if (figure.table != TableKind::motion && figure.table != TableKind::drawing) {
+    item.required("down_to", figure.down_to.emplace(), amplitudes);
+  }
+  check_curves(item, figure, catalogue);
+  return figure;
+}
+
+Catalogue read_whole(JsonDocument document) {
+  ObjectReader root = document.root();
+  root.word("schema", {"impact-damper/catalogue/1"});
+  root.require("schema");
+
+  Catalogue catalogue;
+  for (ObjectReader item : root.required_objects("scenes", 1000)) {
+    CatalogueScene scene;
+    if (item.required("scene", scene.name, a_name) && find_scene(catalogue, scene.name))
+      item.reject("scene", "must be given once, got the string " + in_quotes(scene.name));
+    scene.record = read_record(item);
+    catalogue.scenes.push_back(scene);
+  }
+  for (ObjectReader item : root.required_objects("figures", 1000)) {
+    catalogue.figures.push_back(read_figure(item, catalogue));
+  }
+  document.finish();
+  return catalogue;
+}
+
+}  // namespace
+
+std::string_view name_of(TableKind kind) {
+  switch (kind) {
+    case TableKind::motion:
+      return "motion";
+    case TableKind::decay:
+      return "decay";
+    case TableKind::loss_factor:
+      return "loss_factor";
+    case TableKind::phase:
+      return "phase";
+    case TableKind::drawing:
+      return "drawing";
+  }
+  return "";
+}
+
+std::string_view name_of(LossOrdinate ordinate) {
+  switch (ordinate) {
+    case LossOrdinate::eta:
+      return "eta";
+    case LossOrdinate::specific:
+      return "specific";
+    case LossOrdinate::specific_secondary:
+      return "specific_secondary";
+    case LossOrdinate::amplitude_times:
+      return "amplitude_times";
+    case LossOrdinate::by_restitution:
+      return "by_restitution";
+    case LossOrdinate::carried:
+      return "carried";
+  }
+  return "";
+}
+
+std::string_view name_of(Varied varied) {
+  switch (varied) {
+    case Varied::mass_ratio:
+      return "mass_ratio";
+    case Varied::damping_ratio:
+      return "damping_ratio";
+    case Varied::restitution:
+      return "restitution";
+  }
+  return "";
+}
+
+Catalogue read_catalogue(const std::filesystem::path& file) {
+  return read_whole(JsonDocument::read(file, catalogue_kind));
+}
+Catalogue parse_catalogue(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text));
+}
+
+const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name) {
+  const auto found = std::ranges::find(catalogue.scenes, name, &CatalogueScene::name);
+  return found == catalogue.scenes.end() ? nullptr : &*found;
+}
+
+const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {
+  const auto found = std::ranges::find(catalogue.figures, number, &Figure::number);
+  return found == catalogue.figures.end() ? nullptr : &*found;
+}
+
+std::string file_stem(const Figure& figure) {
+  const bool one_digit = figure.number.size() == 1 && figure.number[0] >= '0' && figure.number[0] <= '9';
+  return (one_digit ? "fig0" : "fig") + figure.number;
+}
+
+std::vector<std::string> scenes_of(const Figure& figure) {
+  std::vector<std::string> scenes;
+  for (const FigureCurve& curve : figure.curves) {
+    if (std::ranges::find(scenes, curve.scene) == scenes.end()) scenes.push_back(curve.scene);
+  }
+  return scenes;
+}
+
+}  // namespace impact_damper

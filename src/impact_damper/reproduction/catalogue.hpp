@@ -1,0 +1,89 @@
+// The catalogue of figures: which scenes are run and what each must record, and for every figure its
+// title, its curves, its table, its script and the claims that rest on it. Kept in
+// figures/catalogue.json; the build makes its rules and the figure stage its tables from this one file.
+//
+//   {"schema": "impact-damper/catalogue/1",
+//    "scenes":  [{"scene": "nu2-e06", "record": ["half_cycles", "impacts"],
+//                 "history_below": [{"amplitude": 5.6, "length": 12.6, "count": 2001}]}],
+//    "figures": [{"figure": "8", "title": "...", "table": "loss_factor", "ordinate": "eta",
+//                 "varied": "mass_ratio", "curves": [{"scene": "nu2-e06", "half_cycles": 10}],
+//                 "down_to": 0.1, "script": "fig08.gp", "claims": ["..."]}]}
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// The kinds of table that a figure can draw.
+enum class TableKind {
+  motion,       // both walls and the secondary mass over time, in one window of the history
+  decay,        // peak amplitude over time
+  loss_factor,  // one of the ordinates of the averaged loss factor over amplitude
+  phase,        // impact phase and stuck intervals over amplitude
+  drawing,      // none: a schematic that no run stands behind
+};
+std::string_view name_of(TableKind kind);
+std::string_view name_of(LossOrdinate ordinate);
+
+// What the curves of a figure differ in, and so what their legend says.
+enum class Varied { mass_ratio, damping_ratio, restitution };
+std::string_view name_of(Varied varied);
+
+struct CatalogueScene {
+  std::string name;  // of the scene's file, without .json
+  Record record;
+};
+
+struct FigureCurve {
+  std::string scene;
+  // loss_factor tables only:
+  LossFactorOptions loss_factor;  // its window of averaging
+  std::int64_t ensemble = 0;      // perturbed initial conditions whose spread is shown; 0 for none
+};
+
+struct Figure {
+  std::string number;  // "1" ... "15", "A", "B"
+  std::string title;
+  TableKind table = TableKind::drawing;
+  std::vector<FigureCurve> curves;              // one for motion and phase, none for a drawing
+  std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
+  std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
+  std::optional<Varied> varied;                 // if there is more than one curve
+  std::optional<double> window;     // motion tables: the amplitude of one of the scene's history windows
+  std::optional<double> down_to;    // amplitude that every curve must reach, or its run is short
+  std::vector<double> range;        // loss_factor: amplitudes over which the spread is shown; empty or two
+  std::string script;               // beside the catalogue
+  std::vector<std::string> claims;  // ids in data/claims.json
+};
+
+struct Catalogue {
+  std::vector<CatalogueScene> scenes;
+  std::vector<Figure> figures;
+};
+
+// Reads a catalogue and holds it together: every scene known and recording what its
+// figures draw, every number given once. Throws IoError or InputError.
+inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
+Catalogue read_catalogue(const std::filesystem::path& file);
+Catalogue parse_catalogue(const std::string& name, const std::string& text);
+
+// The scene or figure of that name; a null pointer if there is none.
+const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);
+const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
+
+// "fig08" for figure 8, "figA" for figure A: the stem of its table and pictures.
+std::string file_stem(const Figure& figure);
+
+// The scenes of a figure, each once, in the order of its curves.
+std::vector<std::string> scenes_of(const Figure& figure);
+
+}  // namespace impact_damper

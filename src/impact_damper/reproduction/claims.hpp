@@ -1,0 +1,101 @@
+// What the paper reports, claim by claim, and the verdict on each. Kept in data/claims.json:
+//
+//   {"schema": "impact-damper/claims/1",
+//    "claims": [{"id": "failure-04", "section": "3, Effects of the coefficient of restitution",
+//                "statement": "...",            what is claimed, in our words
+//                "printed": "approximately 0.15",  as the paper prints it
+//                "kind": "approximate", "digits": ["0.15"],  how it is judged: printed.hpp
+//                "measure": {"name": "first_missed", "scenes": ["nu2-e04"]},
+//                "words": "first missed at {}", "also": {},  our result in the statement's terms: words.hpp
+//                "verdict": "not reproduced", "explanation": "...", "evidence": "..."}]}
+//
+// Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
+// "range" (either end null for none) with a "tolerance" and its "reason" take the place of kind and digits.
+// "source": "ours" marks a claim that is not the paper's but ours.
+//
+// Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
+// and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method
+// that finds contact at whole steps, with its default step; locating touch and release it has no exceptions.
+//
+// A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
+// one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as
+// "derived" has an "explanation": no engine enters its number, which confirms a derivation and measures
+// nothing.
+//
+// What the paper states and nothing here measures yet stands beside the claims, is listed with them and
+// counts as none of them:
+//
+//    "open": [{"id": "several-dampers", "section": "...", "statement": "...", "printed": "...",
+//              "explanation": "..."}]           why it is open
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/reproduction/printed.hpp"
+
+namespace impact_damper {
+
+enum class Verdict { reproduced, not_reproduced, corrected, derived };
+std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "corrected", "derived"
+
+enum class Source { paper, ours };  // whose claim it is
+std::string_view name_of(Source source);
+
+// How our value is found: a name out of measures.hpp, the scenes it looks at and its numbers.
+struct MeasureCall {
+  std::string name;
+  std::vector<std::string> scenes;
+  std::map<std::string, double> numbers;
+};
+
+struct Claim {
+  std::string id, section, statement, printed;
+  Source source = Source::paper;
+  Allowed allowed;
+  MeasureCall measure;
+  std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the words show
+  std::string words = "{}";                              // our result, a template of words.hpp
+  std::optional<Interval> corrected;
+  Verdict recorded = Verdict::reproduced;
+  std::string explanation, evidence;
+  struct Otherwise {
+    Verdict recorded = Verdict::reproduced;
+    std::string explanation;
+  };
+  std::map<std::string, Otherwise, std::less<>> with_engine;  // by the engine's name
+};
+
+// A statement of the paper that has no measure yet, and so no verdict.
+struct OpenStatement {
+  std::string id, section, statement, printed, explanation;
+};
+
+struct ClaimsFile {
+  std::vector<Claim> claims;
+  std::vector<OpenStatement> open;
+};
+
+// The verdict recorded for runs of that engine.
+Verdict recorded_for(const Claim& claim, std::string_view engine);
+
+// Throws IoError if the file cannot be read, InputError naming everything that is not valid: unknown
+// measures and measure parameters and duplicate ids among it.
+inline constexpr FileKind claims_kind{"claims file", 1 << 22};
+ClaimsFile read_claims_file(const std::filesystem::path& file);
+ClaimsFile parse_claims_file(const std::string& name, const std::string& text);
+// The claims alone.
+std::vector<Claim> read_claims(const std::filesystem::path& file);
+std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
+
+// The verdict that `ours`, the median of an ensemble, gives: if it lies in the allowed interval widened by
+// the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
+// lies in the corrected interval; else not reproduced. NaN never agrees.
+Verdict judge(const Claim& claim, double ours);
+
+}  // namespace impact_damper

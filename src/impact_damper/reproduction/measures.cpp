@@ -1,0 +1,116 @@
+#include "impact_damper/reproduction/measures.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+void multiply_entry(double& entry, double factor) { entry *= factor; }
+void multiply_entry(std::optional<double>& entry, double factor) {
+  if (entry) *entry *= factor;
+}
+
+// One column of one section.
+template <auto section, auto column>
+void multiply(Run& run, double factor) {
+  if (!(run.*section)) return;
+  for (auto& entry : (*(run.*section)).*column) multiply_entry(entry, factor);
+}
+
+}  // namespace
+
+const Run& Runs::file(const std::string& scene) {
+  auto found = ensembles_.find(scene);
+  if (found == ensembles_.end()) {
+    found = ensembles_.emplace(scene, std::vector<Run>{}).first;
+    found->second.push_back(as_recorded(read_run(folder_ / (scene + ".json"))));
+  }
+  return found->second.front();
+}
+
+const std::vector<Run>& Runs::ensemble(const std::string& scene) {
+  const Run& first = file(scene);
+  std::vector<Run>& runs = ensembles_.at(scene);
+  if (runs.size() == 1 && options_.members > 1) {
+    Record record;
+    record.impacts = record.contacts = true;
+    std::vector<Scene> members = ensemble_of(first.scene, options_);
+    members.erase(members.begin());
+    std::vector<Run> others = simulate_scenes(members, first.engine, record, options_.threads);
+    for (Run& other : others) runs.push_back(as_recorded(std::move(other)));
+  }
+  return runs;
+}
+
+void Runs::put(const std::string& scene, Run run) {
+  std::vector<Run>& runs = ensembles_[scene];
+  runs.clear();
+  runs.push_back(as_recorded(std::move(run)));
+}
+
+Run Runs::simulated(const Scene& scene, const Engine& engine, const Record& record) const {
+  return as_recorded(simulate(scene, engine, record));
+}
+
+std::vector<Run> Runs::simulated_ensemble(const Scene& scene, const Engine& engine,
+                                          const Record& record) const {
+  std::vector<Run> runs = simulate_ensemble(scene, engine, record, options_);
+  for (Run& run : runs) run = as_recorded(std::move(run));
+  return runs;
+}
+
+Run Runs::as_recorded(Run run) const {
+  if (wrong_) wrong_->column.multiply(run, wrong_->factor);
+  return run;
+}
+
+std::string Runs::engine() const {
+  std::set<std::string> names;
+  for (const auto& [scene, runs] : ensembles_) {
+    if (runs.empty()) continue;
+    const Cem* const cem = std::get_if<Cem>(&runs.front().engine);
+    names.insert(std::string(name_of(runs.front().engine)) + (cem && cem->locate ? " --locate" : ""));
+  }
+  return names.size() == 1 ? *names.begin() : std::string();
+}
+
+const std::vector<RecordedColumn>& recorded_columns() {
+  static const std::vector<RecordedColumn> table{
+      {"half_cycles.zero_crossing", multiply<&Run::half_cycles, &HalfCycles::zero_crossing>},
+      {"half_cycles.peak_time", multiply<&Run::half_cycles, &HalfCycles::peak_time>},
+      {"half_cycles.amplitude", multiply<&Run::half_cycles, &HalfCycles::amplitude>},
+      {"impacts.time", multiply<&Run::impacts, &Impacts::time>},
+      {"impacts.relative_velocity", multiply<&Run::impacts, &Impacts::relative_velocity>},
+      {"impacts.phase_deg", multiply<&Run::impacts, &Impacts::phase_deg>},
+      {"impacts.amplitude", multiply<&Run::impacts, &Impacts::amplitude>},
+      {"impacts.displacement", multiply<&Run::impacts, &Impacts::displacement>},
+      {"contacts.begin", multiply<&Run::contacts, &Contacts::begin>},
+      {"contacts.end", multiply<&Run::contacts, &Contacts::end>},
+  };
+  return table;
+}
+
+const std::vector<Measure>& measures() {
+  static const std::vector<Measure> table = [] {
+    std::vector<Measure> all;
+    for (auto part :
+         {loss_measures(), regime_measures(), model_measures(), audit_measures(), stuck_measures()})
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end(), [](const Measure& a, const Measure& b) { return a.name < b.name; });
+    return all;
+  }();
+  return table;
+}
+
+Spread measure(Runs& runs, const MeasureCall& call) {
+  for (const Measure& each : measures())
+    if (each.name == call.name) return each.find(runs, call);
+  throw std::invalid_argument("measure: unknown name " + call.name);
+}
+
+}  // namespace impact_damper

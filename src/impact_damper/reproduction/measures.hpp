@@ -1,0 +1,120 @@
+// Our side of the claims: a table of names, each a function that finds one number, from runs and, where a
+// claim compares what no run file holds, from simulations of its own.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/reproduction/claims.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// The numbers of the analysis that are the same for all claims.
+struct AnalysisOptions {
+  LossFactorOptions loss;               // the averaged loss factor
+  LossFactorOptions smoother_loss{18};  // the smoother one that measures of the smoothing compare it with
+  // Bins of the amplitude, equal in its logarithm, in which curves are compared: wide enough to hold several
+  // half cycles of every run, narrow enough to see the structure of the curve.
+  int bins = 12;
+  RegimeOptions regimes;
+};
+
+// A column of numbers that runs record.
+struct RecordedColumn {
+  std::string_view name;                  // its key in a run file, "half_cycles.amplitude"
+  void (*multiply)(Run&, double factor);  // every entry; nothing where the run did not record it
+};
+const std::vector<RecordedColumn>& recorded_columns();
+
+// A column that is multiplied by a factor in every run, whoever made it, before it is looked at: power.hpp
+// asks which verdicts that turns.
+struct WrongColumn {
+  RecordedColumn column;
+  double factor = 1;
+};
+
+// The runs that measures look at: a folder of run files, SCENE.json each. Every scene of it is read once,
+// and run again as an ensemble, with the file's scene and engine, once somebody asks.
+class Runs {
+ public:
+  explicit Runs(std::filesystem::path folder, EnsembleOptions options = {}, AnalysisOptions analysis = {},
+                std::optional<WrongColumn> wrong = std::nullopt)
+      : folder_(std::move(folder)), options_(options), analysis_(analysis), wrong_(wrong) {}
+
+  // The run file; throws IoError or InputError.
+  const Run& file(const std::string& scene);
+  // From now on this run stands for the scene's file.
+  void put(const std::string& scene, Run run);
+  // The run file, then the other members, which record half cycles, impacts and contacts.
+  const std::vector<Run>& ensemble(const std::string& scene);
+  // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if
+  // none was or if they are of several.
+  std::string engine() const;
+  const AnalysisOptions& analysis() const { return analysis_; }
+
+  // What a measure simulates itself: one run, or the ensemble of a scene that has no file.
+  Run simulated(const Scene& scene, const Engine& engine, const Record& record) const;
+  std::vector<Run> simulated_ensemble(const Scene& scene, const Engine& engine, const Record& record) const;
+
+ private:
+  Run as_recorded(Run run) const;
+
+  std::filesystem::path folder_;
+  EnsembleOptions options_;
+  AnalysisOptions analysis_;
+  std::optional<WrongColumn> wrong_;
+  std::map<std::string, std::vector<Run>> ensembles_;  // of one member while only the file was asked for
+};
+
+// A measure finds its number in each member of an ensemble; one that no chaos enters finds it once.
+// NaN where there is nothing to find: it agrees with no claim.
+struct Measure {
+  std::string_view name;
+  std::size_t least_scenes, most_scenes;
+  std::vector<std::string_view> numbers;  // its parameters, all to be given
+  Spread (*find)(Runs& runs, const MeasureCall& call);
+  std::string_view meaning;
+};
+const std::vector<Measure>& measures();  // in the order of names
+
+// Throws what reading runs and simulating throw; std::invalid_argument if a run lacks a column.
+Spread measure(Runs& runs, const MeasureCall& call);
+
+// The parts of the table, by subject: measures_*.cpp.
+std::vector<Measure> loss_measures();    // loss factor curves
+std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
+std::vector<Measure> model_measures();   // engine against engine, wall and time step
+std::vector<Measure> audit_measures();   // the paper's slips
+std::vector<Measure> stuck_measures();   // the paper's stuck regime
+
+// For each member of the one scene of `call`, or for the members of all of them side by side.
+template <class Find>
+Spread over_members(Runs& runs, const MeasureCall& call, Find find) {
+  std::vector<double> values;
+  for (const Run& run : runs.ensemble(call.scenes.front())) values.push_back(find(run));
+  return spread_of(values);
+}
+template <class Find>
+Spread over_groups(Runs& runs, const MeasureCall& call, Find find) {
+  std::vector<double> values;
+  for (std::size_t member = 0;; ++member) {
+    std::vector<const Run*> group;
+    for (const std::string& scene : call.scenes) {
+      const std::vector<Run>& runs_of_scene = runs.ensemble(scene);
+      if (member < runs_of_scene.size()) group.push_back(&runs_of_scene[member]);
+    }
+    if (group.size() < call.scenes.size()) return spread_of(values);
+    values.push_back(find(group));
+  }
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,316 @@
+// Measures that hold one model against another: engines, releases, walls, time steps.
+#include <algorithm>
+#include <cmath>
+
+#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/measures_parts.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+Spread once(double value) { return {value, value, value}; }
+
+// When the first half cycle below `amplitude` has its peak. NaN if none does.
+double time_below(const Run& run, double amplitude) {
+  const auto row = first_row_below(half_cycles_of(run), amplitude);
+  return row ? run.half_cycles->peak_time[*row] : std::nan("");
+}
+
+std::vector<Run> again(const Runs& runs, const Scene& scene, const Engine& engine) {
+  return runs.simulated_ensemble(scene, engine, Record{});
+}
+
+// How far apart the curves of A eta_s / nu of two ensembles lie over [from, to], in percent, release by
+// release.
+Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs,
+                    const AnalysisOptions& analysis, double from, double to) {
+  const auto curve = [&](const Run& run) {
+    return loss_curve(run, LossOrdinate::amplitude_times, analysis.loss, from, to);
+  };
+  std::vector<double> values;
+  values.reserve(ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    values.push_back(spread_percent({curve(ours[i]), curve(theirs[i])}, from, to, analysis.bins));
+  return spread_of(values);
+}
+
+Spread models_difference(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
+}
+
+Spread time_saved(Runs& runs, const MeasureCall& call) {
+  const double amplitude = number(call, "amplitude");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  std::vector<double> theirs;
+  for (const Run& run : again(runs, ours.front().scene, Restitution{}))
+    theirs.push_back(time_below(run, amplitude));
+  const double reference = spread_of(theirs).median;
+  std::vector<double> values;
+  values.reserve(ours.size());
+  for (const Run& run : ours) values.push_back(100 * (1 - time_below(run, amplitude) / reference));
+  return spread_of(values);
+}
+
+Spread later_release(Runs& runs, const MeasureCall& call) {
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  Scene higher = ours.front().scene;
+  higher.x0 = number(call, "x0");
+  higher.until_time.reset();
+  higher.until_amplitude = number(call, "amplitude") / 2;
+  const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
+  std::vector<double> values;
+  values.reserve(ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    values.push_back(time_below(theirs[i], number(call, "amplitude")) /
+                     time_below(ours[i], number(call, "amplitude")));
+  return spread_of(values);
+}
+
+Spread later_release_difference(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  Scene higher = ours.front().scene;
+  higher.x0 = number(call, "x0");
+  higher.until_time.reset();
+  higher.until_amplitude = from / 2;
+  const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
+}
+
+// Share of the half cycles with an amplitude in [from, to] that belong to no regular window.
+double mixed_share(const Run& run, const RegimeOptions& regimes, double from, double to) {
+  const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
+  const std::vector<RegularWindow> windows = regular_windows(run, regimes);
+  double rows = 0, mixed = 0;
+  for (std::size_t row = 1; row < amplitude.size(); ++row) {
+    if (!(amplitude[row] >= from && amplitude[row] <= to)) continue;
+    ++rows;
+    mixed += std::ranges::none_of(
+        windows, [row](const RegularWindow& window) { return window.first <= row && row <= window.last; });
+  }
+  return mixed / rows;
+}
+
+Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  std::vector<double> values;
+  values.reserve(ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    values.push_back(mixed_share(ours[i], runs.analysis().regimes, from, to) /
+                     mixed_share(theirs[i], runs.analysis().regimes, from, to));
+  return spread_of(values);
+}
+
+Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
+  const double from = number(call, "from"), to = number(call, "to");
+  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
+  Scene other = ours.front().scene;
+  other.wall_stiffness = number(call, "stiffness");
+  const std::vector<Run> theirs = again(runs, other, ours.front().engine);
+  return curves_apart(ours, theirs, runs.analysis(), from, to);
+}
+
+Spread zeta_error(Runs&, const MeasureCall& call) {
+  return once(zeta_m_iterative(number(call, "restitution")).velocity_error);
+}
+Spread zeta_steps(Runs&, const MeasureCall& call) {
+  return once(zeta_m_iterative(number(call, "restitution")).steps);
+}
+Spread zeta_difference(Runs&, const MeasureCall& call) {
+  const double e = number(call, "restitution");
+  return once(std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e)));
+}
+
+// Both masses at rest but for the secondary's unit velocity towards the left wall, half the travel away.
+Scene single_impact_scene(const MeasureCall& call) {
+  Scene scene;
+  scene.x0 = 0;
+  scene.y0 = 0.5;
+  scene.w0 = -1;
+  scene.mass_ratio = number(call, "mass_ratio");
+  scene.restitution = number(call, "restitution");
+  scene.until_time = 1;
+  return scene;
+}
+
+Spread wall_restitution(Runs& runs, const MeasureCall& call) {
+  Scene scene = single_impact_scene(call);
+  Record record;
+  record.contacts = true;
+  const Run contact = runs.simulated(scene, Exact{}, record);
+  if (contact.contacts->end.empty()) return once(std::nan(""));
+  const double end = contact.contacts->end.front();
+  record.history = {{end, end + 1e-9, 2}};
+  return once(runs.simulated(scene, Exact{}, record).history->w.back());
+}
+
+Spread contact_frequency(Runs& runs, const MeasureCall& call) {
+  const Scene scene = single_impact_scene(call);
+  Record record;
+  record.contacts = true;
+  const Contacts contacts = *runs.simulated(scene, Exact{}, record).contacts;
+  if (contacts.end.empty()) return once(std::nan(""));
+  const double duration = contacts.end.front() - contacts.begin.front();
+  return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
+}
+
+// Run once more by its own engine, the wall sampled finely through the contact that its fastest impact
+// begins.
+Spread wall_overlap(Runs& runs, const MeasureCall& call) {
+  return over_members(runs, call, [&](const Run& run) {
+    if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
+    const std::vector<double>& speed = run.impacts->relative_velocity;
+    if (speed.empty()) return std::nan("");
+    const auto fastest = std::ranges::max_element(
+        speed, [](double one, double other) { return std::abs(one) < std::abs(other); });
+    const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
+    Scene scene = run.scene;
+    scene.until_amplitude.reset();
+    scene.until_time = begin + nominal_contact_time(scene);
+    Record record;
+    record.history = {{begin, *scene.until_time, 201}};
+    const Run again = runs.simulated(scene, run.engine, record);
+    double overlap = 0;
+    for (const double y : again.history->y) overlap = std::max({overlap, -y, y - 1});
+    return overlap;
+  });
+}
+
+// Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary
+// mass that swings by a hundredth of the travel, its secondary mass out of reach.
+bool is_stable(const Runs& runs, double h) {
+  Scene scene;
+  scene.x0 = 0.01;
+  scene.y0 = 0.5;
+  scene.until_time = 10000 * h;
+  Cem cem;
+  cem.time_step = h;
+  cem.unstable = true;
+  try {
+    const std::vector<double> amplitude = runs.simulated(scene, cem, Record{}).half_cycles->amplitude;
+    return std::ranges::none_of(amplitude, [&](double a) { return !(a < 10 * scene.x0); });
+  } catch (const NumericalError&) {
+    return false;  // beyond the largest number
+  }
+}
+
+// Largest step that stays bounded, by bisection. The highest mode is the primary mass's, of frequency 1.
+Spread step_limit(Runs& runs, const MeasureCall&) {
+  double low = 0.5, high = 8;
+  while (high - low > 1e-6) {
+    const double h = (low + high) / 2;
+    (is_stable(runs, h) ? low : high) = h;
+  }
+  return once(low);
+}
+
+// By how much a step smaller by `factor` makes the component element method better: error of the half
+// cycles' amplitudes against the exact engine, up to t = 30, before chaos can set in.
+Spread step_refinement(Runs& runs, const MeasureCall& call) {
+  Scene scene = runs.file(call.scenes.front()).scene;
+  scene.until_time = 30;
+  scene.until_amplitude.reset();
+  const Run exact = runs.simulated(scene, Exact{}, Record{});
+  const auto error = [&](double step) {
+    Cem cem;
+    cem.time_step = step;
+    const Run run = runs.simulated(scene, cem, Record{});
+    double sum = 0;
+    const std::size_t rows = std::min(run.half_cycles->amplitude.size(), exact.half_cycles->amplitude.size());
+    for (std::size_t row = 0; row < rows; ++row)
+      sum += std::abs(run.half_cycles->amplitude[row] - exact.half_cycles->amplitude[row]);
+    return sum;
+  };
+  const double coarse = nominal_contact_time(scene) / number(call, "steps_per_contact");
+  return once(error(coarse) / error(coarse / number(call, "factor")));
+}
+
+}  // namespace
+
+std::vector<Measure> model_measures() {
+  return {
+      {"models_difference_percent",
+       1,
+       1,
+       {"from", "to"},
+       models_difference,
+       "spread of A eta_s / nu between the scene's engine and the restitution engine, in percent"},
+      {"mixed_share_ratio",
+       1,
+       1,
+       {"from", "to"},
+       mixed_share_ratio,
+       "share of the half cycles that belong to no regular window, divided by that of the restitution "
+       "engine"},
+      {"time_saved_percent",
+       1,
+       1,
+       {"amplitude"},
+       time_saved,
+       "by how much the scene's engine reaches an amplitude before the restitution engine, in percent of the "
+       "time"},
+      {"later_release_ratio",
+       1,
+       1,
+       {"x0", "amplitude"},
+       later_release,
+       "time from x0 down to an amplitude, by that from the scene's own release"},
+      {"later_release_difference_percent",
+       1,
+       1,
+       {"x0", "from", "to"},
+       later_release_difference,
+       "spread of A eta_s / nu between the two releases, in percent"},
+      {"stiffness_effect_percent",
+       1,
+       1,
+       {"stiffness", "from", "to"},
+       stiffness_effect,
+       "spread of A eta_s / nu between the scene's wall stiffness and another, in percent"},
+      {"zeta_error", 0, 0, {"restitution"}, zeta_error, "velocity error of the iterative zeta_m"},
+      {"zeta_steps", 0, 0, {"restitution"}, zeta_steps, "steps of the iterative zeta_m through one impact"},
+      {"zeta_difference",
+       0,
+       0,
+       {"restitution"},
+       zeta_difference,
+       "iterative zeta_m less the closed form, absolute"},
+      {"wall_restitution",
+       0,
+       0,
+       {"mass_ratio", "restitution"},
+       wall_restitution,
+       "relative speed after one impact of the exact engine, by that before"},
+      {"contact_frequency",
+       0,
+       0,
+       {"mass_ratio", "restitution"},
+       contact_frequency,
+       "frequency of one contact of the exact engine, by the root of k"},
+      {"wall_overlap", 1, 1, {}, wall_overlap, "largest deformation of the wall, in units of the clearance"},
+      {"step_limit",
+       0,
+       0,
+       {},
+       step_limit,
+       "largest omega h at which the component element method stays bounded, undamped, by trial"},
+      {"step_refinement",
+       1,
+       1,
+       {"steps_per_contact", "factor"},
+       step_refinement,
+       "error of the component element method by its error with a smaller step"},
+  };
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,56 @@
+// What the measures_*.cpp share.
+#pragma once
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/reproduction/claims.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+inline constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+struct Curve {
+  std::vector<double> x, y;
+};
+
+// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The
+// first point is left out: row 0, which ran from the release and is less than a half cycle, is among the
+// peaks it is fitted to.
+Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
+                 double to = everywhere);
+
+// Slope of ln y against ln x by least squares.
+double log_slope(const Curve& curve);
+
+// The mean ordinate of each curve, for each of the bins that all of them reach.
+std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
+                                           int bins);
+// How far curves lie apart at equal x: the largest minus the least of their bin means divided by the mean of
+// these, in percent, for each of the bins that all of them reach. The bins are equal in ln x on [from, to].
+inline constexpr int default_bins = AnalysisOptions{}.bins;
+std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to,
+                                        int bins = default_bins);
+// Their mean, and the largest of them. NaN if there is none.
+double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins = default_bins);
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
+                            int bins = default_bins);
+
+inline const HalfCycles& half_cycles_of(const Run& run) {
+  if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");
+  return *run.half_cycles;
+}
+
+inline double number(const MeasureCall& call, const std::string& name) {
+  const auto found = call.numbers.find(name);
+  if (found == call.numbers.end())
+    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
+  return found->second;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,41 @@
+// The figure stage: from the runs of a figure's scenes to the table the figure draws. Everything that is
+// computed for a figure is computed here; its script only draws.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
+#include "impact_damper/reproduction/table.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+struct FigureRun {
+  std::filesystem::path file;  // where it was read from, for messages
+  Run run;
+};
+using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
+
+// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes. Blocks by kind:
+//
+//   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
+//                that its line meets the wall however few the samples; "stuck" if the mass sticks
+//   decay        "curve-1" ... in the order of the figure's curves (time, amplitude); with Figure::down_to
+//                "law" (mass ratio, average of -dA/dt / nu down to there), "line" (nu t, amplitude)
+//   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1"
+//                ...; "band-1" ... (amplitude, least, greatest) for curves with an ensemble, which is
+//                simulated here with the run's own scene and engine; "second-1" ... in the second ordinate,
+//                if there is one; "spread" over Figure::range, without each curve's first point; closed
+//                forms, for the curves that have them, "one-impact-1" ..., "bounce-down-1" ...
+//   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ...
+//                "bounce-4", "accumulation"
+//
+// Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
+// history, enough half cycles, the amplitude Figure::down_to; or if a drawn value is not finite.
+// `threads` simulate the ensembles; the table does not depend on them.
+Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& threads = {});
+
+}  // namespace impact_damper

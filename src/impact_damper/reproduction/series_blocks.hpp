@@ -1,0 +1,35 @@
+// The blocks of the figures' tables, by kind; parts of series.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/reproduction/series.hpp"
+
+namespace impact_damper {
+
+// What is said when a figure cannot be made from a file: "figure 8: FILE: why".
+InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why);
+
+// The run's half cycles, at least one, reaching down to Figure::down_to.
+const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source);
+
+void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table);
+// The same for the samples [first, last] of any run's history, as far as there is something to show:
+// "motion", and "impacts" and "stuck" if there are any. Needs impacts and contacts.
+void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table& table);
+void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
+                    const std::string& number, const std::string& legend, const Threads& threads,
+                    Table& table);
+// The extremes over `run` and others like it, where all of them have a value: an empty block if they never
+// do.
+void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
+                    const std::vector<Run>& others, const std::string& number, Table& table);
+void add_spread_block(const Figure& figure, Table& table);
+void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table);
+void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table);
+// The same for any run, as far as there is something to show. Needs half cycles, impacts and contacts.
+void add_phase_parts(const Run& run, Table& table);
+
+}  // namespace impact_damper

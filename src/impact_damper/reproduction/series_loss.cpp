@@ -1,0 +1,255 @@
+// Figures 8-14: the averaged loss factor over amplitude, and the closed forms it is held against.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/series_blocks.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+std::string meaning(LossOrdinate which) {
+  switch (which) {
+    case LossOrdinate::eta:
+      return "eta = -2 A'/A, per radian";
+    case LossOrdinate::specific:
+      return "eta / nu";
+    case LossOrdinate::specific_secondary:
+      return "(eta - 2 zeta) / nu";
+    case LossOrdinate::amplitude_times:
+      return "A (eta - 2 zeta) / nu, A by epsilon";
+    case LossOrdinate::by_restitution:
+      return "A (eta - 2 zeta) / (nu (1 - e)), A by epsilon";
+    case LossOrdinate::carried:
+      return "A (eta - 2 zeta / (1 + nu)) / nu, A by epsilon";
+  }
+  return "";
+}
+
+// i-th of last + 1 amplitudes, equally spaced in the logarithm, both ends included.
+double amplitude_at(int i, int last, double from, double to) {
+  if (i == 0) return from;
+  if (i == last) return to;
+  return from * exponential(logarithm(to / from) * i / last);
+}
+
+// Amplitudes along a closed form, no further apart than a factor of exp(spacing).
+std::vector<double> theory_amplitudes(double from, double to, double spacing) {
+  const int last = static_cast<int>(std::ceil(logarithm(to / from) / spacing));
+  std::vector<double> amplitudes;
+  for (int i = 0; i <= last; ++i) amplitudes.push_back(amplitude_at(i, last, from, to));
+  return amplitudes;
+}
+
+// How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
+std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
+  const std::optional<double> amplitude = impact_failure(run).first_missed;
+  if (!amplitude) return loss.eta.size();
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  const auto failure = static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+  const double last =
+      run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
+  const auto behind = std::ranges::lower_bound(loss.time, last);
+  return std::min(loss.eta.size(),
+                  std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin())));
+}
+
+// The averaged loss factor of one run and what is drawn of it.
+struct LossCurve {
+  LossFactor loss;
+  std::vector<double> values;  // the figure's ordinate
+  std::size_t kept;            // rows before impact failure
+
+  LossCurve(const Figure& figure, const FigureCurve& curve, const Run& run)
+      : loss(averaged_loss_factor(*run.half_cycles, curve.loss_factor)),
+        values(ordinate(loss, run.scene, *figure.ordinate)),
+        kept(before_failure(run, loss, curve.loss_factor.half_cycles)) {}
+};
+
+// The closed forms for zeta = 0, with eta / nu for eta. They depend on no more than the restitution and how
+// far up they are drawn, so one serves all curves that differ in something else.
+struct ClosedForms {
+  double restitution, largest;
+  LossFactor one_impact, bounce_down;
+
+  ClosedForms(double e, double most) : restitution(e), largest(most) {
+    // It leaves the fold steeply; bounce-down bends so little that its chords are within 1e-4 of it.
+    for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e), 0.01)) {
+      const auto motion = single_impact(e, amplitude);
+      if (!motion) continue;  // the fold itself, by rounding
+      one_impact.amplitude.push_back(amplitude);
+      one_impact.eta.push_back(motion->loss);
+    }
+    // Below 1/pi the far wall is not met before x returns to 0.
+    if (e > 0.95 || !(largest > 1 / std::numbers::pi) || !impact_damper::bounce_down(e, largest).sticks)
+      return;
+    bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest, 0.04);
+    for (const double amplitude : bounce_down.amplitude)
+      bounce_down.eta.push_back(impact_damper::bounce_down(e, amplitude).loss);
+  }
+};
+
+TableBlock theory_block(const std::string& name, const std::string& legend, LossFactor form,
+                        const Scene& scene, LossOrdinate which) {
+  for (double& eta : form.eta) eta *= scene.mass_ratio;
+  return {.name = name,
+          .notes = {"closed form for nu -> 0, zeta = 0"},
+          .columns = {{"amplitude", "peak amplitude A, by epsilon", form.amplitude},
+                      {legend, meaning(which), ordinate(form, scene, which)}}};
+}
+
+double largest_amplitude(const Run& run) { return std::ranges::max(run.half_cycles->amplitude); }
+
+// The run's own scene and engine, with perturbed initial conditions.
+std::vector<Run> neighbours(const FigureCurve& curve, const Run& run, const Threads& threads) {
+  EnsembleOptions options;
+  options.members = curve.ensemble;
+  std::vector<Scene> scenes = ensemble_of(run.scene, options);
+  scenes.erase(scenes.begin());
+  return simulate_scenes(scenes, run.engine, Record{}, threads);
+}
+
+}  // namespace
+
+void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
+                    const std::vector<Run>& others, const std::string& number, Table& table) {
+  std::vector<LossCurve> members{LossCurve(figure, curve, run)};
+  for (const Run& other : others) members.emplace_back(figure, curve, other);
+  const LossCurve& own = members.front();
+  const std::string count = std::to_string(members.size());
+  const EnsembleOptions options;
+  TableBlock block{
+      .name = "band-" + number,
+      .notes = {count + " releases of scene " + curve.scene + ", x0 shifted by up to " +
+                std::to_string(options.most_steps) + " times " + number_text(options.step) + " of it"},
+      .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+                  {"least", "ordinate of the ensemble", {}, Ordinate::low},
+                  {count + " releases", "greatest ordinate", {}, Ordinate::high}}};
+  const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
+  const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
+  // From the largest amplitude down: each member is then walked through once, its row being the first that
+  // lies below the amplitude.
+  constexpr int last = 240;
+  std::vector<std::size_t> row(members.size(), 0);
+  std::vector<double> values(members.size());
+  for (int k = last; k >= 0; --k) {
+    const double amplitude = amplitude_at(k, last, least, largest_amplitude(run));
+    bool all = true;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      const auto& [loss, ordinates, kept] = members[n];
+      std::size_t& i = row[n];
+      while (i < kept && !(loss.amplitude[i] < amplitude)) ++i;
+      if (i == 0 || i == kept) {
+        all = false;
+        continue;
+      }
+      const double part = (loss.amplitude[i - 1] - amplitude) / (loss.amplitude[i - 1] - loss.amplitude[i]);
+      values[n] = ordinates[i - 1] + part * (ordinates[i] - ordinates[i - 1]);
+    }
+    if (!all) continue;
+    const Spread spread = spread_of(values);
+    block.columns[0].values.push_back(amplitude);
+    block.columns[1].values.push_back(spread.low);
+    block.columns[2].values.push_back(spread.high);
+  }
+  for (TableColumn& column : block.columns) std::ranges::reverse(column.values);
+  table.blocks.push_back(std::move(block));
+}
+
+void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
+                    const std::string& number, const std::string& legend, const Threads& threads,
+                    Table& table) {
+  const HalfCycles& rows = half_cycles_of(figure, source);
+  const int span = curve.loss_factor.half_cycles;
+  const LossCurve own(figure, curve, source.run);
+  const auto& [loss, values, kept] = own;
+  if (loss.eta.size() < 2) {
+    throw unusable(figure, source.file,
+                   "is too short: " + std::to_string(rows.amplitude.size()) +
+                       " half cycles, the averaging needs at least " + std::to_string(span + 2));
+  }
+  const auto part = [&](const std::vector<double>& column, std::size_t from, std::size_t to) {
+    return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
+                               column.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const auto block = [&, &loss = loss, &values = values](const std::string& block_name,
+                                                         const std::string& note, std::size_t from,
+                                                         std::size_t to) {
+    table.blocks.push_back(
+        {.name = block_name,
+         .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" +
+                   note},
+         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, from, to)},
+                     {legend, meaning(*figure.ordinate), part(values, from, to)}}});
+  };
+  block("curve-" + number, "", 0, kept);
+  if (kept < values.size())
+    block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
+  if (figure.second_ordinate) {
+    table.blocks.push_back(
+        {.name = "second-" + number,
+         .notes = {"scene " + curve.scene + ", the same curve in the second panel's ordinate"},
+         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, 0, kept)},
+                     {legend, meaning(*figure.second_ordinate),
+                      part(ordinate(loss, source.run.scene, *figure.second_ordinate), 0, kept)}}});
+  }
+  if (curve.ensemble > 0)
+    add_band_block(figure, curve, source.run, neighbours(curve, source.run, threads), number, table);
+}
+
+void add_spread_block(const Figure& figure, Table& table) {
+  double least = std::numeric_limits<double>::max(), most = std::numeric_limits<double>::lowest();
+  for (const TableBlock& block : table.blocks) {
+    if (!block.name.starts_with("curve-")) continue;
+    // But for the first point: among the peaks that it is fitted to is the release.
+    for (std::size_t i = 1; i < block.columns[0].values.size(); ++i) {
+      const double amplitude = block.columns[0].values[i], value = block.columns[1].values[i];
+      if (amplitude < figure.range[0] || amplitude > figure.range[1]) continue;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  }
+  if (!(least <= most)) return;
+  const double middle = (least + most) / 2;
+  const double percent = 100 * (most - middle) / middle;
+  const std::string legend =
+      number_text(std::round(middle * 1e3) / 1e3) + " ± " + number_text(std::round(percent)) + " %";
+  table.blocks.push_back({.name = "spread",
+                          .notes = {"middle, least and greatest ordinate of all curves over the amplitudes "
+                                    "of its two rows, but for each "
+                                    "curve's first point, which the release enters"},
+                          .columns = {{"amplitude", "by epsilon", figure.range},
+                                      {"least", "of all curves", {least, least}, Ordinate::low},
+                                      {"most", "of all curves", {most, most}, Ordinate::high},
+                                      {legend, "half way between least and most", {middle, middle}}}});
+}
+
+void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,
+                            Table& table) {
+  std::optional<ClosedForms> forms;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Scene& scene = sources[i]->run.scene;
+    // The closed forms are for zeta = 0 and for a rebound; below e = 1 only.
+    if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
+    const double largest = largest_amplitude(sources[i]->run);
+    if (!forms || forms->restitution != scene.restitution || forms->largest != largest)
+      forms.emplace(scene.restitution, largest);
+    const auto add = [&](const std::string& name, const std::string& legend, const LossFactor& form) {
+      table.blocks.push_back(
+          theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));
+    };
+    add("one-impact", "one impact per half cycle", forms->one_impact);
+    if (!forms->bounce_down.eta.empty()) add("bounce-down", "bounce-down", forms->bounce_down);
+  }
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,102 @@
+#include "impact_damper/reproduction/words.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
+
+namespace impact_damper {
+namespace {
+
+struct Field {
+  std::string name, form;
+  std::size_t end;  // behind the closing brace
+};
+
+// The field that opens at `open`. Throws std::invalid_argument if it does not close.
+Field field_at(std::string_view words, std::size_t open) {
+  const std::size_t close = words.find('}', open);
+  if (close == std::string_view::npos) throw std::invalid_argument("has a { without }");
+  const std::string_view inner = words.substr(open + 1, close - open - 1);
+  const std::size_t bar = inner.find('|');
+  return {std::string(inner.substr(0, bar)),
+          bar == std::string_view::npos ? std::string() : std::string(inner.substr(bar + 1)), close + 1};
+}
+
+// The N of "of N"; absent for another form.
+std::optional<std::int64_t> count_of(const std::string& form) {
+  if (!form.starts_with("of ")) return std::nullopt;
+  const auto count = parse_integer(std::string_view(form).substr(3));
+  return count && *count > 0 ? count : std::nullopt;
+}
+
+std::string bracketed(const std::string& median, const std::string& low, const std::string& high,
+                      const std::string& unit) {
+  if (low == median && high == median) return median + unit;
+  return median + unit + " (" + low + " to " + high + unit + ")";
+}
+
+std::string with_digits(const Spread& spread, double factor, int digits, const std::string& unit) {
+  if (!std::isfinite(spread.median)) return "none";
+  const auto text = [&](double value) {
+    return std::isfinite(value) ? rounded_text(factor * value + 0.0, digits) : std::string("none");  // no -0
+  };
+  return bracketed(text(spread.median), text(spread.low), text(spread.high), unit);
+}
+
+// A whole number: each of the three rounded to it.
+std::string counted(const Spread& spread, std::optional<std::int64_t> of) {
+  if (!std::isfinite(spread.median)) return "none";
+  const auto text = [&](double value) {
+    const auto whole = static_cast<std::int64_t>(std::llround(of ? value * static_cast<double>(*of) : value));
+    if (!of) return whole == 0 ? std::string("no") : std::to_string(whole);
+    if (whole == *of) return "all " + std::to_string(whole);
+    return (whole == 0 ? "none" : std::to_string(whole)) + " of " + std::to_string(*of);
+  };
+  return bracketed(text(spread.median), text(spread.low), text(spread.high), "");
+}
+
+std::string field_text(const Field& field, const Spread& spread) {
+  if (field.form == "%") return with_digits(spread, 100, 3, " %");
+  if (field.form == "count") return counted(spread, std::nullopt);
+  if (const auto count = count_of(field.form)) return counted(spread, count);
+  return spread_text(spread);
+}
+
+}  // namespace
+
+std::string spread_text(const Spread& spread) { return with_digits(spread, 1, 4, ""); }
+
+std::optional<std::string> problem_of_words(std::string_view words,
+                                            const std::set<std::string, std::less<>>& names) {
+  bool has_field = false;
+  for (std::size_t open = words.find('{'); open != std::string_view::npos;) {
+    if (words.find('}', open) == std::string_view::npos) return "has a { without }";
+    const Field field = field_at(words, open);
+    has_field = true;
+    if (!field.name.empty() && !names.contains(field.name))
+      return "must name a measure of \"also\" in braces, got " + in_quotes(field.name);
+    if (!field.form.empty() && field.form != "%" && field.form != "count" && !count_of(field.form))
+      return "must have %, count or of N behind the bar, got " + in_quotes(field.form);
+    open = words.find('{', field.end);
+  }
+  if (!has_field) return "must show what is measured, {}, got none in " + in_quotes(words);
+  return std::nullopt;
+}
+
+std::string in_words(std::string_view words, const NamedSpreads& spreads) {
+  std::string text;
+  std::size_t behind = 0;
+  for (std::size_t open = words.find('{'); open != std::string_view::npos; open = words.find('{', behind)) {
+    const Field field = field_at(words, open);
+    const auto spread = spreads.find(field.name);
+    if (spread == spreads.end()) throw std::invalid_argument("words: nothing is measured as " + field.name);
+    text.append(words, behind, open - behind);
+    text += field_text(field, spread->second);
+    behind = field.end;
+  }
+  return text.append(words.substr(behind));
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,384 @@
+// The short ways to an event, guess and proof, closed form, table, against the certified search.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/sticking.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Scene scene_of(reference::Random& random, bool forced) {
+  Scene scene;
+  scene.mass_ratio = random.log_uniform(1e-4, 10);
+  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 3);
+  scene.wall_stiffness = random.log_uniform(1e2, 1e10);
+  if (forced) {
+    scene.force_amplitude = random.log_uniform(1e-3, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
+  }
+  return scene;
+}
+
+double signed_log(reference::Random& random, double low, double high) {
+  return random.log_uniform(low, high) * random.sign();
+}
+
+}  // namespace
+
+TEST_CASE("a gap is proved open only where it is") {
+  // Random quartics, whose fourth derivative is one number, held against themselves at 400 points.
+  reference::Random random(11);
+  int proved = 0, open = 0;
+  for (int n = 0; n < 200000; ++n) {
+    // Often one that leaves a wall by its second or third derivative alone.
+    const double u0 = random.chance(0.3) ? 0 : random.uniform(0, 1);
+    const double w = random.chance(0.2) ? 0 : random.uniform(-2, 2);
+    const double a = random.chance(0.2) ? 0 : random.uniform(-10, 10);
+    const double j = random.uniform(-30, 30), f = random.uniform(-100, 100);
+    const double h = random.uniform(0, 1);
+    const auto u = [&](double t) { return u0 + t * (w + t * (a / 2 + t * (j / 6 + t * f / 24))); };
+    const auto slope = [&](double t) { return w + t * (a + t * (j / 2 + t * f / 6)); };
+    const double u1 = u(h);
+    if (u1 < 0) continue;
+    double least = infinite, most = -infinite;
+    for (int i = 1; i < 400; ++i) {
+      least = std::min(least, u(h * i / 400));
+      most = std::max(most, u(h * i / 400));
+    }
+    CAPTURE(n);
+    open += least > 0;
+    if (stays_open(u0, w, u1, slope(h), h, std::abs(f))) {
+      ++proved;
+      CHECK(least > 0);
+    }
+    const Derivatives<double, 4> from{u0, w, a, j};
+    if (stays_between(from, u1, slope(h), h, std::abs(f))) {
+      CHECK(least > 0);
+      CHECK(most < 1);
+    }
+  }
+  CHECK(proved > 0.8 * open);  // and mostly where it is
+}
+
+TEST_CASE(
+    "a level met nearby is met where the series meets it, as far as the correction vouches for itself") {
+  // Cubics, whose root Newton's method finds in extended precision; with or without curvature, as without it
+  // the third derivative alone is left to correct for. The fourth only keeps the correction short.
+  reference::Random random(16);
+  int close = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const double away = signed_log(random, 1e-9, 1e-2), h = random.uniform(0.1, 1);
+    const double curvature = random.chance(0.5) ? 0 : signed_log(random, 1e-3, 10);
+    const Derivatives<double, 6> y{away, signed_log(random, 0.1, 10), curvature,
+                                   signed_log(random, 1e-3, 30)};
+    const TimeToLevel<double> found = time_to_level(0.0, y, h, random.log_uniform(0.1, 100));
+    if (!found.close) continue;
+    ++close;
+    long double root = found.shift;
+    for (int i = 0; i < 4; ++i) {
+      const long double g = y[0] + root * (y[1] + root * (y[2] / 2.0L + root * y[3] / 6.0L));
+      root -= g / (y[1] + root * (y[2] + root * y[3] / 2.0L));
+    }
+    CAPTURE(n);
+    // The next terms of the reversion, 5 a^3 t and 5 a b t, are asked to be below epsilon h/64 without the 5.
+    CHECK(std::abs(found.shift - root) <= epsilon * (h / 4 + 8 * std::abs(found.shift)));
+  }
+  CHECK(close > 10000);
+}
+
+TEST_CASE("a function keeps its sign between two ends as long as the deepest parabola through them does") {
+  reference::Random random(17);
+  for (int n = 0; n < 1000; ++n) {
+    const double second = random.log_uniform(1e-3, 1e3), h = random.log_uniform(1e-3, 1e3);
+    const double end = second * h * h / 8, side = random.sign();
+    CHECK(keeps_sign(side * end * 1.001, side * end * 1.001, second, h));
+    CHECK(!keeps_sign(side * end * 0.999, side * end * 1.001, second, h));
+    CHECK(!keeps_sign(side * end * 1.001, side * end * 0.999, second, h));
+  }
+}
+
+TEST_CASE("a motion moved on by its derivatives is the sum of their series") {
+  reference::Random random(18);
+  for (int n = 0; n < 1000; ++n) {
+    Derivatives<double, 6> d;
+    for (double& each : d) each = signed_log(random, 1e-3, 1e3);
+    const double t = signed_log(random, 1e-3, 10);
+    long double u = 0, u1 = 0, size = 0, size1 = 0, power = 1;  // power: t^k/k!
+    for (int k = 0; k < 4; ++k) {
+      u += d[k] * power;
+      u1 += d[k + 1] * power;
+      size += std::abs(d[k] * power);
+      size1 += std::abs(d[k + 1] * power);
+      power *= t / static_cast<long double>(k + 1);
+    }
+    const auto now = shifted(d[0], d[1], d, t);
+    // Each term goes through a dozen roundings at most.
+    CHECK(std::abs(double(now.u - u)) <= 12 * epsilon * double(size));
+    CHECK(std::abs(double(now.u1 - u1)) <= 12 * epsilon * double(size1));
+  }
+}
+
+TEST_CASE(
+    "a series in pairs of terms is its polynomial beyond the straight line, with that one's derivatives") {
+  reference::Random random(19);
+  for (int n = 0; n < 1000; ++n) {
+    Derivatives<double, 10> u;
+    Derivatives<long double, 10> wide;
+    for (std::size_t k = 0; k < u.size(); ++k) wide[k] = u[k] = signed_log(random, 1e-3, 1e3);
+    const double t = signed_log(random, 1e-3, 10);
+    long double sums[3]{}, first_six[3]{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      long double size = 0, power = 1;  // t^(k-d)/(k-d)!
+      for (std::size_t k = d; k < u.size(); ++k) {
+        if (k > 1) sums[d] += wide[k] * power;
+        if (k > 1 && k < 6) first_six[d] += wide[k] * power;
+        size += std::abs(wide[k] * power);
+        power *= t / static_cast<long double>(k - d + 1);
+      }
+      CAPTURE(n);
+      // A term goes through a product and a sum for each power of t^2, and a few more.
+      const double close = 20 * epsilon * double(size);
+      const auto of = [d](const auto& at) { return d == 0 ? at.u : d == 1 ? at.u1 : at.u2; };
+      CHECK(std::abs(double(of(sum<double>(departure_of(u), t)) - sums[d])) <= close);
+      CHECK(std::abs(double(of(sum_of_first<double, 3>(departure_of(u), t)) - first_six[d])) <= close);
+      // And in a scalar whose pairs no instruction takes at once.
+      CHECK(std::abs(double(of(sum<long double>(departure_of(wide), t)) - sums[d])) <= close / 1024);
+    }
+  }
+}
+
+TEST_CASE("a flight meets the wall that the certified search finds, when it finds it") {
+  reference::Random random(12);
+  int met = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const Scene scene = scene_of(random, n % 4 == 0);
+    const System<double> system(scene);
+    const bool left = random.chance(0.5);
+    const double w = random.chance(0.1) ? 0 : random.log_uniform(1e-9, 30);
+    const State<double> start{random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
+                              random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
+                              random.chance(0.2) ? random.uniform(0, 1) : double(!left), left ? w : -w};
+    const double begin = random.uniform(0, 10), span = bounded_span(system), horizon = 10;
+    const Flight<double> flight(system, begin, start);
+    const auto lead = flight.lead_of_y();
+    const double away = left ? 1 : -1;
+    if (w == 0 && (start.y == 0 || start.y == 1) && !(away * lead[2] > 0)) continue;
+    const auto found = flight.next_wall(horizon, span), expected = flight.search_wall(0, horizon, span);
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++met;
+    CHECK(found->wall == expected->wall);
+    // y is off by a few roundings of what it is the sum of; so is the time, by that over y' (or, grazing, by
+    // the root of it over y'').
+    const double size =
+        std::abs(start.x) + std::abs(start.v) + w * expected->time + 1 + scene.force_amplitude;
+    const double noise = 32 * epsilon * size * (1 + expected->time);
+    const double w1 = std::abs(expected->state.w), graze = std::sqrt(2 * noise / (size + 1e-300));
+    CHECK(std::abs(found->time - expected->time) <=
+          8 * epsilon * expected->time + std::min(noise / w1, std::max(graze, 1e-6)));
+    const State<double> there = flight.at(found->time);
+    CHECK(std::abs(there.x - found->state.x) <= noise * (1 + scene.damping_ratio));
+    CHECK(std::abs(there.v - found->state.v) <= noise * (1 + scene.damping_ratio));
+    CHECK(std::abs(there.y - found->state.y) <= noise);
+    CHECK(std::abs(there.w - found->state.w) <= noise * (1 + scene.damping_ratio));
+  }
+  CHECK(met > 20000);
+}
+
+TEST_CASE("a contact ends when the certified search says, in the state that its parts give") {
+  reference::Random random(13);
+  int left = 0, brisk = 0, lasting = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const Scene scene = scene_of(random, false);
+    const System<double> system(scene);
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
+    const double inward = wall == Wall::left ? -1 : 1;
+    const double w = random.log_uniform(1e-6, 30) * inward;
+    const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30),
+                              wall == Wall::left ? 0.0 : 1.0, w};
+    const Contact<double> contact(walls, 0.0, start, wall);
+    const auto found = contact.leave(100, infinite), expected = contact.search_leave(100, infinite);
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++left;
+    const double swing = walls.fast.half_period(), time = expected->time;
+    brisk += time < 1.5 * swing;
+    lasting += time > 4 * swing;
+    // What rounding makes of q, by what it is the sum of, over y' at the end.
+    const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
+    const double size = std::abs(slow.q) + std::abs(fast.q) + std::abs(slow.w) * time * epsilon +
+                        (std::abs(start.x) + std::abs(start.v)) / walls.stiffness +
+                        std::abs(w) / std::sqrt(walls.stiffness);
+    const double w1 = std::abs(expected->state.w);
+    CHECK(std::abs(found->time - time) <= 16 * epsilon * time + 64 * epsilon * size / w1);
+    const double rate = walls.fast.rate(), speed = std::abs(start.x) + std::abs(start.v) + std::abs(w);
+    const double off = std::abs(found->time - time);
+    CHECK(std::abs(found->state.x - expected->state.x) <= 128 * epsilon * speed + speed * off);
+    CHECK(std::abs(found->state.v - expected->state.v) <=
+          128 * epsilon * speed + (scene.mass_ratio * std::abs(w) * rate + speed) * off);
+    CHECK(std::abs(found->state.w - expected->state.w) <=
+          128 * epsilon * speed * (1 + scene.mass_ratio) + (std::abs(w) * rate + speed) * off);
+  }
+  CHECK(left > 20000);
+  CHECK(brisk > 5000);
+  CHECK(lasting > 1000);
+}
+
+TEST_CASE("a contact with a wall softer than the spring ends when the mass first comes back") {
+  // There both motions swing about as fast, and the short ways find a later return too: only their proofs
+  // tell. Without that of a brisk rebound one end in a thousand is wrong, by much.
+  reference::Random random(15);
+  int brisk = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Scene scene;
+    scene.mass_ratio = random.log_uniform(1e-3, 100);
+    scene.restitution = random.uniform(0, 1);
+    scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 3);
+    scene.wall_stiffness = random.log_uniform(1e-2, 1);
+    const System<double> system(scene);
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
+                              -random.log_uniform(1e-6, 30)};
+    const Contact<double> contact(walls, 0.0, start, Wall::left);
+    brisk += walls.short_contact && walls.short_contact(start.x, start.v, start.w);
+    const auto found = contact.leave(1000, infinite), expected = contact.search_leave(1000, infinite);
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (found && expected) CHECK(found->time == doctest::Approx(expected->time).epsilon(1e-6));
+  }
+  CHECK(brisk > 1000);
+}
+
+TEST_CASE("a free motion's derivatives fall through zero where the certified search finds it") {
+  reference::Random random(14);
+  int fell = 0;
+  for (int n = 0; n < 40000; ++n) {
+    Scene scene = scene_of(random, false);
+    scene.damping_ratio = random.chance(0.3) ? 0 : random.uniform(0, 1.5);
+    const System<double> system(scene);
+    const double x = random.chance(0.1) ? 0 : signed_log(random, 1e-6, 10), v = signed_log(random, 1e-6, 10);
+    const ForcedMotion<double> swing(system.free, system.forcing, 0.0, x, v);
+    const std::size_t order = n % 3;
+    const double sign = random.sign(), from = random.chance(0.5) ? 0 : random.uniform(0, 10), until = 20;
+    const auto found = swing.falls(order, sign, from, until, infinite);
+    const auto expected = isolate_fall<double>(
+        [&](double t) { return swing.enclosure_at(order, sign, t, infinite); }, from, until, infinite, 1.0);
+    CAPTURE(n);
+    const auto start = swing.enclosure_at(order, sign, from, infinite).whole;
+    // From above; at a zero to rounding the two may take it for before or after.
+    if (!(start.g > 1e-14 * (std::abs(x) + std::abs(v)))) continue;
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++fell;
+    CHECK(*found == doctest::Approx(*expected).epsilon(1e-12));
+  }
+  CHECK(fell > 10000);
+}
+
+TEST_CASE("stuck masses, their release known, turn where the certified search finds it") {
+  reference::Random random(19);
+  int turned = 0, released = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Scene scene = scene_of(random, false);
+    scene.damping_ratio = random.chance(0.3) ? 0 : random.uniform(0, 1);
+    const System<double> system(scene);
+    // Pressed on the left wall by x, and on the way further out or back.
+    const double x = -random.log_uniform(1e-2, 30), v = signed_log(random, 1e-2, 30);
+    Stuck<double> stuck(system, 0.0, x, v, Wall::left);
+    if (!(stuck.leads_of_x()[2] > 0)) continue;
+    const auto release = stuck.release(0, 100, infinite);
+    if (!release) continue;
+    ++released;
+    const auto found = stuck.falls(1, -1, 0, *release, infinite);
+    const auto expected = isolate_fall<double>(
+        [&](double t) { return stuck.derivative_of_x(1, -1, t, infinite); }, 0.0, *release, infinite, 1.0);
+    CAPTURE(n);
+    CHECK(!stuck.falls(1, 1, 0, *release, infinite));
+    CHECK(found.has_value() == (v < 0 && expected.has_value()));
+    if (!found) continue;
+    ++turned;
+    // Off by what rounding makes of a phase, and of x', by its slope.
+    const double slope = stuck.derivative_of_x(1, 1, *expected, infinite).whole.g1;
+    CHECK(std::abs(*found - *expected) <=
+          16 * epsilon * (system.stuck.half_period() + (std::abs(x) + std::abs(v)) / slope));
+  }
+  CHECK(turned > 2000);
+  CHECK(turned < released);
+}
+
+TEST_CASE("x crosses zero and turns in a contact where the certified search finds it") {
+  reference::Random random(16);
+  int fell = 0, lasting = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Scene scene = scene_of(random, false);
+    scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 0.3);
+    const System<double> system(scene);
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    // Pressed on the wall by x, and on its way to zero or to a turn.
+    const State<double> start{-random.log_uniform(1e-2, 30), signed_log(random, 1e-2, 30), 0,
+                              -random.log_uniform(1e-6, 1)};
+    const Contact<double> contact(walls, 0.0, start, Wall::left);
+    const auto end = contact.leave(100, infinite);
+    if (!end) continue;
+    const std::size_t order = n % 2;
+    const double sign = order == 0 ? -1 : start.v > 0 ? 1 : -1;
+    const auto found = contact.falls(order, sign, 0, end->time, infinite);
+    const auto expected =
+        isolate_fall<double>([&](double t) { return contact.derivative_of_x(order, sign, t, infinite); }, 0.0,
+                             end->time, infinite, contact.resolution());
+    CAPTURE(n);
+    CHECK(found.has_value() == expected.has_value());
+    if (!found || !expected) continue;
+    ++fell;
+    lasting += *found > 10 * walls.fast.half_period();
+    // Off by what rounding makes of x or x', by their slope.
+    const auto slow = contact.slow_at(*expected), fast = contact.fast_at(*expected);
+    const double slope = std::abs(contact.derivative_of_x(order, sign, *expected, infinite).whole.g1);
+    const double size = std::abs(slow.x) + std::abs(fast.x) + std::abs(slow.v) + std::abs(fast.v) +
+                        std::abs(start.x) + std::abs(start.v) + scene.mass_ratio * std::abs(start.w);
+    CHECK(std::abs(*found - *expected) <= 16 * epsilon * *expected + 64 * epsilon * size / slope);
+  }
+  CHECK(fell > 2000);
+  CHECK(lasting > 1000);
+}
+
+TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
+  reference::Random random(17);
+  double second_reached = 0, third_reached = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Scene scene = scene_of(random, false);
+    const System<double> system(scene);
+    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    if (!walls.short_contact) continue;
+    const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
+                              -random.log_uniform(1e-6, 30)};
+    const Contact<double> contact(walls, 0.0, start, Wall::left);
+    const double second = walls.short_contact.second_of_x(start.x, start.v, start.w);
+    const double third = walls.short_contact.third_of_x(start.x, start.v, start.w);
+    for (int i = 0; i <= 64; ++i) {
+      const auto now = contact.derivative_of_x(1, 1, i / 32.0 * walls.fast.half_period(), infinite).whole;
+      second_reached = std::max(second_reached, std::abs(now.g1) / second);
+      third_reached = std::max(third_reached, std::abs(now.g2) / third);
+    }
+  }
+  CHECK(second_reached <= 1 + 1e-12);
+  CHECK(third_reached <= 1 + 1e-12);
+  CHECK(second_reached > 0.5);
+  CHECK(third_reached > 0.5);
+}
