@@ -160,6 +160,36 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a predicted impact's departure from the straight line is its series at the predicted time") {
+  reference::Random random(21);
+  int exact = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const double zeta = random.uniform(0, 0.9), w = random.log_uniform(0.05, 20);
+    const Oscillator<double> oscillator(zeta, 1);
+    Derivatives<double, 12> x{random.uniform(-5, 5), random.uniform(-5, 5)};
+    for (std::size_t k = 2; k < x.size(); ++k) x[k] = -x[k - 2] - 2 * zeta * x[k - 1];
+    Derivatives<double, 10> u{0, w};
+    for (std::size_t k = 2; k < u.size(); ++k) u[k] = -x[k];
+    const double rate = oscillator.rate();
+    const auto found = predict_impact<double>(u, oscillator.bound(x[4], x[5]), rate, 2 / rate);
+    if (!found.exact) continue;
+    ++exact;
+    long double departure = 0, its_velocity = 0, size = 0, size1 = 0, power = found.time;  // power: t^k/k!
+    for (std::size_t k = 1; k < 9; ++k) {
+      its_velocity += u[k + 1] * power;
+      if (k < 3) size1 += std::abs(u[k + 1] * power);
+      power *= found.time / static_cast<long double>(k + 1);
+      departure += u[k + 1] * power;
+      if (k < 3) size += std::abs(u[k + 1] * power);
+    }
+    CAPTURE(n);
+    // 2.2 units of 2^-52 were seen; 5.1 where the step's second power is omitted.
+    CHECK(std::abs(double(found.gained.u - departure)) <= 3 * epsilon * double(size));
+    CHECK(std::abs(double(found.gained.u1 - its_velocity)) <= 3 * epsilon * double(size1));
+  }
+  CHECK(exact > 5000);
+}
+
 TEST_CASE("a flight meets the wall that the certified search finds, when it finds it") {
   reference::Random random(12);
   int met = 0;

@@ -86,12 +86,13 @@ Prediction<Real> predict_impact(const Derivatives<Real, 10>& u, const Real& four
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
     if (size * two_to_the_25 < t && t < most) {
-      // Of the step, its third power is nothing; and of the series what is left out, |u^(10)| t^9/9!: beside
-      // u' for the time, and beside the motion of x, which may be far smaller, for what is gained.
+      // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and
+      // below it in that of u', ~ u'' t. The omitted terms of the series, |u^(10)| t^9/9!, are compared with
+      // u' for the time, and with the motion of x, which may be far smaller, for the departure.
       const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2, omitted = rt_4 * rt_4 * rt;
       const Real tiny = nine_factorial * std::numeric_limits<Real>::epsilon() / 16;
       if (omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate))
-        return {t + step, across, true, {at.u + step * at.u1, at.u1 + step * at.u2}};
+        return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
       return {t, across, false, {}};
     }
     if (i == 4 || !(size < t / 2)) break;
