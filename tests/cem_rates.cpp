@@ -67,7 +67,7 @@ Distance distance(const Scene& scene, const Cem& options, const Run& exact) {
 // A flight by itself, in closed form.
 State<double> flown(const System<double>& system, const State<double>& s, double begin, double t) {
   const auto p = system.free.propagate(t);
-  const auto driven = system.free.respond(system.forcing, begin, t, p);
+  const auto driven = system.free.respond(system.forcing, system.forcing.phase(begin), t, p);
   const double x = s.x * p.c + s.v * p.s + driven.d, v = s.v * p.v - s.x * p.s + driven.d1;
   return {x, v, s.y + (s.v + s.w) * t - (x - s.x), s.v + s.w - v};
 }
@@ -97,7 +97,7 @@ TEST_CASE("a flight that is certified free meets no wall, in closed form or in c
     const System<double> system(scene);
     const double size = std::pow(10, uniform(-1, 1));
     const State<double> s{uniform(-size, size), uniform(-size, size), uniform(0, 1), uniform(-2, 2)};
-    const double f = system.forcing.derivatives<2>(begin)[0];
+    const double f = system.forcing.derivatives<2>(system.forcing.phase(begin))[0];
     const double x2 = f - 2 * system.zeta * s.v - s.x;
     const Certificate<double> sure(system.zeta, system.forcing, s, x2, large, 16 * large);
 
@@ -113,15 +113,15 @@ TEST_CASE("a flight that is certified free meets no wall, in closed form or in c
     for (int j = 1; j <= 64; ++j) CHECK(inside(flown(system, s, begin, duration * j / 64).y));
 
     // As the engine steps: own velocities are turned into the scheme's.
-    const double f1 = system.forcing.derivatives<2>(begin)[1];
+    const double f1 = system.forcing.derivatives<2>(system.forcing.phase(begin))[1];
     const double v = s.v * std::sqrt(1 - h * h / 4) + h * h / 6 * (f1 - 2 * system.zeta * x2);
     const auto a =
         cem_step(RegimeEquations<double>{.nu = system.nu, .zeta = system.zeta}, Damper::centred, h);
     double x = s.x, y = s.y, dx = h * (v - h * (f - 2 * system.zeta * v - s.x) / 2),
            dq = h * (s.v + s.w) - dx;
     for (int n = 0; n < steps; ++n) {
-      const double next =
-          a.dx_dx * dx + a.dx_x * x + a.dx_f * system.forcing.derivatives<2>(begin + n * h)[0];
+      const double next = a.dx_dx * dx + a.dx_x * x +
+                          a.dx_f * system.forcing.derivatives<2>(system.forcing.phase(begin + n * h))[0];
       dq -= next - dx;
       dx = next;
       x += dx, y += dq;

@@ -31,8 +31,7 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 LIBRARY = Path("src/impact_damper")
 BUILD_TIMEOUT = 900
-# [[gnu::flatten]] makes for speed, not for other results, and costs ten times as long to compile.
-FLAGS = "-O1 -Dflatten=unused"
+FLAGS = "-O1"
 CLI_TESTS = ["ctest", "-R", "^(cli|corpus): ", "-E", "1 GB|schemas", "--stop-on-failure", "--output-on-failure"]
 
 

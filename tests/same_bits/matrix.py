@@ -5,7 +5,7 @@
 
 BUILD is the project's build folder with the program in it, whose results all others are held against. Eight more
 programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O0, -O2, -O3 -march=native, -O2
-with link-time optimisation}, with -O2 without the inlining of whole calls that the sources ask for ([[gnu::flatten]]).
+with link-time optimisation}.
 What is crossed with what:
 
     all programs        x processor features {as they are, without FMA and AVX2}
@@ -39,13 +39,12 @@ SOURCE = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 COMPILERS = ["g++", "clang++"]
-# Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero. Without [[gnu::flatten]] the
-# calls are other ones, and g++ compiles the engines in a tenth of the time.
+# Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
 FLAGS = {
     "-O0": ["-DCMAKE_CXX_FLAGS=-O0 -ftrivial-auto-var-init=pattern"],
-    "-O2": ["-DCMAKE_CXX_FLAGS=-O2 -Dflatten=unused"],
+    "-O2": ["-DCMAKE_CXX_FLAGS=-O2"],
     "-O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
-    "-O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2 -Dflatten=unused", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"],
+    "-O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"],
 }
 EACH_SURROUNDING_BY_ITSELF = ["g++ -O2 with LTO", "clang++ -O3 -march=native"]
 FEATURES = {"": {}, "without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"}}

@@ -56,8 +56,8 @@ class RunTracker {
   // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
   // Returns the works in it.
   template <class Motion>
-  [[gnu::flatten]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
-                                   const Real& wall_damping) {
+  [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
+                                         const Real& wall_damping) {
     if (out_of_effort()) {  // the end of the motion may not have been found
       stopped_ = StopReason::step_budget;
       duration = 0;
@@ -121,7 +121,7 @@ class RunTracker {
  private:
   // Follows x through [0, duration]: returns where the scene ends in it, or duration.
   template <class Motion>
-  Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
+  [[gnu::always_inline]] Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
     Real from{0};
     if (side_ == 0 && !find_side(motion, duration, from)) return duration;
     return follow_rows(motion, duration, end, from);
@@ -143,7 +143,8 @@ class RunTracker {
   }
   // From a time on, up to which the row under way has been followed.
   template <class Motion>
-  Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end, Real from) {
+  [[gnu::always_inline]] Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end,
+                                          Real from) {
     notice_peak(side_ * motion.at(from).x, from);
     const Real v = side_ * motion.at(from).v;
     bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);

@@ -10,8 +10,8 @@ namespace impact_damper {
 // Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
 // (Lemma L2). slope0, slope1: its derivatives there; fourth: bound on its fourth derivative.
 template <class Real>
-bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real& slope1, const Real& h,
-                   const Real& fourth) {
+[[gnu::always_inline]] inline bool stays_between(const Derivatives<Real, 4>& from, const Real& u1,
+                                                 const Real& slope1, const Real& h, const Real& fourth) {
   const Real& u0 = from[0];
   const Real& slope0 = from[1];
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
@@ -27,8 +27,8 @@ bool stays_between(const Derivatives<Real, 4>& from, const Real& u1, const Real&
 
 // The same of one that only has to stay above 0.
 template <class Real>
-bool stays_open(const Real& u0, const Real& slope0, const Real& u1, const Real& slope1, const Real& h,
-                const Real& fourth) {
+[[gnu::always_inline]] inline bool stays_open(const Real& u0, const Real& slope0, const Real& u1,
+                                              const Real& slope1, const Real& h, const Real& fourth) {
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   return u0 >= 0 && u1 >= 0 && u0 + quarter * slope0 >= 0 && u1 - quarter * slope1 >= 0 &&
          (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;

@@ -21,8 +21,9 @@ struct TimeToLevel {
   bool close;
 };
 template <class Real>
-TimeToLevel<Real> time_to_level(const Real& level, const Derivatives<Real, 6>& y, const Real& h,
-                                const Real& fourth) {
+[[gnu::always_inline]] inline TimeToLevel<Real> time_to_level(const Real& level,
+                                                              const Derivatives<Real, 6>& y, const Real& h,
+                                                              const Real& fourth) {
   const Real over = 1 / y[1], t = (level - y[0]) * over;
   const Real a = t * (y[2] * over / 2), b = t * t * (y[3] * over * reciprocals<Real>[6]);
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
@@ -40,7 +41,8 @@ struct Shifted {
   Real u, u1;
 };
 template <class Real>
-Shifted<Real> shifted(const Real& u, const Real& u1, const Derivatives<Real, 6>& d, const Real& t) {
+[[gnu::always_inline]] inline Shifted<Real> shifted(const Real& u, const Real& u1,
+                                                    const Derivatives<Real, 6>& d, const Real& t) {
   const Real half = t / 2, third = t * reciprocals<Real>[3];
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
@@ -60,8 +62,9 @@ struct Prediction {
 };
 inline constexpr double two_to_the_25 = 33554432, nine_factorial = 362880;
 template <class Real>
-Prediction<Real> predict_impact(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate,
-                                const Real& most) {
+[[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, 10>& u,
+                                                              const Real& fourth, const Real& rate,
+                                                              const Real& most) {
   const bool from_rest = u[1] == 0 && u[2] == 0;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];

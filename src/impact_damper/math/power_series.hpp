@@ -24,7 +24,7 @@ struct SeriesAt {
 template <class Real, std::size_t pairs>
 using PairedSeries = std::array<SimdPair<Real>, pairs>;
 template <class Real, std::size_t summed, std::size_t pairs>
-SeriesAt<Real> sum_of_first(const PairedSeries<Real, pairs>& c, const Real& s) {
+[[gnu::always_inline]] inline SeriesAt<Real> sum_of_first(const PairedSeries<Real, pairs>& c, const Real& s) {
   static_assert(summed >= 3 && summed <= pairs);
   const Real z = s * s;
   SimdPair<Real> second = c[summed - 1], before = c[summed - 2] + second * z;  // E''/2 and O''/2
@@ -38,7 +38,7 @@ SeriesAt<Real> sum_of_first(const PairedSeries<Real, pairs>& c, const Real& s) {
           2 * (first[0] + 3 * s * first[1]) + 8 * z * (second[0] + s * second[1])};
 }
 template <class Real, std::size_t pairs>
-SeriesAt<Real> sum(const PairedSeries<Real, pairs>& c, const Real& s) {
+[[gnu::always_inline]] inline SeriesAt<Real> sum(const PairedSeries<Real, pairs>& c, const Real& s) {
   return sum_of_first<Real, pairs>(c, s);
 }
 
@@ -68,7 +68,7 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
 // The series about one instant of what a motion departs from a straight line by: from its second derivative
 // on.
 template <class Real>
-PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
+[[gnu::always_inline]] inline PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
   const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;
   PairedSeries<Real, 5> c;
   c[0] = SimdPair<Real>{Real(0), Real(0)};

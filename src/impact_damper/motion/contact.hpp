@@ -18,6 +18,7 @@ class Contact {
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : system_(system),
         begin_(begin),
+        phase_(system.forcing.phase(begin)),
         start_(copied(start)),
         wall_(wall == Wall::left ? 0 : 1),
         inward_(wall == Wall::left ? -1 : 1) {}
@@ -145,7 +146,7 @@ class Contact {
   // rounding errors would decide where one is zero.
   std::array<Real, 4> leads_of_x() const {
     const ContactModes<Real, Force>& c = system_;
-    const auto f = c.forcing.template derivatives<2>(begin_);
+    const auto f = c.forcing.template derivatives<2>(phase_);
     const Real force = c.damping * start_.w + c.stiffness * (start_.y - wall_);
     const Real x2 = c.nu * force - 2 * c.zeta * start_.v - start_.x + f[0], w1 = -force - x2;
     const Real x3 = c.nu * (c.damping * w1 + c.stiffness * start_.w) - 2 * c.zeta * x2 - start_.v + f[1];
@@ -168,13 +169,14 @@ class Contact {
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:
+  SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : system_.forcing.phase(begin_ + t); }
   Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
 
   // Bounds for a time t.
   Real second_of_x(const Real& t) const { return bound_of_x(2, t, &ShortContactMap<Real>::second_of_x); }
   Real third_of_x(const Real& t) const { return bound_of_x(3, t, &ShortContactMap<Real>::third_of_x); }
   template <class OfMap>
-  Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {
+  [[gnu::always_inline]] Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {
     if (system_.short_contact && start_.y == wall_)
       return (system_.short_contact.*of_map)(start_.x, start_.v, start_.w);
     return instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(order, t) +
@@ -330,7 +332,7 @@ class Contact {
     ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
                           p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) {
-      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
+      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, phase_, t, p);
       add_driven(to, oscillator, drive, driven, t);
     }
     return to;
@@ -345,7 +347,7 @@ class Contact {
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
       // (M5.10): what both parts have in common in x and q is left out where it would cancel.
-      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, begin_, t, p);
+      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, phase_, t, p);
       if (driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {
@@ -356,7 +358,7 @@ class Contact {
   }
   void add_driven(ContactState<Real>& to, const Oscillator<Real>& oscillator, const ContactState<Real>& drive,
                   const DrivenResponse<Real>& driven, const Real& t) const {
-    const Real f = system_.forcing.template derivatives<2>(begin_ + t)[0];
+    const Real f = system_.forcing.template derivatives<2>(phase_at(t))[0];
     const Real on_displacement = driven.d1 + 2 * oscillator.a() * driven.d;  // response to C instead of S
     const Real on_velocity = f - oscillator.b() * driven.d;                  // its derivative
     add_driven(to, drive, driven, on_displacement, on_velocity);
@@ -387,13 +389,13 @@ class Contact {
   }
   Part instant_of_q(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
                     const ContactState<Real>& drive, const Real& t) const {
-    return {oscillator, now.q,           now.w,     on_f(oscillator, drive.q, drive.w),
-            drive.q,    system_.forcing, begin_ + t};
+    return {oscillator, now.q,           now.w,      on_f(oscillator, drive.q, drive.w),
+            drive.q,    system_.forcing, phase_at(t)};
   }
   Part instant_of_x(const ContactState<Real>& now, const Oscillator<Real>& oscillator,
                     const ContactState<Real>& drive, const Real& t) const {
-    return {oscillator, now.x,           now.v,     on_f(oscillator, drive.x, drive.v),
-            drive.x,    system_.forcing, begin_ + t};
+    return {oscillator, now.x,           now.v,      on_f(oscillator, drive.x, drive.v),
+            drive.x,    system_.forcing, phase_at(t)};
   }
   static LocalEnclosure<Real> look(const Part& slow, const Part& fast, std::size_t n, const Real& sign,
                                    const Real& span) {
@@ -407,6 +409,7 @@ class Contact {
 
   const ContactModes<Real, Force>& system_;
   Real begin_;
+  SinCos<Real> phase_;  // of the forcing then
   State<Real> start_;
   Real wall_, inward_;
   mutable std::optional<ContactParts<Real>> parts_;

@@ -54,7 +54,7 @@ RateParts<Real> rate_parts(const ContactModes<Real, Force>& walls, const Contact
                            const ContactState<Real>& fast, Real ContactState<Real>::*u,
                            Real ContactState<Real>::*u1, const Real& time) {
   // A part obeys u'' + 2 a u' + b u = on_f f + on_f1 f'.
-  const auto f = walls.forcing.template derivatives<4>(time);
+  const auto f = walls.forcing.template derivatives<4>(walls.forcing.phase(time));
   const auto force = [&](const Oscillator<Real>& o, const ContactState<Real>& drive, int order) {
     const Real on_f = drive.*u1 + 2 * o.a() * drive.*u, on_f1 = drive.*u;
     return on_f * f[order] + on_f1 * f[order + 1];
@@ -116,7 +116,7 @@ Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>
     return sum;
   };
   const auto force_times_ringing = [&](const RateParts<Real>& rate, const Real& t) {
-    const auto f = walls.forcing.template derivatives<2>(begin + t);
+    const auto f = walls.forcing.template derivatives<2>(walls.forcing.phase(begin + t));
     return antiderivative({f[0], f[1]}, by_parts(fast, rate.ringing, Real(0), square), Real(0));
   };
   const Real start{0};

@@ -69,7 +69,8 @@ Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Pan
         works.viscous += dt * (2 * system.zeta) * (v * v);
         works.wall += dt * wall_damping * (w * w);
         if (system.forcing) {
-          const Real work = dt * v * system.forcing.template derivatives<2>(begin + t)[0];
+          const Real work =
+              dt * v * system.forcing.template derivatives<2>(system.forcing.phase(begin + t))[0];
           works.forcing += work;
           works.turnover += absolute(work);
         }

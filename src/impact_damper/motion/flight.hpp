@@ -95,7 +95,7 @@ class Flight {
   struct Place {
     Real x, v, u, u1;
   };
-  Place from_wall(const Real& t) const {
+  [[gnu::always_inline]] Place from_wall(const Real& t) const {
     const Real u = away_ * (start_.y - wall_), u1 = away_ * start_.w;
     if (t == 0) return {start_.x, start_.v, u, u1};
     const auto now = primary_.at(t);
@@ -155,7 +155,7 @@ class Flight {
   }
   // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
   // not succeed.
-  [[gnu::flatten]] std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
+  std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
     const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
     Real begin = from;
     Place here = from_wall(from);

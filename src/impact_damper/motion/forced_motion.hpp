@@ -24,7 +24,12 @@ class ForcedMotion {
  public:
   ForcedMotion(const Oscillator<Real>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
                const Real& v0)
-      : oscillator_(oscillator), forcing_(forcing), begin_(begin), x0_(x0), v0_(v0) {}
+      : oscillator_(oscillator),
+        forcing_(forcing),
+        begin_(begin),
+        phase_(forcing.phase(begin)),
+        x0_(x0),
+        v0_(v0) {}
 
   struct Change {
     Real x, v;    // displacement and velocity at t
@@ -39,7 +44,7 @@ class ForcedMotion {
     now.dv = v0_ * (p.c1 - 2 * oscillator_.a() * p.s) + from_x;
     now.v = v0_ * p.v + from_x;
     if (forcing_) {
-      const DrivenResponse<Real> driven = oscillator_.respond(forcing_, begin_, t, p);
+      const DrivenResponse<Real> driven = oscillator_.respond(forcing_, phase_, t, p);
       now.x += driven.d;
       now.dx += driven.d;
       now.dv += driven.d1;
@@ -50,21 +55,21 @@ class ForcedMotion {
 
   template <std::size_t N>
   Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
-    return {oscillator_, x, v, Real(1), Real(0), forcing_, begin_ + t};
+    return {oscillator_, x, v, Real(1), Real(0), forcing_, phase_at(t)};
   }
   // The same of `times` x; x and v are already that many times what they are.
   template <std::size_t N>
   Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t, const Real& times) const {
     if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
     return impact_damper::derivatives<N>(oscillator_, x, v, times, Real(0),
-                                         forcing_.template derivatives<N + 1>(begin_ + t));
+                                         forcing_.template derivatives<N + 1>(phase_at(t)));
   }
   // A bound on the fourth of these, d, for a time `span` from t on.
   template <std::size_t N>
   Real fourth(const Derivatives<Real, N>& d, const Real& x, const Real& v, const Real& t, const Real& times,
               const Real& span) const {
     if (!forcing_) return oscillator_.bound(d[4], d[5]);
-    return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, begin_ + t}.bound(4, span);
+    return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, phase_at(t)}.bound(4, span);
   }
   using Beginning = Instant<Real, 6, Force>;
   Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
@@ -139,9 +144,13 @@ class ForcedMotion {
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
  private:
+  SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
+
   const Oscillator<Real>& oscillator_;
   Force forcing_;
-  Real begin_, x0_, v0_;
+  Real begin_;
+  SinCos<Real> phase_;  // of the forcing at the beginning
+  Real x0_, v0_;
 };
 
 }  // namespace impact_damper

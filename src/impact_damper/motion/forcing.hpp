@@ -14,10 +14,14 @@ struct Forcing {
   Real amplitude{0}, frequency{1};
   explicit operator bool() const { return amplitude != 0; }
 
+  // Where in its cycle the force is.
+  SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
+
+  // At a phase.
   template <std::size_t N>
-  std::array<Real, N> derivatives(const Real& time) const {
+  std::array<Real, N> derivatives(const SinCos<Real>& phase) const {
     static_assert(N >= 2);
-    const auto [sin, cos] = sin_cos(frequency * time);
+    const auto& [sin, cos] = phase;
     std::array<Real, N> f;
     f[0] = amplitude * sin;
     f[1] = amplitude * frequency * cos;
@@ -32,8 +36,10 @@ struct NoForcing {
   Real amplitude{0}, frequency{1};
   explicit constexpr operator bool() const { return false; }
 
+  SinCos<Real> phase(const Real&) const { return {Real(0), Real(1)}; }
+
   template <std::size_t N>
-  std::array<Real, N> derivatives(const Real&) const {
+  std::array<Real, N> derivatives(const SinCos<Real>&) const {
     return {};
   }
 };

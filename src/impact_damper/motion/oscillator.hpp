@@ -65,7 +65,7 @@ class Oscillator {
   }
   // The first of these at or after a time `from` that is no such time itself, nor near one: whole periods are
   // added to the first.
-  Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
+  [[gnu::always_inline]] Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
     const Real first = first_fall(u, u1);
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
@@ -105,7 +105,7 @@ class Oscillator {
     return !rings() && t > six_radians ? t : six_radians;
   }
 
-  Propagator<Real> propagate(const Real& t) const {
+  [[gnu::always_inline]] Propagator<Real> propagate(const Real& t) const {
     if (t == 0) return {};
     if (t * rate_ < Real(0.5)) return a_ == 0 ? propagate_shortly_undamped(t) : propagate_shortly(t);
     Propagator<Real> p;
@@ -139,12 +139,12 @@ class Oscillator {
     return p;
   }
 
-  // Response, from rest at time `begin`, after a time t. `p` is propagate(t).
+  // Response after a time t, from rest at the time when the forcing was in `phase`. `p` is propagate(t).
   template <class Force>
-  DrivenResponse<Real> respond(const Force& forcing, const Real& begin, const Real& t,
+  DrivenResponse<Real> respond(const Force& forcing, const SinCos<Real>& phase, const Real& t,
                                const Propagator<Real>& p) const {
     if (t == 0) return {};
-    const auto [sin, cos] = sin_cos(forcing.frequency * begin);
+    const auto& [sin, cos] = phase;
     const Real fastest = rate_ > forcing.frequency ? rate_ : forcing.frequency;
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
     // (M4.1): the response z to exp(i omega_f t), turned by the phase at the beginning.
@@ -314,7 +314,8 @@ class Oscillator {
 
 // u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.
 template <std::size_t N, class Real>
-std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
+[[gnu::always_inline]] inline std::array<Real, N> derivatives(const Oscillator<Real>& oscillator,
+                                                              const Real& u, const Real& u1) {
   std::array<Real, N> d{u, u1};
   if (oscillator.a() == 0) {
     for (std::size_t n = 2; n < N; ++n) d[n] = -oscillator.b() * d[n - 2];
@@ -325,8 +326,10 @@ std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& 
 }
 // The same under on_f f + on_f1 f', the derivatives of f given.
 template <std::size_t N, class Real>
-std::array<Real, N> derivatives(const Oscillator<Real>& oscillator, const Real& u, const Real& u1,
-                                const Real& on_f, const Real& on_f1, const std::array<Real, N + 1>& f) {
+[[gnu::always_inline]] inline std::array<Real, N> derivatives(const Oscillator<Real>& oscillator,
+                                                              const Real& u, const Real& u1, const Real& on_f,
+                                                              const Real& on_f1,
+                                                              const std::array<Real, N + 1>& f) {
   std::array<Real, N> d{u, u1};
   for (std::size_t n = 2; n < N; ++n) {
     d[n] = on_f * f[n - 2] + on_f1 * f[n - 1] - 2 * oscillator.a() * d[n - 1] - oscillator.b() * d[n - 2];
@@ -340,13 +343,13 @@ template <class Real, std::size_t N, class Force = Forcing<Real>>
 class Instant {
  public:
   Instant(const Oscillator<Real>& oscillator, const Real& u, const Real& u1, const Real& on_f,
-          const Real& on_f1, const Force& forcing, const Real& time)
+          const Real& on_f1, const Force& forcing, const SinCos<Real>& phase)
       : oscillator_(oscillator), forcing_(forcing) {
     if (!forcing) {
       d_ = impact_damper::derivatives<N>(oscillator, u, u1);
       return;
     }
-    const auto f = forcing.template derivatives<N + 1>(time);
+    const auto f = forcing.template derivatives<N + 1>(phase);
     d_ = impact_damper::derivatives<N>(oscillator, u, u1, on_f, on_f1, f);
     // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
     // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the

@@ -119,7 +119,7 @@ class ShortContactMap {
   struct End {
     Real time, x, v, w;
   };
-  std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
+  [[gnu::always_inline]] std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
     const Start start{x, v, w};
     const auto q = overlap_after<few>(start);
     const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
