@@ -1,31 +1,27 @@
 // What a run costs that no clock can tell: a scalar that is a double and counts what is done with it.
 //
-// The engines are templates over their scalar, and call the elementary functions and the root finder by plain
-// names: the overloads for Counted below are found first, count, and do the same in double. So a counted run
-// goes bit by bit the way of the run in double.
+// The engines are templates over their scalar. They call the elementary functions by plain names, so that a
+// scalar may bring its own, and tell SearchCounter what a search does. Both count here, and the functions do
+// the same as in double: a counted run goes bit by bit the way of the run in double.
 #pragma once
 
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "impact_damper/engine.hpp"
-#include "impact_damper/events/impact_prediction.hpp"
-#include "impact_damper/events/root_isolation.hpp"
+#include "impact_damper/events/search.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper::bench {
 
 struct Counts {
-  std::int64_t guesses = 0;       // of a flight's end (impact_prediction.hpp)
-  std::int64_t searches = 0;      // calls of first_root, where no guess is proved
-  std::int64_t evaluations = 0;   // of a motion about a guess, and of the functions a search watches
-  std::int64_t steps = 0;         // of the search, one for each function watched (step_without_root)
+  std::int64_t predictions = 0;  // the first four as SearchCounter tells them (events/search.hpp)
+  std::int64_t searches = 0;
+  std::int64_t evaluations = 0;  // corrections, too
+  std::int64_t steps = 0;
   std::int64_t sincos = 0;        // sine and cosine of one angle count once
   std::int64_t exponentials = 0;  // exp and expm1
   std::int64_t arctangents = 0;
@@ -90,37 +86,6 @@ inline Counted square_root(const Counted& x) {
 inline Counted logarithm(const Counted& x) { return impact_damper::logarithm(double(x)); }
 inline Counted acos(const Counted& x) { return std::acos(double(x)); }
 
-template <std::same_as<Counted> Real>
-Prediction<Real> predict_impact(const Derivatives<Real, 10>& u, const Real& fourth, const Real& rate,
-                                const Real& most) {
-  ++counts.guesses;
-  return impact_damper::predict_impact<Real>(u, fourth, rate, most);
-}
-
-template <std::same_as<Counted> Real>
-TimeToLevel<Real> time_to_level(const Real& level, const Derivatives<Real, 6>& y, const Real& h,
-                                const Real& fourth) {
-  ++counts.evaluations;
-  return impact_damper::time_to_level<Real>(level, y, h, fourth);
-}
-
-template <std::same_as<Counted> Real, class Watch>
-std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon, const Real& span,
-                                     const Real& resolution) {
-  ++counts.searches;
-  const auto counting = [&](const Real& t) {
-    ++counts.evaluations;
-    return enclose(t);
-  };
-  return impact_damper::first_root<Real>(counting, from, horizon, span, resolution);
-}
-
-template <std::same_as<Counted> Real>
-Real step_without_root(const Jet<Real>& jet, Real most) {
-  ++counts.steps;
-  return impact_damper::step_without_root<Real>(jet, most);
-}
-
 // What a run of the scene counts, its half cycles recorded, and how many impacts it has.
 struct CountedRun {
   Counts counts;
@@ -134,3 +99,12 @@ CountedRun count(const Scene& scene, const Restitution& options);
 
 template <>
 struct std::numeric_limits<impact_damper::bench::Counted> : std::numeric_limits<double> {};
+
+template <>
+struct impact_damper::SearchCounter<impact_damper::bench::Counted> {
+  static void prediction() { ++bench::counts.predictions; }
+  static void correction() { ++bench::counts.evaluations; }
+  static void search() { ++bench::counts.searches; }
+  static void evaluation() { ++bench::counts.evaluations; }
+  static void step() { ++bench::counts.steps; }
+};

@@ -44,13 +44,13 @@ TEST_CASE("without damping flights cost sines and cosines, exponentials are the 
   CHECK(compliant.counts.exponentials > 0);
 }
 
-TEST_CASE("each flight begins with a guess, and few need a search") {
+TEST_CASE("each flight begins with a prediction, and few need a search") {
   const CountedRun run = count(tiny, Exact{});
   const auto contacts = simulate(tiny, Exact{}, {.impacts = true});
   CHECK(run.impacts == std::int64_t(contacts.impacts->time.size()));
   CHECK(run.impacts > 0);
-  CHECK(run.counts.guesses >= run.impacts);
-  CHECK(run.counts.guesses < 2 * run.impacts);
+  CHECK(run.counts.predictions >= run.impacts);
+  CHECK(run.counts.predictions < 2 * run.impacts);
   CHECK(run.counts.evaluations > 0);
   CHECK(run.counts.searches < run.impacts / 2);
 }

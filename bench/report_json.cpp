@@ -68,7 +68,7 @@ Json json_of(const Counting& counting) {
           {"engine", counting.engine},
           {"impacts", counting.run.impacts},
           {"per_impact",
-           {{"guesses", double(c.guesses) / n},
+           {{"predictions", double(c.predictions) / n},
             {"searches", double(c.searches) / n},
             {"evaluations", double(c.evaluations) / n},
             {"steps", double(c.steps) / n},

@@ -132,13 +132,13 @@ void add_references(std::string& page, const Findings& found) {
 
 void add_counts(std::string& page, const Findings& found) {
   page += "\n## What an impact takes\n\nCounted, not timed, by impact.\n\n";
-  PageTable table(page, {"", "impacts", "guesses", "searches", "evaluations", "steps", "sincos", "exp",
+  PageTable table(page, {"", "impacts", "predictions", "searches", "evaluations", "steps", "sincos", "exp",
                          "atan", "sqrt", "divisions", "+ − ×"});
   for (const Counting& counting : found.counts) {
     const Counts& c = counting.run.counts;
     Cells cells{counting.scene + " " + counting.engine, std::to_string(counting.run.impacts)};
-    for (const std::int64_t count : {c.guesses, c.searches, c.evaluations, c.steps, c.sincos, c.exponentials,
-                                     c.arctangents, c.square_roots}) {
+    for (const std::int64_t count : {c.predictions, c.searches, c.evaluations, c.steps, c.sincos,
+                                     c.exponentials, c.arctangents, c.square_roots}) {
       cells.push_back(printed("%.2f", double(count) / double(counting.run.impacts)));
     }
     for (const std::int64_t count : {c.divisions, c.other_arithmetic}) {

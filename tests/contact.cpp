@@ -140,8 +140,8 @@ Impact impact_of(const Scene& scene, Calibration calibration) {
   const System<double> system(scene);
   const ContactModes<double> walls(system, zeta_m<double>(scene, calibration));
   const Contact<double> contact(walls, 0.0, {0, 0, 0, -1}, Wall::left);
-  const double infinite = std::numeric_limits<double>::infinity();
-  const auto left = contact.leave(100.0, infinite);
+  Search<double> search{std::numeric_limits<double>::infinity()};
+  const auto left = contact.leave(100.0, search);
   REQUIRE(left.has_value());
   const State<double> after = left->state;
   const double nu = scene.mass_ratio;
@@ -216,8 +216,8 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
     const System<double> system(scene);
     const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
-    const double infinite = std::numeric_limits<double>::infinity();
-    const auto left = contact.leave(100.0, infinite);
+    Search<double> search{std::numeric_limits<double>::infinity()};
+    const auto left = contact.leave(100.0, search);
     REQUIRE(left.has_value());
     CAPTURE(nu);
     // Joined, the masses pass x = 0 a quarter period of sqrt(1 + nu) after x = -1, a little less for the

@@ -201,12 +201,13 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
     const State<double> start{random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
                               random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
                               random.chance(0.2) ? random.uniform(0, 1) : double(!left), left ? w : -w};
-    const double begin = random.uniform(0, 10), span = bounded_span(system), horizon = 10;
+    const double begin = random.uniform(0, 10), horizon = 10;
+    Search<double> search{bounded_span(system)};
     const Flight<double> flight(system, begin, start);
     const auto lead = flight.lead_of_y();
     const double away = left ? 1 : -1;
     if (w == 0 && (start.y == 0 || start.y == 1) && !(away * lead[2] > 0)) continue;
-    const auto found = flight.next_wall(horizon, span), expected = flight.search_wall(0, horizon, span);
+    const auto found = flight.next_wall(horizon, search), expected = flight.search_wall(0, horizon, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
     if (!found || !expected) continue;
@@ -231,6 +232,7 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
 
 TEST_CASE("a contact ends when the certified search says, in the state that its parts give") {
   reference::Random random(13);
+  Search<double> search{infinite};
   int left = 0, brisk = 0, lasting = 0;
   for (int n = 0; n < 40000; ++n) {
     const Scene scene = scene_of(random, false);
@@ -242,7 +244,7 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30),
                               wall == Wall::left ? 0.0 : 1.0, w};
     const Contact<double> contact(walls, 0.0, start, wall);
-    const auto found = contact.leave(100, infinite), expected = contact.search_leave(100, infinite);
+    const auto found = contact.leave(100, search), expected = contact.search_leave(100, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
     if (!found || !expected) continue;
@@ -274,6 +276,7 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
   // There both motions swing about as fast, and the short ways find a later return too: only their proofs
   // tell. Without that of a brisk rebound one end in a thousand is wrong, by much.
   reference::Random random(15);
+  Search<double> search{infinite};
   int brisk = 0;
   for (int n = 0; n < 20000; ++n) {
     Scene scene;
@@ -287,7 +290,7 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
     brisk += walls.short_contact && walls.short_contact(start.x, start.v, start.w);
-    const auto found = contact.leave(1000, infinite), expected = contact.search_leave(1000, infinite);
+    const auto found = contact.leave(1000, search), expected = contact.search_leave(1000, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
     if (found && expected) CHECK(found->time == doctest::Approx(expected->time).epsilon(1e-6));
@@ -297,6 +300,7 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
 
 TEST_CASE("a free motion's derivatives fall through zero where the certified search finds it") {
   reference::Random random(14);
+  Search<double> search{infinite};
   int fell = 0;
   for (int n = 0; n < 40000; ++n) {
     Scene scene = scene_of(random, false);
@@ -306,9 +310,9 @@ TEST_CASE("a free motion's derivatives fall through zero where the certified sea
     const ForcedMotion<double> swing(system.free, system.forcing, 0.0, x, v);
     const std::size_t order = n % 3;
     const double sign = random.sign(), from = random.chance(0.5) ? 0 : random.uniform(0, 10), until = 20;
-    const auto found = swing.falls(order, sign, from, until, infinite);
+    const auto found = swing.falls(order, sign, from, until, search);
     const auto expected = isolate_fall<double>(
-        [&](double t) { return swing.enclosure_at(order, sign, t, infinite); }, from, until, infinite, 1.0);
+        [&](double t) { return swing.enclosure_at(order, sign, t, infinite); }, from, until, search, 1.0);
     CAPTURE(n);
     const auto start = swing.enclosure_at(order, sign, from, infinite).whole;
     // From above; at a zero to rounding the two may take it for before or after.
@@ -323,6 +327,7 @@ TEST_CASE("a free motion's derivatives fall through zero where the certified sea
 
 TEST_CASE("stuck masses, their release known, turn where the certified search finds it") {
   reference::Random random(19);
+  Search<double> search{infinite};
   int turned = 0, released = 0;
   for (int n = 0; n < 20000; ++n) {
     Scene scene = scene_of(random, false);
@@ -332,14 +337,14 @@ TEST_CASE("stuck masses, their release known, turn where the certified search fi
     const double x = -random.log_uniform(1e-2, 30), v = signed_log(random, 1e-2, 30);
     Stuck<double> stuck(system, 0.0, x, v, Wall::left);
     if (!(stuck.leads_of_x()[2] > 0)) continue;
-    const auto release = stuck.release(0, 100, infinite);
+    const auto release = stuck.release(0, 100, search);
     if (!release) continue;
     ++released;
-    const auto found = stuck.falls(1, -1, 0, *release, infinite);
+    const auto found = stuck.falls(1, -1, 0, *release, search);
     const auto expected = isolate_fall<double>(
-        [&](double t) { return stuck.derivative_of_x(1, -1, t, infinite); }, 0.0, *release, infinite, 1.0);
+        [&](double t) { return stuck.derivative_of_x(1, -1, t, infinite); }, 0.0, *release, search, 1.0);
     CAPTURE(n);
-    CHECK(!stuck.falls(1, 1, 0, *release, infinite));
+    CHECK(!stuck.falls(1, 1, 0, *release, search));
     CHECK(found.has_value() == (v < 0 && expected.has_value()));
     if (!found) continue;
     ++turned;
@@ -354,6 +359,7 @@ TEST_CASE("stuck masses, their release known, turn where the certified search fi
 
 TEST_CASE("x crosses zero and turns in a contact where the certified search finds it") {
   reference::Random random(16);
+  Search<double> search{infinite};
   int fell = 0, lasting = 0;
   for (int n = 0; n < 20000; ++n) {
     Scene scene = scene_of(random, false);
@@ -364,14 +370,14 @@ TEST_CASE("x crosses zero and turns in a contact where the certified search find
     const State<double> start{-random.log_uniform(1e-2, 30), signed_log(random, 1e-2, 30), 0,
                               -random.log_uniform(1e-6, 1)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
-    const auto end = contact.leave(100, infinite);
+    const auto end = contact.leave(100, search);
     if (!end) continue;
     const std::size_t order = n % 2;
     const double sign = order == 0 ? -1 : start.v > 0 ? 1 : -1;
-    const auto found = contact.falls(order, sign, 0, end->time, infinite);
+    const auto found = contact.falls(order, sign, 0, end->time, search);
     const auto expected =
         isolate_fall<double>([&](double t) { return contact.derivative_of_x(order, sign, t, infinite); }, 0.0,
-                             end->time, infinite, contact.resolution());
+                             end->time, search, contact.resolution());
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
     if (!found || !expected) continue;

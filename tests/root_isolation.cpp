@@ -93,12 +93,13 @@ Curve random_curve(reference::Random& random, double& horizon) {
 // first place where g is below zero by more than rounding.
 void hold(const Curve& c, double horizon, double& evaluations) {
   int calls = 0;
+  Search<double> search{std::numeric_limits<double>::infinity()};
   const auto found = first_root<double>(
       [&](double t) {
         ++calls;
         return std::array{c.enclose(t)};
       },
-      0.0, horizon, std::numeric_limits<double>::infinity(), 1 / c.w);
+      0.0, horizon, search, 1 / c.w);
   evaluations += calls;
   const double noise = c.noise(horizon);
   const auto below =
@@ -223,8 +224,9 @@ TEST_CASE("gaps that begin at zero and rise are not taken for roots, and the ret
     const double rise = random.log_uniform(1e-9, 10);
     c.c1 = rise + c.a * c.w * std::sin(c.p);
     if (c.enclose(0).whole.g > 0 || !(c.enclose(0).whole.g1 > 0)) continue;
-    const auto found = first_root<double>([&](double t) { return std::array{c.enclose(t)}; }, 0.0, horizon,
-                                          std::numeric_limits<double>::infinity(), 1 / c.w);
+    Search<double> search{std::numeric_limits<double>::infinity()};
+    const auto found =
+        first_root<double>([&](double t) { return std::array{c.enclose(t)}; }, 0.0, horizon, search, 1 / c.w);
     CAPTURE(n);
     CAPTURE(rise);
     if (!found) continue;
@@ -255,9 +257,10 @@ TEST_CASE("flights across the cavity meet the wall that an independent search fi
 
     const System<double> system(scene);
     const Flight<double> flight(system, 0.0, {scene.x0, scene.v0, scene.y0, scene.w0});
-    const double span = std::numeric_limits<double>::infinity(), horizon = 20;
+    const double horizon = 20;
+    Search<double> search{std::numeric_limits<double>::infinity()};
     const auto found =
-        first_root<double>([&](double t) { return flight.gaps(t, span); }, 0.0, horizon, span, 1.0);
+        first_root<double>([&](double t) { return flight.gaps(t, search.span); }, 0.0, horizon, search, 1.0);
     const double noise =
         4 * epsilon * (1 + 20 * std::abs(scene.w0) + std::abs(scene.x0) + 20 * std::abs(scene.v0));
     const auto left = first_below(y, w, 0, horizon, noise, 100);

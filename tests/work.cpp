@@ -18,7 +18,8 @@ TEST_CASE("a flight that dies away loses all its energy to its damper, in howeve
       const Flight<double> flight(system, 0, {2, v, 0.5, 0});
       // The slower rate is never below 1/(2 zeta): exp(-80) is left.
       const double duration = 40 * (2 * zeta + 1 / zeta);
-      const Work<double> works = work_of(system, flight, 0.0, duration, 0.0);
+      Search<double> search{1};
+      const Work<double> works = work_of(system, flight, 0.0, duration, 0.0, search);
       CAPTURE(zeta);
       CAPTURE(v);
       CHECK(std::abs(works.viscous / ((4 + v * v) / 2) - 1) < 2e-13);  // a sum of up to 2e5 terms
@@ -64,8 +65,10 @@ TEST_CASE("a long contact's works are those of a quadrature that follows all its
         walls, begin, {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2) / root_k, -1.5},
         Wall::left);
     const double wall_damping = system.nu * walls.damping;
-    const Work<double> found = work_of(system, contact, begin, duration, wall_damping);
-    const Work<double> expected = work_of<Contact<double>>(system, contact, begin, duration, wall_damping);
+    Search<double> search{1};
+    const Work<double> found = work_of(system, contact, begin, duration, wall_damping, search);
+    const Work<double> expected =
+        work_of<Contact<double>>(system, contact, begin, duration, wall_damping, search);
     CAPTURE(n);
     CAPTURE(scene.mass_ratio);
     CAPTURE(scene.restitution);

@@ -10,18 +10,15 @@
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
-#include "impact_damper/events/step_budget.hpp"
 
 namespace impact_damper {
 namespace {
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
-  const Effort effort(options.max_steps);
   return run_exact<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
-  const Effort effort(options.max_steps);
   return run_restitution<double>(scene, options, recorder);
 }
 

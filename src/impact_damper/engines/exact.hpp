@@ -36,7 +36,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
 template <class InContact, class Real, class Force, class Observer>
 Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, Force>& system,
                   const Scene& scene, const Exact& options, Observer& observer) {
-  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, observer);
+  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
   const auto depth_of = [](const State<Real>& s) {
@@ -58,8 +58,8 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
   while (!tracker.stopped()) {
     if (!in_contact) {
       const Flight<Real, Force> flight(system, tracker.now(), state);
-      const auto met = at_rest_on_wall ? flight.released_meets_wall(tracker.remaining(), tracker.span())
-                                       : flight.next_wall(tracker.remaining(), tracker.span());
+      const auto met = at_rest_on_wall ? flight.released_meets_wall(tracker.remaining(), tracker.search())
+                                       : flight.next_wall(tracker.remaining(), tracker.search());
       at_rest_on_wall = false;
       if (met) state = copied(met->state);
       tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
@@ -69,7 +69,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
       in_contact = by_impact = true;
     } else {
       const InContact contact(walls, tracker.now(), state, wall);
-      const auto end = contact.leave(tracker.remaining(), tracker.span());
+      const auto end = contact.leave(tracker.remaining(), tracker.search());
       const Real begin = tracker.now();
       if (end) state = copied(end->state);
       const Work<Real> works =

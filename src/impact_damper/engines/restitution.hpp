@@ -33,7 +33,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
 template <class Real, class Force, class Observer>
 Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
                         Observer& observer) {
-  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, observer);
+  RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
   const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
@@ -60,8 +60,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const auto steady_for = [&](const Real& rate) {
       return (rate + 2 * zeta * push) * accumulation <= tolerance * push;
     };
-    if (!(steady_for(absolute(lead[3])) && accumulation < tracker.span() &&
-          steady_for(absolute(lead[3]) + flight.fourth_of_y(tracker.span()) * accumulation)))
+    if (!(steady_for(absolute(lead[3])) && accumulation < tracker.search().span &&
+          steady_for(absolute(lead[3]) + flight.fourth_of_y(tracker.search().span) * accumulation)))
       return false;
     accumulation -= accumulation * accumulation * (change_of_push / (3 * push) + zeta * e * nu / (1 + nu));
     return true;
@@ -79,7 +79,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       }
       Stuck<Real, Force> stuck(system, tracker.now(), state.x, state.v + joined, wall);
       const Real begin = tracker.now() + accumulation;
-      const auto released = stuck.release(accumulation, tracker.remaining(), tracker.span());
+      const auto released = stuck.release(accumulation, tracker.remaining(), tracker.search());
       if (released) state = stuck.released(*released);
       tracker.pass(stuck, released ? *released : tracker.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= tracker.now()) {
@@ -90,8 +90,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
 
     const Flight<Real, Force> flight(system, tracker.now(), state);
     const bool released = on_wall && state.w == 0;
-    const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.span())
-                              : flight.next_wall(tracker.remaining(), tracker.span());
+    const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.search())
+                              : flight.next_wall(tracker.remaining(), tracker.search());
     if (met) state = copied(met->state);
     tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
     if (tracker.stopped()) break;

@@ -31,13 +31,14 @@ class Clock {
 template <class Real, class Force, class Observer>
 class RunTracker {
  public:
-  RunTracker(const Scene& scene, const System<Real, Force>& system, const Budget& budget, Observer& observer)
+  RunTracker(const Scene& scene, const System<Real, Force>& system, const Budget& budget,
+             std::int64_t max_steps, Observer& observer)
       : scene_(scene),
         system_(system),
         budget_(budget),
         observer_(observer),
         horizon_(horizon_of(scene, budget)),
-        span_(bounded_span(system)),
+        search_{bounded_span(system), max_steps},
         tracks_half_cycles_(observer.wants_half_cycles() || scene.until_amplitude.has_value()) {}
 
   const Real& now() const { return clock_.now(); }
@@ -45,8 +46,7 @@ class RunTracker {
   const std::optional<StopReason>& stopped() const { return stopped_; }
   // When the run ended: exactly the time asked for if that ended it.
   double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
-  // For how long a bound on a motion may be asked for.
-  const Real& span() const { return span_; }
+  Search<Real>& search() { return search_; }
 
   void begin(const State<Real>& start, const Real& depth) {
     row_best_ = absolute(start.x);
@@ -58,7 +58,7 @@ class RunTracker {
   template <class Motion>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
                                          const Real& wall_damping) {
-    if (out_of_effort()) {  // the end of the motion may not have been found
+    if (search_.exhausted()) {  // the end of the motion may not have been found
       stopped_ = StopReason::step_budget;
       duration = 0;
       end = motion.at(duration);
@@ -83,7 +83,7 @@ class RunTracker {
     }
     Work<Real> works;
     if (observer_.wants_energy()) {
-      works = work_of(system_, motion, now(), duration, wall_damping);
+      works = work_of(system_, motion, now(), duration, wall_damping, search_);
       viscous_ += works.viscous;
       forcing_ += works.forcing;
       turnover_ += works.turnover;
@@ -135,8 +135,8 @@ class RunTracker {
     if (order == 4) return false;
     side_ = leads[order] > 0 ? 1 : -1;
     if (order == 3) {
-      const Real fourth = motion.derivative_of_x(1, side_, from, span_).whole.third;
-      const Real leap = begin_by_third<Real>(leads[order], fourth, span_);
+      const Real fourth = motion.derivative_of_x(1, side_, from, search_.span).whole.third;
+      const Real leap = begin_by_third<Real>(leads[order], fourth, search_.span);
       from = leap < duration ? leap : duration;
     }
     return true;
@@ -147,7 +147,7 @@ class RunTracker {
                                           Real from) {
     notice_peak(side_ * motion.at(from).x, from);
     const Real v = side_ * motion.at(from).v;
-    bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, span_).whole.g1 > 0);
+    bool rising = v > 0 || (v == 0 && motion.derivative_of_x(1, side_, from, search_.span).whole.g1 > 0);
     // What the ends already exclude is not searched for.
     bool may_turn = !motion.keeps_course(row_best_, end, duration);
     bool may_cross = !motion.keeps_side(side_, end, duration);
@@ -159,10 +159,10 @@ class RunTracker {
     const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (duration + scale);
     for (;;) {
       std::optional<Real> crossing;
-      if (may_cross) crossing = motion.falls(0, side_, from, last, span_);
+      if (may_cross) crossing = motion.falls(0, side_, from, last, search_);
       const Real until = crossing ? *crossing : duration;
       if (may_turn && no_turn_before <= until) find_peaks(motion, from, until, rising, no_turn_before);
-      if (out_of_effort()) {
+      if (search_.exhausted()) {
         stopped_ = StopReason::step_budget;
         timed_out_ = false;
         return from;
@@ -193,7 +193,7 @@ class RunTracker {
   void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, Real& no_turn_before) {
     for (;;) {
       const Real sign = rising ? side_ : -side_;
-      const auto turn = motion.falls(1, sign, from, until, span_);
+      const auto turn = motion.falls(1, sign, from, until, search_);
       if (!turn) return;
       if (rising) notice_peak(motion.height(*turn), *turn);
       no_turn_before = *turn + motion.one_zero_within(*turn);
@@ -214,7 +214,7 @@ class RunTracker {
   Observer& observer_;
   Clock<Real> clock_;
   Outcome horizon_;  // if nothing else ends the scene before
-  Real span_;
+  Search<Real> search_;
   bool tracks_half_cycles_;
   std::optional<StopReason> stopped_;
   bool timed_out_ = false;  // by the horizon

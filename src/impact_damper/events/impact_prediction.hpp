@@ -8,6 +8,7 @@
 
 #include <limits>
 
+#include "impact_damper/events/search.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/math/power_series.hpp"
 
@@ -24,6 +25,7 @@ template <class Real>
 [[gnu::always_inline]] inline TimeToLevel<Real> time_to_level(const Real& level,
                                                               const Derivatives<Real, 6>& y, const Real& h,
                                                               const Real& fourth) {
+  SearchCounter<Real>::correction();
   const Real over = 1 / y[1], t = (level - y[0]) * over;
   const Real a = t * (y[2] * over / 2), b = t * t * (y[3] * over * reciprocals<Real>[6]);
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
@@ -65,6 +67,7 @@ template <class Real>
 [[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, 10>& u,
                                                               const Real& fourth, const Real& rate,
                                                               const Real& most) {
+  SearchCounter<Real>::prediction();
   const bool from_rest = u[1] == 0 && u[2] == 0;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
   const Real ahead = rising ? Real(1 - u[0]) : u[0];

@@ -12,7 +12,7 @@
 #include <limits>
 #include <optional>
 
-#include "impact_damper/events/step_budget.hpp"
+#include "impact_damper/events/search.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
@@ -34,6 +34,7 @@ struct LocalEnclosure {
 // or `most` where it has none up to there. Needs jet.g >= 0.
 template <class Real>
 Real step_without_root(const Jet<Real>& jet, Real most) {
+  SearchCounter<Real>::step();
   const Real &g = jet.g, &g1 = jet.g1, &g2 = jet.g2, &third = jet.third;
   // From `far` on the cube outdoes each other term three times, and p is negative.
   const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
@@ -102,18 +103,21 @@ struct Root {
 
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
 // enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
-// time `span`. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the root.
+// time search.span. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the
+// root. Nothing also where the search has no steps left.
 // A function that is not positive but rising is one that has just been left. While it does not rise by more
-// than rounding, steps double: what it does meanwhile is lost in rounding errors. Every step is an effort
-// (step_budget.hpp). No step is chosen by the horizon: a search that ends earlier is the beginning of one
-// that ends later, to the bit.
+// than rounding, steps double: what it does meanwhile is lost in rounding errors. No step is chosen by the
+// horizon: a search that ends earlier is the beginning of one that ends later, to the bit.
 template <class Real, class Watch>
-std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon, const Real& span,
-                                     const Real& resolution) {
-  const Real later_than_any_run = 1e13, most = span < later_than_any_run ? span : later_than_any_run;
+std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,
+                                     Search<Real>& search, const Real& resolution) {
+  SearchCounter<Real>::search();
+  const Real later_than_any_run = 1e13,
+             most = search.span < later_than_any_run ? search.span : later_than_any_run;
   Real time = from, wait{0};
   while (time < horizon) {
-    if (!spend_effort()) return std::nullopt;
+    if (!search.take_step()) return std::nullopt;
+    SearchCounter<Real>::evaluation();
     const auto functions = enclose(time);
     const Real rest_of_horizon = horizon - time;
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
@@ -158,12 +162,12 @@ std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Re
   return std::nullopt;
 }
 
-// The first time in [from, until) at which a function falls through zero, by its outlooks.
+// The first time in [from, until) at which one function falls through zero; enclosure_at(t) encloses it.
 template <class Real, class Enclose>
 std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const Real& until,
-                                 const Real& span, const Real& resolution) {
+                                 Search<Real>& search, const Real& resolution) {
   const auto root = first_root<Real>([&](const Real& t) { return std::array{enclosure_at(t)}; }, from, until,
-                                     span, resolution);
+                                     search, resolution);
   return root ? std::optional(root->time) : std::nullopt;
 }
 

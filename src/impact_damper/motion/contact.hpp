@@ -30,7 +30,7 @@ class Contact {
   }
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
-  std::optional<WallEvent<Real>> leave(const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     if (start_.y == wall_) {
       std::optional<typename ShortContactMap<Real>::End> end;
       if (system_.short_contact) end = system_.short_contact(start_.x, start_.v, start_.w);
@@ -38,18 +38,18 @@ class Contact {
       if (end && !(end->time < horizon)) return {};
       if (end) return WallEvent<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
     }
-    return search_leave(horizon, span);
+    return search_leave(horizon, search);
   }
   // The same, certified step by step.
-  std::optional<WallEvent<Real>> search_leave(const Real& horizon, const Real& span) const {
+  std::optional<WallEvent<Real>> search_leave(const Real& horizon, Search<Real>& search) const {
     // A mass at rest may be pressed against the wall by q''' alone.
     Real from{0};
     if (start_.y == wall_ && start_.w == 0) {
       const Real third = third_of_q_at_rest();
-      if (inward_ * third > 0) from = begin_by_third<Real>(third, fourth_of_q(span), span);
+      if (inward_ * third > 0) from = begin_by_third<Real>(third, fourth_of_q(search.span), search.span);
     }
-    const auto fall =
-        isolate_fall<Real>([&](const Real& t) { return depth(t, span); }, from, horizon, span, resolution());
+    const auto fall = isolate_fall<Real>([&](const Real& t) { return depth(t, search.span); }, from, horizon,
+                                         search, resolution());
     if (!fall) return {};
     WallEvent<Real> end{*fall, wall(), at(*fall)};
     end.state.y = wall_;
@@ -114,10 +114,10 @@ class Contact {
     return t < from + one_zero_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
   }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
-                            const Real& span) const {
+                            Search<Real>& search) const {
     if (const auto fall = fall_of_slow_x(order, sign, from)) return *fall < until ? fall : std::nullopt;
-    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
-                              until, span, resolution());
+    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
+                              from, until, search, resolution());
   }
   // |x| at a turn.
   Real height(const Real& t) const {

@@ -31,20 +31,21 @@ class ContactWithoutModes {
   Real overlap(const Real& t) const { return absolute(exponential_(s_, t)[2]); }
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
-  [[gnu::noinline]] std::optional<WallEvent<Real>> leave(const Real& horizon, const Real& span) const {
+  [[gnu::noinline]] std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     Real from{0};
     if (start_.y == wall_ && start_.w == 0) {  // as in contact.hpp
       const Chain chain(*this, Real(0));
       const Real third = chain.s[3][2];
-      if (inward_ * third > 0) from = begin_by_third<Real>(third, chain.bound_of_q(4, span), span);
+      if (inward_ * third > 0)
+        from = begin_by_third<Real>(third, chain.bound_of_q(4, search.span), search.span);
     }
     const auto fall = isolate_fall<Real>(
         [&](const Real& t) {
           const Chain chain(*this, t);
           return look(inward_ * chain.s[0][2], inward_ * chain.s[1][2], inward_ * chain.s[2][2],
-                      chain.bound_of_q(3, span));
+                      chain.bound_of_q(3, search.span));
         },
-        from, horizon, span, resolution());
+        from, horizon, search, resolution());
     if (!fall) return {};
     WallEvent<Real> end{*fall, wall_ == 0 ? Wall::left : Wall::right, at(*fall)};
     end.state.y = wall_;
@@ -64,9 +65,9 @@ class ContactWithoutModes {
     return absolute(end.v) > bound_of_x(2, t) * (t - from);
   }
   [[gnu::noinline]] std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from,
-                                              const Real& until, const Real& span) const {
-    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, span); }, from,
-                              until, span, resolution());
+                                              const Real& until, Search<Real>& search) const {
+    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
+                              from, until, search, resolution());
   }
   Real height(const Real& t) const { return absolute(at(t).x); }
   [[gnu::noinline]] LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,

@@ -79,14 +79,14 @@ RateParts<Real> rate_parts(const ContactModes<Real, Force>& walls, const Contact
 // As the works of any motion (energy.hpp), at a cost that does not grow with how long the wall rings.
 template <class Real, class Force>
 Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>& contact, const Real& begin,
-                   const Real& duration, const Real& wall_damping) {
+                   const Real& duration, const Real& wall_damping, Search<Real>& search) {
   const ContactModes<Real, Force>& walls = contact.system();
   const Oscillator<Real>&slow = walls.slow, &fast = walls.fast;
   const Real square = walls.forcing ? walls.forcing.frequency * walls.forcing.frequency : Real(0);
   const bool apart = fast.b() > 64 * square && (!slow.rings() || fast.rate() > 8 * slow.rate());
   const bool lasts = fast.rate() * duration > 200;
   if (!(fast.rings() && apart && lasts)) {
-    return work_of<Contact<Real, Force>>(system, contact, begin, duration, wall_damping);
+    return work_of<Contact<Real, Force>>(system, contact, begin, duration, wall_damping, search);
   }
   using State = ContactState<Real>;
   const auto x_rate = [&](const State& slow_part, const State& fast_part, const Real& t) {
@@ -101,7 +101,7 @@ Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>
     return std::array<Real, 2>{x.slow.u + x.steady.u, q.slow.u + q.steady.u};
   };
   const auto panel = [&](const Real& t) { return panel_under(walls.forcing, slow.panel(t)); };
-  Work<Real> works = integrated_work(system, smooth, panel, begin, duration, wall_damping);
+  Work<Real> works = integrated_work(system, smooth, panel, begin, duration, wall_damping, search);
 
   const auto antiderivative = [](const Wave<Real>& g, const Wave<Real>& h, const Real& p) {
     return g.u * h.u1 - g.u1 * h.u - p * g.u * h.u;

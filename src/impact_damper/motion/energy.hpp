@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "impact_damper/events/step_budget.hpp"
+#include "impact_damper/events/search.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/motion/system.hpp"
 
@@ -51,12 +51,12 @@ inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1
 // an oscillation that fast averages out.
 template <class Real, class Force, class Rates, class Panel>
 Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Panel&& panel, const Real& begin,
-                           const Real& duration, const Real& wall_damping) {
+                           const Real& duration, const Real& wall_damping, Search<Real>& search) {
   Work<Real> works;
   Real from{0};
   const Real least = duration / 65536;
   for (int panels = 1; from < duration; ++panels) {
-    --effort_left;  // the next search may end the run for it; a quadrature is short enough by itself
+    --search.steps_left;  // the next search may end the run for it; a quadrature is short enough by itself
     Real to = from + panel(from);
     if (panels > 65536 && to < from + least) to = from + least;
     if (!(to < duration)) to = duration;
@@ -83,14 +83,14 @@ Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Pan
 
 template <class Motion, class Real, class Force>
 Work<Real> work_of(const System<Real, Force>& system, const Motion& motion, const Real& begin,
-                   const Real& duration, const Real& wall_damping) {
+                   const Real& duration, const Real& wall_damping, Search<Real>& search) {
   if (system.zeta == 0 && !system.forcing && wall_damping == 0) return {};
   const auto rates = [&](const Real& t) {
     const State<Real> now = motion.at(t);
     return std::array{now.v, now.w};
   };
   return integrated_work(
-      system, rates, [&](const Real& t) { return motion.panel(t); }, begin, duration, wall_damping);
+      system, rates, [&](const Real& t) { return motion.panel(t); }, begin, duration, wall_damping, search);
 }
 
 }  // namespace impact_damper

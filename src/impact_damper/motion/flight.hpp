@@ -22,19 +22,20 @@ class Flight {
   }
 
   // Where and when a wall is met, if before `horizon`.
-  std::optional<WallEvent<Real>> next_wall(const Real& horizon, const Real& span) const {
-    return met_from(Real(0), Real(0), horizon, span);
+  std::optional<WallEvent<Real>> next_wall(const Real& horizon, Search<Real>& search) const {
+    return met_from(Real(0), Real(0), horizon, search);
   }
   // The same of a mass that begins at rest on a wall, and leaves it.
-  std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, const Real& span) const {
-    const Real leap = begin_by_jerk(span);
+  std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
+    const Real leap = begin_by_jerk(search.span);
     // Where y'' is zero to the last bit there is no sign to pass over.
-    return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, span);
+    return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, search);
   }
   // The same, certified step by step.
-  std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon, const Real& span) const {
-    const auto met =
-        first_root<Real>([&](const Real& t) { return gaps(t, span); }, from, horizon, span, resolution());
+  std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
+                                             Search<Real>& search) const {
+    const auto met = first_root<Real>([&](const Real& t) { return gaps(t, search.span); }, from, horizon,
+                                      search, resolution());
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
     State<Real> state = at(met->time);
@@ -78,8 +79,8 @@ class Flight {
   }
   Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
-                            const Real& span) const {
-    return primary_.falls(order, sign, from, until, span);
+                            Search<Real>& search) const {
+    return primary_.falls(order, sign, from, until, search);
   }
   Real height(const Real& t) const { return primary_.height(t); }
   LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
@@ -115,10 +116,10 @@ class Flight {
   // Inlined: 2 % of a decay's time.
   [[gnu::always_inline]] std::optional<WallEvent<Real>> met_from(const Real& predict_from,
                                                                  const Real& search_from, const Real& horizon,
-                                                                 const Real& span) const {
-    std::optional<WallEvent<Real>> met = predicted_wall(predict_from, span);
+                                                                 Search<Real>& search) const {
+    std::optional<WallEvent<Real>> met = predicted_wall(predict_from, search.span);
     if (!met) {
-      met = search_wall(search_from, horizon, span);
+      met = search_wall(search_from, horizon, search);
     } else if (!(met->time < horizon)) {
       met.reset();
     }

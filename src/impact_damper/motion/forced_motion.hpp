@@ -97,10 +97,10 @@ class ForcedMotion {
   bool leaves_zero(const Real& from, const Real& t) const { return t < from + one_zero_within(); }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
-                            const Real& span) const {
+                            Search<Real>& search) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
-      return isolate_fall<Real>([&](const Real& t) { return enclosure_at(order, sign, t, span); }, from,
-                                until, span, Real(1));
+      return isolate_fall<Real>([&](const Real& t) { return enclosure_at(order, sign, t, search.span); },
+                                from, until, search, Real(1));
     const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     const Real u = sign * x[order], u1 = sign * x[order + 1];
     if (u == 0 && u1 == 0) return {};

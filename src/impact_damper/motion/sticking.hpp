@@ -28,13 +28,13 @@ class Stuck {
     return v ? State<Real>{-push_ * *v * primary_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
   }
   // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
-  std::optional<Real> release(const Real& from, const Real& horizon, const Real& span) {
+  std::optional<Real> release(const Real& from, const Real& horizon, Search<Real>& search) {
     // The push with which the mass was held is that of the flight before: a rounding error may leave none. To
     // look on from `from` > 0 would find the next time that it vanishes, a period later.
     const auto start = primary_.beginning();
     const Real push = push_ * start[2], change_of_push = push_ * start[3];
     if (push <= 0 && change_of_push < 0) return from < horizon ? std::optional(from) : std::nullopt;
-    const auto released = primary_.falls(2, push_, from, horizon, span);
+    const auto released = primary_.falls(2, push_, from, horizon, search);
     if (released) turn_ = primary_.turn_before(*released);
     return released;
   }
@@ -49,10 +49,10 @@ class Stuck {
   }
   Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
-                            const Real& span) const {
+                            Search<Real>& search) const {
     // Until then x'' keeps its sign, and so x' rises, the way the wall pushes, through one zero at most.
     if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
-    return primary_.falls(order, sign, from, until, span);
+    return primary_.falls(order, sign, from, until, search);
   }
   Real height(const Real& t) const { return primary_.height(t); }
   LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,

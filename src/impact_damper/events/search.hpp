@@ -1,0 +1,34 @@
+// What every search for an event is given, and who counts it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace impact_damper {
+
+// One for each run. Where a motion is so stiff, or so long, that its bounds hold for a very short time only,
+// the search for its next event would not end without a step budget.
+template <class Real>
+struct Search {
+  Real span;  // > 0: the bounds on derivatives that a step uses hold for this long
+  // Steps of searches (root_isolation.hpp) and panels of quadratures (energy.hpp) that are left, at about a
+  // microsecond each.
+  std::int64_t steps_left = std::numeric_limits<std::int64_t>::max();
+
+  // False: none is left. The search then finds nothing, and the run ends by StopReason::step_budget
+  // (run_tracker.hpp).
+  bool take_step() { return steps_left-- > 0; }
+  bool exhausted() const { return steps_left < 0; }
+};
+
+// Told what a search does. A scalar that counts specializes it; for any other it does nothing.
+template <class Real>
+struct SearchCounter {
+  static void prediction() {}  // of a flight's end, impact_prediction.hpp
+  static void correction() {}  // of a predicted time, by one evaluation of the motion
+  static void search() {}      // where a prediction was not validated, root_isolation.hpp
+  static void evaluation() {}  // of the functions that a search watches
+  static void step() {}        // of a search, for each function
+};
+
+}  // namespace impact_damper
