@@ -35,8 +35,11 @@ class ContactModes {
     beta_ = beta / resultant;
     slow_ = (beta - alpha * p) / resultant;
     fast_ = (beta - alpha * p2) / resultant;
-    // What one unit of forcing accelerates: x'' by 1, q'' by -1.
-    split({0, 1, 0, -1}, drive_slow, drive_fast);
+    // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
+    // slow part of x follows with all its digits. As 1 less the fast part it would lose those of 1 + nu.
+    const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast);
+    drive_slow.x = -driven_centre.x - share_ * drive_slow.q;
+    drive_slow.v = (joined_ - driven_centre.v) - share_ * drive_slow.w;
     std::array<Touch<Real>, 3> touch;
     touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
     touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
