@@ -5,12 +5,13 @@
 //
 // Complete chattering, the paper's bounce-down, is an infinite sequence of impacts in a finite time (M6.1).
 // Its impacts are stepped through one by one until the relative acceleration a towards the wall changes by
-// less than the fraction Restitution::accumulation_tolerance within that time; then the engine takes the
-// limit: the masses join, keep their momentum, and stick from the time (M6.2) later on. With the tolerance
-// tol and |a'| <= m, the rebound speed w is then about tol a^2 (1-e) / 2m; at the default tolerance that is
-// some 1e-9, and the displacement that is ignored, nu w^2 / 2a, is below rounding. Chattering that begins
-// with w takes about ln(2 m w / (tol a^2 (1-e))) / -ln e impacts until then; the energy of the impacts left
-// out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
+// less than the fraction Restitution::accumulation_tolerance within that time, the displacement that the
+// limit ignores, nu w^2 / (2a (1+nu)), is below rounding of x, and x has no turn within that time (M6.3).
+// Then the engine takes the limit: the masses join, keep their momentum, and stick from the time (M6.2) later
+// on. With the tolerance tol and |a'| <= m, the rebound speed w is then at most tol a^2 (1-e) / 2m; at the
+// default tolerance that is some 1e-9. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e)))
+// / -ln e impacts until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as
+// bounce_down_loss.
 //
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
@@ -63,6 +64,13 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     if (!(steady_for(absolute(lead[3])) && accumulation < tracker.search().span &&
           steady_for(absolute(lead[3]) + flight.fourth_of_y(tracker.search().span) * accumulation)))
       return false;
+    // (M6.3). x' of the joined masses, and by how much x' may differ from it meanwhile.
+    const Real epsilon = std::numeric_limits<Real>::epsilon(), share = nu / (1 + nu);
+    const Real joined_speed = absolute(state.v + share * state.w);
+    const Real ignored = share * speed * speed / (2 * push);
+    if (!(8 * ignored <= epsilon * (absolute(state.x) + joined_speed * accumulation))) return false;
+    const bool may_turn = joined_speed <= share * (1 + e) * speed + push * accumulation;
+    if (may_turn && !(2 * accumulation <= epsilon * tracker.now())) return false;
     accumulation -= accumulation * accumulation * (change_of_push / (3 * push) + zeta * e * nu / (1 + nu));
     return true;
   };
