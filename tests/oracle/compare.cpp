@@ -626,7 +626,7 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
   for (const oracle::Impact& each : answer.impacts) listed += each.loss;
   for (const double each : balance.impact_loss) recorded += each;
   const auto& totals = prediction.totals;
-  const Quad all = answer.initial.total() + magnitude(answer.forcing_work) + answer.viscous_work;
+  const Quad all = answer.initial.total() + answer.forcing_turnover + answer.viscous_work;
   const Quad floor = Quad(rounding) * all;
   const auto energies = [&](const std::string& which, const impact_damper::Energy& e,
                             const oracle::Energy& truth, bool last) {
@@ -648,7 +648,11 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     judge.number("contact loss", balance.contact_loss, answer.contact_loss, totals[5] + floor);
   }
   judge.number("viscous work", balance.viscous_work, answer.viscous_work, totals[7] + floor);
-  judge.number("forcing work", balance.forcing_work, answer.forcing_work, totals[8] + floor);
+  // omega_f t is rounded, too, which no noise of the state stands for: the force is off by as many roundings
+  // as it has radians.
+  const Quad radians = question.scene.force_frequency * end;
+  judge.number("forcing work", balance.forcing_work, answer.forcing_work,
+               totals[8] + floor + Quad(rounding) * answer.forcing_turnover * radians);
   judge.number("residual", balance.residual, 0, Quad(rounding) * 10);
   if (question.walls == Walls::rigid && !both.mismatch) {
     Quad jumped = answer.chatter_loss;

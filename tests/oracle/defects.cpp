@@ -144,6 +144,25 @@ TEST_CASE("what a force does early in a contact keeps its digits") {
   agrees(scene, Exact{});
 }
 
+TEST_CASE("a force moves a light primary mass and a heavy secondary mass in contact with all digits") {
+  Scene scene = scene_until(5.278041916350764);
+  scene.mass_ratio = 395.4939628313421, scene.restitution = 0.5540917798383068;
+  scene.wall_stiffness = 64.41119708703405, scene.x0 = 0, scene.w0 = 2.2326822874498287e-06;
+  scene.force_amplitude = 4.226940742030566, scene.force_frequency = 0.4245708274316824;
+  agrees(scene, Exact{});
+}
+
+TEST_CASE("a peak within a complete chattering after a release from rest is where the impacts put it") {
+  Scene scene = scene_until(30);
+  scene.mass_ratio = 0.01433155580774274, scene.restitution = 0.07766068056754194;
+  scene.x0 = 3.559547141860511, scene.y0 = 1, scene.w0 = 0.0008186218997506995;
+  agrees(scene, Restitution{});
+  scene.mass_ratio = 0.507891951125465, scene.restitution = 0.7251151107590299;
+  scene.damping_ratio = 0.0003966002641233857, scene.x0 = 7.834065863578939,
+  scene.w0 = 1.4538479864120097e-06;
+  agrees(scene, Restitution{});
+}
+
 TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
   Scene scene = scene_until(5);
   scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;

@@ -363,7 +363,7 @@ class Integrator {
       const Quad v = state_.v + (p_.nu * w + rest * acting) / (1 + p_.nu);
       const Quad mean = (state_.v + v) / 2;
       answer_.viscous_work += 2 * p_.zeta * mean * mean * rest;
-      answer_.forcing_work += force * mean * rest;
+      add_forcing_work(force * mean * rest);
       state_.x += mean * rest;
       state_.v = v;
       state_.t += rest;
@@ -502,10 +502,15 @@ class Integrator {
     state_.x = step_.x(s), state_.v = step_.v(s), state_.w = step_.w(s), state_.q = step_.q(s);
   }
 
+  void add_forcing_work(Quad work) {
+    answer_.forcing_work += work;
+    answer_.forcing_turnover += magnitude(work);
+  }
+
   void work(Quad end) {
     if (p_.zeta != 0)
       answer_.viscous_work += 2 * p_.zeta * step_.h * integral_of_product(step_.v, step_.v, end);
-    if (p_.f0 != 0) answer_.forcing_work += step_.h * integral_of_product(step_.f, step_.v, end);
+    if (p_.f0 != 0) add_forcing_work(step_.h * integral_of_product(step_.f, step_.v, end));
     if (in_contact() && p_.damping != 0) {
       const Quad loss = p_.nu * p_.damping * step_.h * integral_of_product(step_.w, step_.w, end);
       (of_impact_ ? answer_.impacts.back().loss : answer_.contact_loss) += loss;

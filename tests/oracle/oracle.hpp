@@ -74,6 +74,8 @@ struct Answer {
   Quad contact_loss = 0;  // compliant walls: in contacts that no impact began
   Quad chatter_loss = 0;  // rigid walls: in the impacts beyond the last one listed of a complete chattering
   Quad viscous_work = 0, forcing_work = 0;
+  Quad forcing_turnover =
+      0;  // the sum of |work| over steps: what rounding errors of the work are measured by
   std::int64_t steps = 0;
 };
 
