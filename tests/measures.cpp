@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "impact_damper/analysis/theory.hpp"
+#include "closed_forms.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/motion/wall.hpp"

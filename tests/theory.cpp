@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "closed_forms.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 using namespace impact_damper;

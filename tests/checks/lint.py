@@ -50,6 +50,7 @@ def grouped(build):
             missing(f"no source of the group {name} is compiled in {build}: mend {GROUPS}")
     groups |= {file.stem: [file] for file in left}
     # Where it is included from, its own folder is not looked in by itself.
+    # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
     return [(name, files, [word for word in shlex.split(commands[files[0]])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
                            not word.startswith("-") and "/include" in word and not word.endswith(".o")] +
              [f"-I{folder}" for folder in {file.parent for file in files}]) for name, files in groups.items()]

@@ -1,10 +1,12 @@
-// The forced solution of theory.hpp with two symmetric impacts per cycle, and its stability.
+#include "closed_forms.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
 namespace {
@@ -47,6 +49,30 @@ double largest_multiplier(const Parameters& p, const Departure& fixed, double fl
 }
 
 }  // namespace
+
+ImpactOutcome impact(double mass_ratio, double restitution, double v, double w) {
+  const double nu = mass_ratio, e = restitution;
+  return {v + nu * (1 + e) * w / (1 + nu), -e * w, nu * (1 - e * e) * w * w / (2 * (1 + nu))};
+}
+
+double restitution_by_displacement(double z) { return exponential(-pi * z / std::sqrt((1 - z) * (1 + z))); }
+
+double restitution_by_force(double z) {
+  const double omega = std::sqrt((1 - z) * (1 + z));
+  return exponential(-2 * z * angle_of(omega, z) / omega);
+}
+
+double delivered_restitution(double restitution, double mass_ratio) {
+  return restitution_by_displacement(zeta_m_closed_form(restitution) * std::sqrt(1 + mass_ratio));
+}
+
+double delivered_restitution_without_pull(double restitution, double mass_ratio) {
+  return restitution_by_force(zeta_m_closed_form(restitution) * std::sqrt(1 + mass_ratio));
+}
+
+double stable_step_centred() { return 2; }
+
+double stable_step_lagged(double z) { return 2 * (std::sqrt(1 + z * z) - z); }
 
 std::vector<ForcedTwoImpact> forced_two_impact(double mass_ratio, double restitution, double force_amplitude,
                                                double force_frequency) {
