@@ -8,10 +8,10 @@
 // (begin_segment). A change costs a local error of (h_{n+1}^2 - h_n^2) u'''/8 in the velocity; h ends where
 // it began, so these are differences, and the order remains 2.
 //
-// But they do not cancel. Central differences lead x'' + x = 0 round the ellipse x^2 (1 - h^2/4) + v_n^2, so
-// a change at x adds (h_{n+1}^2 - h_n^2) x^2 / 8 to the energy, in every half cycle with the same sign: with
-// H = 0.05, up to a tenth of what the impacts take out at x0 = 6. What is handed on is therefore V = v_n /
-// sqrt(1 - h^2/4), with which the ellipse is the true circle for any h, run through too fast by h^2/24.
+// But they do not cancel. Central differences lead x'' + x = 0 round the ellipse x^2 + v_n^2 / (1 - h^2/4),
+// so a change at v adds (h_{n+1}^2 - h_n^2) v^2 / 8 to the energy, in every half cycle with the same sign:
+// with H = 0.05, up to a tenth of what the impacts take out at x0 = 6. What is handed on is therefore V = v_n
+// / sqrt(1 - h^2/4), with which the ellipse is the true circle for any h, run through too fast by h^2/24.
 // Damping and force add, by Taylor's theorem, v_n = ... + h^2 (f' - 2 zeta x'') / 6. Pressed to a wall both
 // masses move as one, (1 + nu) x'' + ..., and each h^2 here is divided by 1 + nu. x' + y', which nothing
 // changes in flight, is handed on as it is.
@@ -28,7 +28,6 @@
 // When the ringing is (omega_m h)^2 of q_p, the scheme's own relative error, steps of half the stability
 // limit are as good: what is left of it dies away in these too. Small steps return before the mass is free.
 // Joined to the primary mass (Cem::stuck_speed) it takes steps of H until they part.
-// Joined to it (Cem::stuck_speed) the mass takes steps of H until they part.
 #pragma once
 
 #include <algorithm>
