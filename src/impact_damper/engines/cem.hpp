@@ -39,7 +39,9 @@
 
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/cem_scheme.hpp"
+#include "impact_damper/engines/observer.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/scalar.hpp"
 #include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/forced_motion.hpp"
 #include "impact_damper/run.hpp"
@@ -255,7 +257,7 @@ class CemEngine {
 
 // Runs the scene for an observer with the members of Recorder. Checks the step first: throws
 // std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
-template <class Real = double, class Observer>
+template <Scalar Real = double, RunObserver Observer>
 Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
   require_arithmetic();
   const Cem complete = resolved(scene, options);

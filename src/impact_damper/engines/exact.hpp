@@ -8,7 +8,9 @@
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/math/scalar.hpp"
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/flight.hpp"
@@ -16,8 +18,8 @@
 
 namespace impact_damper {
 
-// Runs a scene that problems_of finds nothing wrong with, telling `observer` (recorder.hpp) what it wants.
-template <class Real, class Observer>
+// Runs a scene that problems_of finds nothing wrong with, telling `observer` what it wants.
+template <Scalar Real, RunObserver Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
   require_arithmetic();
   return with_system<Real>(scene,

@@ -1,7 +1,6 @@
 // The observer that every engine talks to: keeps what a Record asks for, as columns.
 //
-// An engine calls it in time order. It asks first what is wanted, and computes nothing else.
-// An engine is a template over its observer: anything with these members may stand in.
+// An engine is a template over its observer: anything that is a RunObserver (observer.hpp) may stand in.
 #pragma once
 
 #include <limits>

@@ -17,14 +17,16 @@
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/math/scalar.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/sticking.hpp"
 
 namespace impact_damper {
 
 // Runs a scene that problems_of finds nothing wrong with and that begins between the walls, 0 <= y0 <= 1.
-template <class Real, class Observer>
+template <Scalar Real, RunObserver Observer>
 Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
   require_arithmetic();
   return with_system<Real>(

@@ -8,6 +8,7 @@
 
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/motion.hpp"
 
 namespace impact_damper {
 
@@ -55,7 +56,7 @@ class RunTracker {
 
   // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
   // Returns the works in it.
-  template <class Motion>
+  template <MotionOf<Real> Motion>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
                                          const Real& wall_damping) {
     if (search_.exhausted()) {  // the end of the motion may not have been found
@@ -120,14 +121,14 @@ class RunTracker {
 
  private:
   // Follows x through [0, duration]: returns where the scene ends in it, or duration.
-  template <class Motion>
+  template <MotionOf<Real> Motion>
   [[gnu::always_inline]] Real follow(const Motion& motion, const Real& duration, const State<Real>& end) {
     Real from{0};
     if (side_ == 0 && !find_side(motion, duration, from)) return duration;
     return follow_rows(motion, duration, end, from);
   }
   // Which way x goes that has not moved until now: its first derivative that is not zero tells. False: none.
-  template <class Motion>
+  template <MotionOf<Real> Motion>
   bool find_side(const Motion& motion, const Real& duration, Real& from) {
     const auto leads = motion.leads_of_x();
     std::size_t order = 0;
@@ -142,7 +143,7 @@ class RunTracker {
     return true;
   }
   // From a time on, up to which the row under way has been followed.
-  template <class Motion>
+  template <MotionOf<Real> Motion>
   [[gnu::always_inline]] Real follow_rows(const Motion& motion, const Real& duration, const State<Real>& end,
                                           Real from) {
     notice_peak(side_ * motion.at(from).x, from);
@@ -189,7 +190,7 @@ class RunTracker {
     }
   }
   // The largest |x| of a row is where x' changes sign inside a motion, or where two motions meet.
-  template <class Motion>
+  template <MotionOf<Real> Motion>
   void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, Real& no_turn_before) {
     for (;;) {
       const Real sign = rising ? side_ : -side_;

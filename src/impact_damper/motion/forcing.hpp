@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 #include "impact_damper/math/elementary.hpp"
@@ -42,6 +43,17 @@ struct NoForcing {
   std::array<Real, N> derivatives(const SinCos<Real>&) const {
     return {};
   }
+};
+
+// What motions ask of a force: whether there is one, amplitude f0, frequency omega_f > 0, the sine and
+// cosine of its phase at a time of the run, and f and its derivatives at a phase.
+template <class T, class Real>
+concept ForceOf = requires(const T force, const Real& time, const SinCos<Real>& phase) {
+  {bool(force)};
+  { force.amplitude } -> std::convertible_to<Real>;
+  { force.frequency } -> std::convertible_to<Real>;
+  { force.phase(time) } -> std::same_as<SinCos<Real>>;
+  { force.template derivatives<2>(phase) } -> std::same_as<std::array<Real, 2>>;
 };
 
 }  // namespace impact_damper

@@ -9,7 +9,7 @@
 namespace impact_damper {
 
 // The scene's numbers in the engine's scalar type.
-template <class Real, class Force = Forcing<Real>>
+template <class Real, ForceOf<Real> Force = Forcing<Real>>
 struct System {
   explicit System(const Scene& scene)
       : nu(scene.mass_ratio),
