@@ -5,7 +5,9 @@
 // the same as in double: a counted run goes bit by bit the way of the run in double.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -22,6 +24,7 @@ struct Counts {
   std::int64_t searches = 0;
   std::int64_t evaluations = 0;  // corrections, too
   std::int64_t steps = 0;
+  std::array<std::int64_t, ways_to_find> found{};
   std::int64_t sincos = 0;        // sine and cosine of one angle count once
   std::int64_t exponentials = 0;  // exp and expm1
   std::int64_t arctangents = 0;
@@ -107,4 +110,5 @@ struct impact_damper::SearchCounter<impact_damper::bench::Counted> {
   static void search() { ++bench::counts.searches; }
   static void evaluation() { ++bench::counts.evaluations; }
   static void step() { ++bench::counts.steps; }
+  static void found(FoundBy way) { ++bench::counts.found[std::size_t(way)]; }
 };

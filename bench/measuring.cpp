@@ -53,6 +53,11 @@ TEST_CASE("each flight begins with a prediction, and few need a search") {
   CHECK(run.counts.predictions < 2 * run.impacts);
   CHECK(run.counts.evaluations > 0);
   CHECK(run.counts.searches < run.impacts / 2);
+  // Each flight and each contact ends in one way, but for the run's last.
+  const auto& [series, correction, search, map, slow_mode, contact_search] = run.counts.found;
+  CHECK(series + correction + search >= run.impacts);
+  CHECK(series + correction + search <= run.impacts + 1);
+  CHECK(map + slow_mode + contact_search == run.impacts);
 }
 
 TEST_CASE(

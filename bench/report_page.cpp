@@ -148,6 +148,25 @@ void add_counts(std::string& page, const Findings& found) {
   }
 }
 
+void add_ways(std::string& page, const Findings& found) {
+  page +=
+      "\n## How an impact is found\n\nShares of all flights, and of all contacts ([what they "
+      "are](../../docs/mathematics.md"
+      "#78-the-cascade)).\n\n";
+  PageTable table(page, {"", "flights: series", "closed form", "step by step", "contacts: map", "slow mode",
+                         "step by step"});
+  for (const Counting& counting : found.counts) {
+    const auto& ways = counting.run.counts.found;
+    Cells cells{counting.scene + " " + counting.engine};
+    for (const std::size_t first : {0, 3}) {
+      const std::int64_t all = ways[first] + ways[first + 1] + ways[first + 2];
+      for (std::size_t i = first; i < first + 3; ++i)
+        cells.push_back(all == 0 ? "—" : printed("%.1f %%", 100 * double(ways[i]) / double(all)));
+    }
+    table.row(cells);
+  }
+}
+
 void add_sweeps(std::string& page, const Findings& found) {
   if (found.sweeps.empty()) return;
   page +=
@@ -269,6 +288,7 @@ std::string report_page(const Findings& found) {
   add_entrants(page, found);
   add_references(page, found);
   add_counts(page, found);
+  add_ways(page, found);
   add_sweeps(page, found);
   add_rest(page, found);
   return page;

@@ -21,6 +21,17 @@ struct Search {
   bool exhausted() const { return steps_left < 0; }
 };
 
+// How the end of a motion was found (docs/mathematics.md, 7.8).
+enum class FoundBy {
+  series,      // a flight, by the series at its beginning
+  correction,  // a flight, by the closed form evaluated near the end
+  search,      // a flight, step by step
+  short_contact_map,
+  slow_mode,       // a sustained contact
+  contact_search,  // a contact, step by step
+};
+inline constexpr int ways_to_find = 6;
+
 // Told what a search does. A scalar that counts specializes it; for any other it does nothing.
 template <class Real>
 struct SearchCounter {
@@ -29,6 +40,7 @@ struct SearchCounter {
   static void search() {}      // where a prediction was not validated, root_isolation.hpp
   static void evaluation() {}  // of the functions that a search watches
   static void step() {}        // of a search, for each function
+  static void found(FoundBy) {}
 };
 
 }  // namespace impact_damper

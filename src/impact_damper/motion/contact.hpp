@@ -34,10 +34,15 @@ class Contact {
     if (start_.y == wall_) {
       std::optional<typename ShortContactMap<Real>::End> end;
       if (system_.short_contact) end = system_.short_contact(start_.x, start_.v, start_.w);
-      if (!end) end = end_of_sustained_contact();
+      if (end) SearchCounter<Real>::found(FoundBy::short_contact_map);
+      if (!end) {
+        end = end_of_sustained_contact();
+        if (end) SearchCounter<Real>::found(FoundBy::slow_mode);
+      }
       if (end && !(end->time < horizon)) return {};
       if (end) return WallEvent<Real>{end->time, wall(), {end->x, end->v, wall_, end->w}};
     }
+    SearchCounter<Real>::found(FoundBy::contact_search);
     return search_leave(horizon, search);
   }
   // The same, certified step by step.

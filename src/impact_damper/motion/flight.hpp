@@ -119,6 +119,7 @@ class Flight {
                                                                  Search<Real>& search) const {
     std::optional<WallEvent<Real>> met = predicted_wall(predict_from, search.span);
     if (!met) {
+      SearchCounter<Real>::found(FoundBy::search);
       met = search_wall(search_from, horizon, search);
     } else if (!(met->time < horizon)) {
       met.reset();
@@ -163,11 +164,12 @@ class Flight {
     for (int piece = 0; piece < 3; ++piece) {
       const auto u = derivatives_of_u<10>(here, begin);
       const Real fourth = primary_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
-      const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1,
-                               const Real& u1) -> std::optional<WallEvent<Real>> {
+      const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1, const Real& u1,
+                               FoundBy way) -> std::optional<WallEvent<Real>> {
         const Real level = across ? 1 : 0;
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
+        SearchCounter<Real>::found(way);
         const bool left = across == (wall_ == 1);
         return WallEvent<Real>{
             begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
@@ -180,7 +182,7 @@ class Flight {
         // x has departed from its own straight line by as much, the other way.
         const auto& [by_u, by_u1] = predicted.gained;
         return reached(predicted.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
-                       here.u1 + by_u1);
+                       here.u1 + by_u1, FoundBy::series);
       }
       Place there;
       for (int correction = 0;; ++correction) {
@@ -191,7 +193,7 @@ class Flight {
         if (close && absolute(shift) < h / 4 && moves_x_by_series(u_there, shift, fourth)) {
           const auto [x1, v1] = shifted<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
           return reached(across, h + shift, -away_ * x1, -away_ * v1,
-                         shifted(there.u, there.u1, u_there, shift).u1);
+                         shifted(there.u, there.u1, u_there, shift).u1, FoundBy::correction);
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
         if (correction == 5 || !(near || beyond)) break;
