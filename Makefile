@@ -17,7 +17,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
 CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev \
-  locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base zsh fish
+  locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base zsh fish doxygen
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
@@ -28,7 +28,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper test bench bench-record stress \
+.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper docs test bench bench-record stress \
   stress-results check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
@@ -117,6 +117,10 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	echo "Setting the report"; \
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
+
+docs:  ## reference documentation of the library's headers, build/docs/html (doxygen)
+	@mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
+	echo "The reference documentation: $(BUILD)/docs/html/index.html"
 
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
 	@$(alone) cp $(BUILD)/paper/report.html docs/report.html

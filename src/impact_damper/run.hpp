@@ -28,20 +28,20 @@ std::string_view name_of(StopReason reason);  // the enumerator's own name
 struct HalfCycles {
   std::vector<double> zero_crossing;  // time of the crossing that ends the row
   std::vector<double> peak_time;      // when the amplitude is reached
-  std::vector<double> amplitude;      // largest |x| in the row, by epsilon
+  std::vector<double> amplitude;      // largest |x| in the row, divided by epsilon
   std::vector<std::int64_t> impacts;  // impacts in the row; a contact that lasts is one
 };
 
 struct Impacts {
   std::vector<double> time;
   std::vector<Wall> wall;
-  std::vector<double> relative_velocity;  // y' just before, by epsilon Omega_n: < 0 at the left wall
+  std::vector<double> relative_velocity;  // y' just before, divided by epsilon Omega_n: < 0 at the left wall
   // 180 degrees times (time since the last zero crossing) / (time between the zero crossings), and the
   // amplitude of that half cycle. Absent in row 0, which no zero crossing began, and in the unfinished
   // half cycle at the end.
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // absent only in the unfinished half cycle
-  std::vector<double> displacement;              // x at the impact, by epsilon
+  std::vector<double> displacement;              // x at the impact, divided by epsilon
 };
 
 // Compliant walls: every contact, from the wall position to the return to it. Restitution: the
@@ -56,7 +56,7 @@ struct History {
   std::vector<double> time, x, v, y, w;
 };
 
-// Energies by K epsilon^2, at one instant.
+// Energies divided by K epsilon^2, at one instant.
 struct Energy {
   double kinetic = 0;  // (v^2 + nu (v + w)^2) / 2
   double spring = 0;   // x^2 / 2

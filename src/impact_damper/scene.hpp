@@ -14,16 +14,16 @@
 namespace impact_damper {
 
 struct Scene {
-  double mass_ratio = 0.02;      // nu = m/M, >= 1e-9
-  double restitution = 0.6;      // e, 0 (plastic) to 1 (lossless)
-  double damping_ratio = 0.0;    // zeta = C/C_c of the primary mass, >= 0, overdamped too
-  double wall_stiffness = 1e4;   // k = K_M/K, >= 1e-6; the restitution engine's walls are rigid
-  double x0 = 6.0;               // initial displacement of the primary mass, by epsilon
-  double v0 = 0.0;               // its initial velocity x', by epsilon Omega_n
-  double y0 = 0.0;               // initial displacement of the secondary mass from the left wall, by epsilon
-  double w0 = 0.0;               // its initial velocity y' relative to the cavity, by epsilon Omega_n
-  double force_amplitude = 0.0;  // f0 = F0/(K epsilon), 0 = unforced
-  double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, >= 1e-12
+  double mass_ratio = 0.02;     // nu = m/M, >= 1e-9
+  double restitution = 0.6;     // e, 0 (plastic) to 1 (lossless)
+  double damping_ratio = 0.0;   // zeta = C/C_c of the primary mass, >= 0, overdamped too
+  double wall_stiffness = 1e4;  // k = K_M/K, >= 1e-6; the restitution engine's walls are rigid
+  double x0 = 6.0;              // initial displacement of the primary mass, divided by epsilon
+  double v0 = 0.0;              // its initial velocity x', divided by epsilon Omega_n
+  double y0 = 0.0;  // initial displacement of the secondary mass from the left wall, divided by epsilon
+  double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  double force_amplitude = 0.0;           // f0 = F0/(K epsilon), 0 = unforced
+  double force_frequency = 1.0;           // omega_f = Omega_f/Omega_n, >= 1e-12
   std::optional<double> until_time;       // stop at this time, > 0
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle below it, > 0
 

@@ -2,8 +2,9 @@
 //
 // Masses are in kg, lengths in mm (travels of an impact damper are), times in s, stiffnesses in N/m, forces
 // in N, frequencies in Hz. Three numbers of the primary system carry all scales: its mass M, its stiffness K
-// and the clearance epsilon, the loose mass's free travel. Lengths are made dimensionless by epsilon, times
-// by sqrt(M/K) = 1/Omega_n, forces by K epsilon, energies by K epsilon^2; masses by M and stiffnesses by K.
+// and the clearance epsilon, the free travel of the secondary mass. Lengths are made dimensionless by
+// epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon, energies by K epsilon^2; masses by M and
+// stiffnesses by K.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ struct LossFactorOptions {
 // One row per peak that has half_cycles/2 peaks on either side of it, in the order of time: n peaks give
 // n - half_cycles rows, or none.
 struct LossFactor {
-  std::vector<double> amplitude;  // the parabola's value at the middle peak, by epsilon
+  std::vector<double> amplitude;  // the parabola's value at the middle peak, divided by epsilon
   std::vector<double> time;       // of the middle peak, by 1/Omega_n
   std::vector<double> eta;        // -2 A'/A there, per radian
 };

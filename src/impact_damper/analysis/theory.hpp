@@ -1,10 +1,10 @@
 // Closed forms for this very system, that the program is held against and that figures draw beside it.
 //
-// Throughout: e restitution, b = (1 - e)/(1 + e), A peak amplitude of the primary mass by epsilon, loss
-// factors per radian and divided by the mass ratio, zeta = 0. "nu -> 0" means that the primary mass moves
-// as x = -A cos(t + const) and loses an amplitude of order nu per cycle; errors are then of relative order
-// nu. Derivations are sketched at each function; tests/theory.cpp holds each against a small computation
-// that does not use it.
+// Throughout: e restitution, b = (1 - e)/(1 + e), A peak amplitude of the primary mass divided by epsilon,
+// loss factors per radian and divided by the mass ratio, zeta = 0. "nu -> 0" means that the primary mass
+// moves as x = -A cos(t + const) and loses an amplitude of order nu per cycle; errors are then of relative
+// order nu. Derivations are sketched at each function; tests/theory.cpp holds each against a small
+// computation that does not use it.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ double asymmetry(double restitution);  // b = (1 - e)/(1 + e), 0 for e = 1, 1 fo
 // 1 + A cos(theta): pi V = 1 + 2 A cos(theta). The impact turns -V into V: V - v = e (V + v), so the wall's
 // speed is v = A sin(theta) = b V. Eliminating theta leaves a quadratic in V, whose larger root is stable.
 struct SingleImpact {
-  double speed = 0;      // V, absolute, by epsilon Omega_n
+  double speed = 0;      // V, absolute, divided by epsilon Omega_n
   double theta = 0;      // radian behind the wall's extreme position, 0 to pi
   double phase_deg = 0;  // 90 + theta in degrees: as the paper counts it, from the zero crossing
   double loss = 0;       // eta / nu = 4 b V^2 / (pi A^2): each impact costs nu 2 b V^2, a cycle has two

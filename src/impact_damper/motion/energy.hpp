@@ -12,7 +12,7 @@
 
 namespace impact_damper {
 
-// Energy of a state, by K epsilon^2; `depth` is how deep the secondary mass is in a compliant wall.
+// Energy of a state, divided by K epsilon^2; `depth` is how deep the secondary mass is in a compliant wall.
 // Kinetic energy with the cross term that the paper's sum of squares drops: m is carried along with x'.
 template <class Real, class Force>
 Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const Real& depth) {

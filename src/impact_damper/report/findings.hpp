@@ -35,17 +35,17 @@ struct Fall {
 
 struct BestDamping {
   double eta = 0;                          // largest local loss factor before impact failure, per radian
-  double amplitude = 0;                    // at which it is met, by epsilon
+  double amplitude = 0;                    // at which it is met, divided by epsilon
   double time = 0;                         // when, by 1/Omega_n
   std::optional<Spread> etas, amplitudes;  // over the ensemble
 };
 
 // What the box and the loose mass have to bear.
 struct Loads {
-  double speed = 0;              // largest relative speed of an impact, by epsilon Omega_n
+  double speed = 0;              // largest relative speed of an impact, divided by epsilon Omega_n
   double impacts = 0, time = 0;  // how many there are in which time: of a forced motion its last quarter
   std::optional<ShortContact> contact;  // of that impact; absent for rigid walls and for soft ones
-  double initial_force = 0;             // of the wall in which the scene begins, by K epsilon
+  double initial_force = 0;             // of the wall in which the scene begins, divided by K epsilon
 };
 // A contact that lasts longer, by 1/Omega_n, is not short beside the primary mass's period.
 inline constexpr double longest_short_contact = 0.15;
