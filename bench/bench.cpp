@@ -84,14 +84,14 @@ void measure_curves(const Limits& limits, Findings& found) {
   found.reference_operation = spread_of(reference_operations);
 }
 
-// The rows of what must come out, for the terminal.
-void print(const std::vector<Target>& targets) {
-  for (const Target& target : targets) {
+// The results, for the terminal.
+void print(const std::vector<Result>& results) {
+  for (const Result& result : results) {
     char measured[32] = "-";
-    if (target.measured)
-      std::snprintf(measured, sizeof measured, "%.3g %s", *target.measured, target.unit.c_str());
-    std::printf("%-4s%-74s%s %-8g%-14s%s\n", target.met() ? "" : "NO", target.what.c_str(),
-                target.at_most ? "<=" : ">=", target.bound, measured, target.note.c_str());
+    if (result.measured)
+      std::snprintf(measured, sizeof measured, "%.3g %s", *result.measured, result.unit.c_str());
+    std::printf("%-4s%-74s%s %-8g%-14s%s\n", result.within() ? "" : "NO", result.what.c_str(),
+                result.at_most ? "<=" : ">=", result.bound, measured, result.note.c_str());
   }
 }
 
@@ -157,7 +157,7 @@ int bench(const Arguments& arguments) {
   write_file(folder / "time_error.dat", time_error_table(found));
   write_file(folder / "cost.dat", sweep_table(found));
   write_file(folder / "results.md", report_page(found));
-  print(targets_of(found));
+  print(results_of(found));
   return 0;
 }
 

@@ -1,4 +1,4 @@
-// Everything one run of the bench has found, and what it was to find.
+// Everything one run of the bench has found, and its results beside their regression bounds.
 #pragma once
 
 #include <optional>
@@ -42,21 +42,18 @@ struct Findings {
   const Curve* curve(const std::string& scene, const std::string& contender) const;
 };
 
-// One line of what must come out. A number that could not be measured is absent, and `note` says why.
-struct Target {
+// One result, held against the bound beyond which something has become slower or less exact than it was. A
+// number that could not be measured is absent, and `note` says why.
+struct Result {
   std::string what;
   bool at_most = true;  // else at least
   double bound = 0;
-  std::optional<double> aim;
   std::string unit;  // "", "ms", "x"
   std::optional<double> measured;
   std::string note;
 
-  bool reaches(double number) const {
-    return measured && (at_most ? *measured <= number : *measured >= number);
-  }
-  bool met() const { return reaches(bound); }
+  bool within() const { return measured && (at_most ? *measured <= bound : *measured >= bound); }
 };
-std::vector<Target> targets_of(const Findings& findings);
+std::vector<Result> results_of(const Findings& findings);
 
 }  // namespace impact_damper::bench

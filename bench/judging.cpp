@@ -1,5 +1,5 @@
 // What the bench concludes from its measurements: errors of chaotic decays, times at an error, orders,
-// targets; and what the peers are built on.
+// results; and what the peers are built on.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -37,12 +37,12 @@ Curve curve_of(const std::string& scene, const std::string& contender, const std
   return curve;
 }
 
-const Target& find(const std::vector<Target>& targets, const std::string& what) {
-  for (const Target& target : targets) {
-    if (target.what.find(what) != std::string::npos) return target;
+const Result& find(const std::vector<Result>& results, const std::string& what) {
+  for (const Result& result : results) {
+    if (result.what.find(what) != std::string::npos) return result;
   }
-  FAIL("no target " << what);
-  return targets[0];
+  FAIL("no result " << what);
+  return results[0];
 }
 
 }  // namespace
@@ -220,13 +220,13 @@ TEST_CASE("a peer that does not reach the error has no ratio, and how far it cam
   Findings found;
   found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));
   found.curves.push_back(curve_of("S1", "CVODE", {{1, 1e-3, 100}, {0.1, 7e-5, 1000}}));
-  const std::vector<Target> targets = targets_of(found);
-  const Target& cvode = find(targets, "against CVODE");
+  const std::vector<Result> results = results_of(found);
+  const Result& cvode = find(results, "against CVODE");
   CHECK(!cvode.measured);
-  CHECK(!cvode.met());
+  CHECK(!cvode.within());
   CHECK(cvode.note.find("never below 7e-05") != std::string::npos);
-  CHECK(find(targets, "error on S1").met());
-  CHECK(!find(targets, "error on S3").met());
+  CHECK(find(results, "error on S1").within());
+  CHECK(!find(results, "error on S3").within());
 }
 
 TEST_CASE("the best of two peers is what an engine is held against") {
@@ -234,12 +234,11 @@ TEST_CASE("the best of two peers is what an engine is held against") {
   found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));
   found.curves.push_back(curve_of("S1", "odeint fehlberg78", {{1, 1e-8, 100}, {0.1, 1e-10, 1000}}));
   found.curves.push_back(curve_of("S1", "odeint dopri5", {{1, 1e-9, 150}}));
-  const std::vector<Target> targets = targets_of(found);
-  const Target& odeint = find(targets, "odeint at 1e-9, S1");
+  const std::vector<Result> results = results_of(found);
+  const Result& odeint = find(results, "odeint at 1e-9, S1");
   CHECK(*odeint.measured == Approx(15));
   CHECK(odeint.note == "odeint dopri5");
-  CHECK(odeint.met());
-  CHECK(!odeint.reaches(*odeint.aim));
+  CHECK(odeint.within());
 }
 
 TEST_CASE(
@@ -251,8 +250,8 @@ TEST_CASE(
   found.curves.push_back(curve_of("S5", "cem located", {{1, 1e-3, 300}}));
   found.curves.push_back(curve_of("S5", "cem two rates", {{1, 1e-2, 1}, {0.1, 2e-3, 40}}));
   found.curves.push_back(curve_of("S5", "cem located two rates", {{1, 1e-3, 20}}));
-  const std::vector<Target> targets = targets_of(found);
-  const Target& rates = find(targets, "two rates");
+  const std::vector<Result> results = results_of(found);
+  const Result& rates = find(results, "two rates");
   // log(1e-2 / 2e-3) / log(1e-2 / 1e-3) of the way from 100 to 1000: 500.
   CHECK(*rates.measured == Approx(500.0 / 20));
   CHECK(rates.note.find("located two rates, at an error of 0.002") != std::string::npos);

@@ -108,14 +108,10 @@ Json json_of(const FigureSet& set) {
   return json;
 }
 
-Json json_of(const Target& target) {
-  return {{"what", target.what},
-          {target.at_most ? "at_most" : "at_least", target.bound},
-          {"aim", json_of(target.aim)},
-          {"unit", target.unit},
-          {"measured", json_of(target.measured)},
-          {"met", target.met()},
-          {"note", target.note}};
+Json json_of(const Result& result) {
+  return {{"what", result.what},       {result.at_most ? "at_most" : "at_least", result.bound},
+          {"unit", result.unit},       {"measured", json_of(result.measured)},
+          {"within", result.within()}, {"note", result.note}};
 }
 
 }  // namespace
@@ -137,7 +133,7 @@ std::string report_json(const Findings& found) {
              {{"what", "one of a chain of dependent sincos calls of the C library"},
               {"nanoseconds", json_of(found.reference_operation, 1e9)}}},
             {"missing_peers", found.missing_peers}};
-  for (const Target& target : targets_of(found)) json["targets"].push_back(json_of(target));
+  for (const Result& result : results_of(found)) json["results"].push_back(json_of(result));
   for (const Findings::Entrant& entrant : found.entrants) json["contenders"][entrant.name] = entrant.about;
   for (const Reference& reference : found.references) json["references"].push_back(json_of(reference));
   for (const Curve& curve : found.curves) json["curves"].push_back(json_of(curve));

@@ -155,9 +155,9 @@ class Values:
                     for i, column in enumerate(columns):
                         for what, value in of_column(column, columns[min(1, len(columns) - 1)]).items():
                             self.known[f"{stem}.{block}.{i + 1}.{what}"] = value
-        for target in self.bench["targets"]:
-            name = re.sub(r"[^a-z0-9]+", "-", target["what"].lower()).strip("-")
-            self.known[f"bench.{name}"] = target["measured"]
+        for result in self.bench["results"]:
+            name = re.sub(r"[^a-z0-9]+", "-", result["what"].lower()).strip("-")
+            self.known[f"bench.{name}"] = result["measured"]
         self.known["bench.processor"] = self.bench["machine"]["processor"]
         self.known["bench.commit"] = self.bench["provenance"]["commit"]
         self.known["bench.reference-operation"] = self.bench["reference_operation"]["nanoseconds"]["median"]
