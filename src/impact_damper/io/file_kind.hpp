@@ -1,4 +1,5 @@
-// How long a file of some kind may be. A header of its own, so that who reads scenes and runs needs no JSON library.
+// How long a file of some kind may be. A header of its own, so that who reads scenes and runs needs no JSON
+// library.
 #pragma once
 
 #include <cstddef>

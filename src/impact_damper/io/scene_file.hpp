@@ -39,8 +39,8 @@ SceneFile parse_scene_file(const std::string& name, const std::string& text);
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);
 
-// The fields of a scene out of an object that may hold others beside them; problems are reported there. For the
-// project's own readers: an ObjectReader is no part of the library's interface.
+// The fields of a scene out of an object that may hold others beside them; problems are reported there. For
+// the project's own readers: an ObjectReader is no part of the library's interface.
 Scene read_scene_fields(ObjectReader& object);
 
 // The scene on one line with every field in the order of Scene, absent stops as null: reads back as equal.

@@ -1,9 +1,10 @@
-// Runs a scene by an engine that is compiled here, for an observer of this program's own, with the options that the
-// installed package gives; writes the run as the project's program does.
+// Runs a scene by an engine that is compiled here, for an observer of this program's own, with the options
+// that the installed package gives; writes the run as the project's program does.
 //
 //   columns ENGINE SCENE
 #include <iostream>
 #include <string_view>
+#include <type_traits>
 
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/engines/exact.hpp"
