@@ -2,7 +2,7 @@
 # large headers are compiled together, by groups.txt. It takes away most of the work of a build, and nothing but that.
 set(groups_file ${CMAKE_CURRENT_LIST_DIR}/groups.txt)
 function(compile_together)
-  set_target_properties(impact_damper impact-damper PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set_target_properties(impact_damper impact_damper_application impact-damper PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${groups_file})
   file(STRINGS ${groups_file} lines REGEX "^[a-z]+: ")
   set(grouped)

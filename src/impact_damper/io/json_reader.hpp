@@ -29,14 +29,9 @@
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/io/file_kind.hpp"
 
 namespace impact_damper {
-
-// A kind of file, and how long the longest allowed is.
-struct FileKind {
-  std::string_view name;  // "scene"
-  std::size_t most_bytes;
-};
 
 // The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and InputError
 // if it is longer than its kind allows: before reading it where its size is known, else on reading so much.

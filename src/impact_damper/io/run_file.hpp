@@ -12,7 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/units.hpp"
 

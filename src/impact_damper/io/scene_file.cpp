@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 
 namespace impact_damper {

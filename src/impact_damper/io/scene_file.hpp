@@ -16,10 +16,13 @@
 #include <optional>
 #include <string>
 
-#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/units.hpp"
 
 namespace impact_damper {
+
+class ObjectReader;  // json_reader.hpp
 
 inline constexpr FileKind scene_kind{"scene", 1 << 16};
 
@@ -36,7 +39,8 @@ SceneFile parse_scene_file(const std::string& name, const std::string& text);
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);
 
-// The fields of a scene out of an object that may hold others beside them; problems are reported there.
+// The fields of a scene out of an object that may hold others beside them; problems are reported there. For
+// the project's own readers: an ObjectReader is no part of the library's interface.
 Scene read_scene_fields(ObjectReader& object);
 
 // The scene on one line with every field in the order of Scene, absent stops as null: reads back as equal.

@@ -1,0 +1,106 @@
+// The interface for C against the run file of the same run: every number of it, by its name there.
+#include "impact_damper/c_interface.h"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+const char* const forced = R"({"mass_ratio": 0.05, "restitution": 0.5, "damping_ratio": 0.01, "x0": 3,
+                               "force_amplitude": 0.05, "force_frequency": 0.97, "until_time": 60})";
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+// How many numbers of `value`, at `name` in a run file, the run has with the same bits; each one must be
+// there.
+std::size_t same_numbers(const impact_damper_run* run, const std::string& name, const nlohmann::json& value) {
+  std::size_t count = 0;
+  if (value.is_object()) {
+    for (const auto& item : value.items()) {
+      count += same_numbers(run, name.empty() ? item.key() : name + "/" + item.key(), item.value());
+    }
+    return count;
+  }
+  const nlohmann::json column = value.is_array() ? value : nlohmann::json::array({value});
+  CAPTURE(name);
+  std::size_t rows = 0;
+  const double* numbers = impact_damper_column(run, name.c_str(), &rows);
+  REQUIRE(numbers != nullptr);
+  REQUIRE(rows == column.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    CAPTURE(i);
+    if (column[i].is_null()) {
+      CHECK(std::isnan(numbers[i]));
+    } else {
+      CHECK(bits(numbers[i]) == bits(column[i].get<double>()));
+    }
+  }
+  return rows;
+}
+
+std::string error_of(const char* scene, const char* engine, const impact_damper_window* history = nullptr,
+                     std::size_t size = 500) {
+  std::string text(size, '#');
+  CHECK(impact_damper_simulate(scene, engine, history, text.data(), size) == nullptr);
+  return text.substr(0, text.find('\0'));
+}
+
+}  // namespace
+
+TEST_CASE("every number of a run file is a column for C, with the same bits") {
+  const impact_damper_window window = {0, 50, 101};
+  const auto check = [&](const char* name, const Engine& engine) {
+    CAPTURE(name);
+    impact_damper_run* run = impact_damper_simulate(forced, name, &window, nullptr, 0);
+    REQUIRE(run != nullptr);
+    Record record{.impacts = true, .contacts = true, .energy = true};
+    record.history = {{0, 50, 101}};
+    auto file = nlohmann::json::parse(run_text(simulate(parse_scene("scene", forced), engine, record)));
+    CHECK(file["stop_reason"] == impact_damper_stop_reason(run));
+    for (const char* key : {"schema", "scene", "engine", "stop_reason", "provenance"}) file.erase(key);
+    CHECK(same_numbers(run, "", file) > 700);
+    impact_damper_free(run);
+  };
+  check("exact", Exact{});
+  check("restitution", Restitution{});
+  check("cem", Cem{});
+}
+
+TEST_CASE("what is not recorded is no column, and an empty column is one") {
+  impact_damper_run* run =
+      impact_damper_simulate(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})", "exact", nullptr, nullptr, 0);
+  REQUIRE(run != nullptr);
+  std::size_t rows = 7;
+  CHECK(impact_damper_column(run, "history/x", &rows) == nullptr);
+  CHECK(rows == 0);
+  rows = 7;
+  CHECK(impact_damper_column(run, "impacts/time", &rows) != nullptr);
+  CHECK(rows == 0);
+  impact_damper_free(run);
+  impact_damper_free(nullptr);
+}
+
+TEST_CASE("what cannot be run is told in words, cut to the buffer") {
+  CHECK(
+      error_of(R"({"mass_ratio": -1, "until_time": 5})", "exact").starts_with("scene: /mass_ratio: must be"));
+  CHECK(error_of("{", "exact").starts_with("scene: "));
+  CHECK(error_of(forced, "exakt") == "engine: must be exact, restitution or cem, got exakt");
+  CHECK(error_of(nullptr, "exact") == "scene, engine: must not be NULL");
+  CHECK(error_of(forced, "exakt", nullptr, 8) == "engine:");
+  CHECK(error_of(forced, "exakt", nullptr, 1).empty());
+  CHECK(impact_damper_simulate(forced, "exakt", nullptr, nullptr, 0) == nullptr);
+  const impact_damper_window backwards = {5, 1, 10}, endless = {0, 1, SIZE_MAX};
+  CHECK(error_of(forced, "exact", &backwards).starts_with("history: "));
+  CHECK(error_of(forced, "exact", &endless).starts_with("history: must ask for at most 500000"));
+}
