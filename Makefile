@@ -121,11 +121,11 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
 	@$(alone) cp $(BUILD)/paper/report.html docs/report.html
 
-# CTest's label `long` is on what takes about ten seconds or more. What a test needs that another one makes, a fixture,
-# is made in each of the two calls.
+# CTest's label `long` is on what takes about ten seconds or more (tests/CMakeLists.txt). What a test needs that another
+# one makes, a fixture, is made in each of the two calls.
 run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-test:  ## build, and run the quick tests: all that have not the label long
+test:  ## build, and run the quick tests: all without the label long
 	@$(run_tests) -LE '^long$$'
 
 bare:  ## run both commands of README.md on a bare Debian 12 (as root, half an hour); before every release
@@ -149,16 +149,16 @@ stress-results:  ## the same, and keep page and figures in tests/stress/
 kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills
 
-check: test  ## the same; then all figures by the exact engine, held against the paper (two minutes after the build)
+check: test  ## the same; then the exact engine's figures, and its results held against the paper (two minutes after the build)
 	@$(MAKE) --no-print-directory figures verify ENGINE=exact
 
-check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (half an hour)
+check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some ten minutes)
 	@$(run_tests) -L '^long$$'
 	@for engine in restitution cem; do \
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
 
-check-all: check check-long  ## both
+check-all: check check-long  ## make check, then make check-long: every test, every engine
 
 lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
