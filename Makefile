@@ -128,7 +128,7 @@ run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(
 test:  ## build, and run the quick tests: all without the label long
 	@$(run_tests) -LE '^long$$'
 
-bare:  ## run both commands of README.md on a bare Debian 12 (as root, half an hour); before every release
+bare:  ## run both commands of README.md on a bare Debian 12 (as root, a quarter of an hour); before every release
 	@$(alone) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
@@ -149,7 +149,7 @@ stress-results:  ## the same, and keep page and figures in tests/stress/
 kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills
 
-check: test  ## the same; then the exact engine's figures, and its results held against the paper (two minutes after the build)
+check: test  ## make test; then the exact engine's figures, and its results held against the paper (two minutes after the build)
 	@$(MAKE) --no-print-directory figures verify ENGINE=exact
 
 check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some ten minutes)
