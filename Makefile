@@ -29,7 +29,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper docs test bench bench-record stress \
-  stress-results check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
+  stress-results check check-long check-all bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -125,10 +125,14 @@ docs:  ## reference documentation of the library's headers, build/docs/html (dox
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
 	@$(alone) cp $(BUILD)/paper/report.html docs/report.html
 
-test:  ## run every test
-	@$(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+# CTest's label `long` is on what takes about ten seconds or more (tests/CMakeLists.txt). What a test needs that another
+# one makes, a fixture, is made in each of the two calls.
+run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-bare:  ## run both commands of README.md on a bare Debian 12 (as root, half an hour); before every release
+test:  ## build, and run the quick tests: all without the label long
+	@$(run_tests) -LE '^long$$'
+
+bare:  ## run both commands of README.md on a bare Debian 12 (as root, a quarter of an hour); before every release
 	@$(alone) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
@@ -149,10 +153,16 @@ stress-results:  ## the same, and keep page and figures in tests/stress/
 kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills
 
-check: test  ## build, run every test, regenerate everything with all engines and verify it
-	@for engine in exact restitution cem; do \
+check: test  ## make test; then the exact engine's figures, and its results held against the paper (two minutes after the build)
+	@$(MAKE) --no-print-directory figures verify ENGINE=exact
+
+check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some ten minutes)
+	@$(run_tests) -L '^long$$'
+	@for engine in restitution cem; do \
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \
 	done
+
+check-all: check check-long  ## make check, then make check-long: every test, every engine
 
 lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet

@@ -3,7 +3,7 @@
 
 The program build/tests/mutation/outputs lists what is given out, and which faults can be planted in it; planter.cpp,
 which is linked into every test program, plants the one that PLANTED_FAULT names. Nothing is built anew, so that the
-thousand faults take half a minute. A fault is caught if a test program fails with it: those of OWN are tried first,
+thousand faults take about a minute. A fault is caught if a test program fails with it: those of OWN are tried first,
 whose tests compare with closed forms and integrations of their own, then all others. Not among them are the comparisons
 with data/reference/, which would notice any change, right or wrong.
 

@@ -1,4 +1,8 @@
-"""Debian's Chromium without a window, by its DevTools protocol over two pipes: no driver and no port."""
+"""Debian's Chromium without a window, by its DevTools protocol over two pipes: no driver and no port.
+
+Not Selenium: it has no call of its own for a page's printed form, its accessibility tree, a colour scheme or what it asks
+the network for, so that most of this file would stay, as commands that it passes on, beside two more packages.
+"""
 import base64
 import json
 import os
