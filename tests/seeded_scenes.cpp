@@ -21,7 +21,7 @@ bool finite(const std::vector<double>& values) {
 constexpr std::uint64_t first_seed = 1, seeds = 2000;
 constexpr double closed = 1e-10;  // 1e4 impacts at most, each a few dozen roundings
 
-// Everything that any scene promises: finite numbers, times in order, a energy balance that closes.
+// Everything that any scene promises: finite numbers, times in order, an energy balance that closes.
 void check(const Scene& scene, const Engine& engine) {
   Record record;
   record.impacts = record.contacts = record.energy = true;
@@ -59,7 +59,7 @@ void check(const Scene& scene, const Engine& engine) {
 }  // namespace
 
 TEST_CASE(
-    "any scene runs to its end in the exact engine, finite, in order and with a energy balance that closes") {
+    "any scene runs to its end in the exact engine, finite, in order and with an energy balance that closes") {
   Exact options;
   options.budget.max_impacts = 10000;
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
