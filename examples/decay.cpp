@@ -5,12 +5,12 @@
 #include "impact_damper/simulate.hpp"
 
 int main() {
-  // Everything is dimensionless: lengths in units of the loose mass's free travel, times in units of
+  // Everything is dimensionless: lengths in units of the clearance, times in units of
   // 1/Omega_n. What is not set here keeps the default that scene.hpp gives.
   impact_damper::Scene scene;
-  scene.mass_ratio = 0.05;  // the loose mass divided by the primary mass
+  scene.mass_ratio = 0.05;  // the secondary mass divided by the primary mass
   scene.restitution = 0.5;  // of an impact
-  scene.x0 = 3;             // the primary mass is pulled aside by three times the free travel
+  scene.x0 = 3;             // the primary mass is pulled aside by three times the clearance
   scene.until_time = 100;
 
   // Recorded are half cycles, unless a Record asks for something else (forced.cpp).

@@ -17,7 +17,7 @@ int main() try {
   record.energy = true;
   const impact_damper::Run run = impact_damper::simulate(scene, impact_damper::Exact{}, record);
 
-  // All in units of K epsilon^2: K is the spring's stiffness, epsilon the free travel.
+  // All in units of K epsilon^2: K is the spring's stiffness, epsilon the clearance.
   const impact_damper::EnergyBalance& energy = *run.energy;
   const double impacts = std::accumulate(energy.impact_loss.begin(), energy.impact_loss.end(), 0.0);
   std::printf("put in by the force       %9.6f\n", energy.forcing_work);

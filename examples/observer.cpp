@@ -4,7 +4,7 @@
 
 #include "impact_damper/engines/exact.hpp"
 
-// What an engine asks its observer, and tells it. engines/recorder.hpp says it of each member; an engine
+// What an engine asks its observer, and tells it: RunObserver in engines/observer.hpp. An engine
 // computes only what is wanted.
 struct LongestContact {
   bool wants_half_cycles() const { return false; }
@@ -26,7 +26,7 @@ struct LongestContact {
 };
 
 int main() {
-  impact_damper::Scene scene;  // the paper's: mass ratio 0.02, restitution 0.6, released at 6 free travels
+  impact_damper::Scene scene;  // the paper's: mass ratio 0.02, restitution 0.6, released at 6 clearances
   scene.until_amplitude = 0.1;
   // simulate() rejects a scene that is not valid; run_exact() leaves that to its caller.
   if (!impact_damper::problems_of(scene).empty()) return 1;
