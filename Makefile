@@ -119,7 +119,7 @@ paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.ht
 	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
 docs:  ## reference documentation of the library's headers, build/docs/html (doxygen)
-	@mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
+	@$(alone) mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
 	echo "The reference documentation: $(BUILD)/docs/html/index.html"
 
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
