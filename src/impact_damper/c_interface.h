@@ -1,5 +1,6 @@
 /* The library for C, and for languages that can call C: a scene in, columns out. No global state; any number
  * of threads may call these functions, each with runs of its own. */
+/* NOLINTBEGIN(modernize-deprecated-headers,modernize-use-using,readability-identifier-naming): this is C */
 #ifndef IMPACT_DAMPER_C_INTERFACE_H
 #define IMPACT_DAMPER_C_INTERFACE_H
 
@@ -44,3 +45,4 @@ void impact_damper_free(impact_damper_run* run);
 #endif
 
 #endif
+/* NOLINTEND(modernize-deprecated-headers,modernize-use-using,readability-identifier-naming) */
