@@ -1,6 +1,7 @@
 #include "impact_damper/io/json_reader.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -264,7 +265,8 @@ TEST_CASE("what cannot be read is said to be so") {
 }
 
 TEST_CASE("a file may have just the length that is allowed, and not a byte more") {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "impact-damper-length-test";
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("impact-damper-length-test-" + std::to_string(::getpid()));
   write_file(file, "12345");
   CHECK(read_text(file, {"thing", 5}) == "12345");
   CHECK_THROWS_WITH_AS(read_text(file, {"thing", 4}),

@@ -1,6 +1,7 @@
 #include "impact_damper/reproduction/measures.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -174,7 +175,8 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
 }
 
 TEST_CASE("an ensemble is the run file and the same scene released otherwise") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "impact-damper-measures-test";
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("impact-damper-measures-test-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   Scene scene;
   scene.until_amplitude = 5.5;

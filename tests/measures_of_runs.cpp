@@ -1,6 +1,7 @@
 // The measures that read run files, on runs made by hand: a decay in half cycles of length pi with whatever
 // amplitudes, impacts and contacts a test wants, so that each number can be worked out on paper.
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -62,8 +63,8 @@ void add_stuck(Run& run, std::size_t row, double from, double to) {
 
 double measured(const std::string& name, std::map<std::string, double> numbers,
                 const std::vector<Run>& scenes) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / "impact-damper-measures-of-runs";
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                       ("impact-damper-measures-of-runs-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   MeasureCall call{name, {}, std::move(numbers)};
   for (std::size_t i = 0; i < scenes.size(); ++i) {
