@@ -1,4 +1,4 @@
-// The short ways to an event, guess and proof, closed form, table, against the certified search.
+// The short ways to an event, prediction and validation, closed form, table, against the search step by step.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -233,7 +233,7 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
 TEST_CASE("a contact ends when the certified search says, in the state that its parts give") {
   reference::Random random(13);
   Search<double> search{infinite};
-  int left = 0, brisk = 0, lasting = 0;
+  int left = 0, short_contacts = 0, lasting = 0;
   for (int n = 0; n < 40000; ++n) {
     const Scene scene = scene_of(random, false);
     const System<double> system(scene);
@@ -250,7 +250,7 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     if (!found || !expected) continue;
     ++left;
     const double swing = walls.fast.half_period(), time = expected->time;
-    brisk += time < 1.5 * swing;
+    short_contacts += time < 1.5 * swing;
     lasting += time > 4 * swing;
     // What rounding makes of q, by what it is the sum of, over y' at the end.
     const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
@@ -268,16 +268,16 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
           128 * epsilon * speed * (1 + scene.mass_ratio) + (std::abs(w) * rate + speed) * off);
   }
   CHECK(left > 20000);
-  CHECK(brisk > 5000);
+  CHECK(short_contacts > 5000);
   CHECK(lasting > 1000);
 }
 
 TEST_CASE("a contact with a wall softer than the spring ends when the mass first comes back") {
-  // There both motions swing about as fast, and the short ways find a later return too: only their proofs
-  // tell. Without that of a brisk rebound one end in a thousand is wrong, by much.
+  // There both modes oscillate about as fast, and the short ways find a later return, too: only their proofs
+  // exclude it. Without the proof of the short-contact map one end in a thousand is wrong, by much.
   reference::Random random(15);
   Search<double> search{infinite};
-  int brisk = 0;
+  int short_contacts = 0;
   for (int n = 0; n < 20000; ++n) {
     Scene scene;
     scene.mass_ratio = random.log_uniform(1e-3, 100);
@@ -289,13 +289,13 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
-    brisk += walls.short_contact && walls.short_contact(start.x, start.v, start.w);
+    short_contacts += walls.short_contact && walls.short_contact(start.x, start.v, start.w);
     const auto found = contact.leave(1000, search), expected = contact.search_leave(1000, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
     if (found && expected) CHECK(found->time == doctest::Approx(expected->time).epsilon(1e-6));
   }
-  CHECK(brisk > 1000);
+  CHECK(short_contacts > 1000);
 }
 
 TEST_CASE("a free motion's derivatives fall through zero where the certified search finds it") {

@@ -1,5 +1,6 @@
 // The three engines that can run a scene, each as the options that can change its result.
-// The engines themselves: exact.hpp, restitution.hpp, cem.hpp; the door to all three: simulate.hpp.
+// The engines themselves: exact.hpp, restitution.hpp, cem.hpp; the one entry point to all three:
+// simulate.hpp.
 #pragma once
 
 #include <cstdint>
@@ -67,8 +68,8 @@ struct Cem {
   // H, > h, < 2 and with forcing <= pi/omega_f: while no wall can be met steps of whole multiples of h, up to
   // this long (cem_rates.hpp). Absent: all steps are h.
   std::optional<double> large_step;
-  // The paper's stuck regime, u > 0 and finite: an impact slower than u that presses the secondary mass to the
-  // wall joins both masses, until x'' changes its sign. Absent: sticking is a contact that lasts.
+  // The paper's stuck regime, u > 0 and finite: an impact slower than u that presses the secondary mass to
+  // the wall joins both masses, until x'' changes its sign. Absent: sticking is a contact that lasts.
   std::optional<double> stuck_speed;
   bool unstable = false;  // run even beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;

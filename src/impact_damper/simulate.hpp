@@ -1,4 +1,4 @@
-// The door to the engines: a scene, an engine and a wish in, a run out. A pure function.
+// The one entry point to the engines: a scene, an engine and what to record in, a run out. A pure function.
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"
@@ -9,9 +9,9 @@ namespace impact_damper {
 // Runs `scene` with `engine`, recording what `record` asks for.
 // Throws std::invalid_argument naming every problem if the scene, the engine's options or the record
 // are not valid (an unstable time step of the component element method among them), and NumericalError
-// (base/errors.hpp) where that method overflows, where a closed form's next event is too long to search for
-// (no call takes more than a few seconds with the default budget), and where this process's arithmetic cannot
-// give the promised bits (base/floating_point.hpp).
+// (base/errors.hpp) where that method overflows, and where this process's arithmetic cannot give the promised
+// bits (base/floating_point.hpp). A search that uses up its steps is no error: the run ends there, with
+// StopReason::step_budget.
 Run simulate(const Scene& scene, const Engine& engine, const Record& record);
 
 }  // namespace impact_damper
