@@ -1,0 +1,129 @@
+// The half cycles of x. HalfCycleTracker is fed with peaks and zero crossings and knows no motion; EventsOfX
+// finds these in a motion, in their order.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "impact_damper/events/root_isolation.hpp"
+#include "impact_damper/motion/motion.hpp"
+
+namespace impact_damper {
+
+// The half cycle that is under way: on which side of zero x is, since when, and its largest |x| so far.
+template <class Real>
+class HalfCycleTracker {
+ public:
+  explicit HalfCycleTracker(const Real& x0) : amplitude_(absolute(x0)) {}
+
+  // 1 or -1; 0 while x has not moved since the release.
+  const Real& side() const { return side_; }
+  const Real& amplitude() const { return amplitude_; }
+  std::int64_t complete() const { return complete_; }
+
+  void take_side(const Real& side) { side_ = side; }
+  // |x| is `height` where it may be largest.
+  void peak(const Real& height, const Real& time) {
+    if (!(height > amplitude_)) return;
+    amplitude_ = height;
+    peak_time_ = time;
+  }
+  // x crosses zero: one half cycle is complete, which is told, and the next begins.
+  template <class Observer>
+  void crossing(const Real& time, Observer& observer) {
+    observer.half_cycle(double(begin_), double(time), double(peak_time_), double(amplitude_));
+    last_amplitude_ = amplitude_;
+    ++complete_;
+    side_ = -side_;
+    begin_ = peak_time_ = time;
+    amplitude_ = 0;
+  }
+  // Of the half cycle completed last.
+  const Real& last_amplitude() const { return last_amplitude_; }
+
+ private:
+  Real side_{0}, begin_{0}, amplitude_, peak_time_{0}, last_amplitude_{0};
+  std::int64_t complete_ = 0;
+};
+
+// Which way x goes that has not moved until now: its first derivative that is not zero tells. Returns from
+// when on the events of x are to be looked for; nothing where x does not move.
+template <class Real, MotionOf<Real> Motion>
+std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
+                               HalfCycleTracker<Real>& half_cycles, const Search<Real>& search) {
+  const auto leads = motion.leads_of_x();
+  std::size_t order = 0;
+  while (order < 4 && leads[order] == 0) ++order;
+  if (order == 4) return {};
+  half_cycles.take_side(leads[order] > 0 ? 1 : -1);
+  if (order < 3) return Real(0);
+  const Real fourth = motion.derivative_of_x(1, half_cycles.side(), Real(0), search.span).whole.third;
+  const Real leap = begin_by_third<Real>(leads[order], fourth, search.span);
+  return leap < duration ? leap : duration;
+}
+
+// Peaks of the half cycle under way in [from, until): where x' changes its sign. `no_turn_before`: from when
+// on another turn is possible.
+template <class Real, MotionOf<Real> Motion>
+void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, const Real& now,
+                HalfCycleTracker<Real>& half_cycles, Search<Real>& search, Real& no_turn_before) {
+  for (;;) {
+    const Real& side = half_cycles.side();
+    const auto turn = motion.falls(1, rising ? side : Real(-side), from, until, search);
+    if (!turn) return;
+    if (rising) half_cycles.peak(motion.height(*turn), now + *turn);
+    no_turn_before = *turn + motion.one_zero_within(*turn);
+    if (until < no_turn_before) return;
+    rising = !rising;
+    from = *turn;
+  }
+}
+
+// Feeds the tracker with the events of x, in their order, in [0, duration] of a motion that begins at the
+// time `now` and is in the state `end` at last. goes_on(t) is told that x has crossed zero at t, by which the
+// tracker's half cycle is complete, and says whether the scene goes on. Returns how much of the motion has
+// been followed: less than `duration` where it does not, or where the search has no steps left.
+template <class Real, MotionOf<Real> Motion, class GoesOn>
+[[gnu::always_inline]] inline Real follow_x(const Motion& motion, const Real& duration,
+                                            const State<Real>& end, const Real& now,
+                                            HalfCycleTracker<Real>& half_cycles, Search<Real>& search,
+                                            GoesOn&& goes_on) {
+  Real from{0};
+  if (half_cycles.side() == 0) {
+    const auto begins = leave_zero(motion, duration, half_cycles, search);
+    if (!begins) return duration;
+    from = *begins;
+  }
+  // Where two motions meet.
+  half_cycles.peak(half_cycles.side() * motion.at(from).x, now + from);
+  const Real v = half_cycles.side() * motion.at(from).v;
+  bool rising =
+      v > 0 || (v == 0 && motion.derivative_of_x(1, half_cycles.side(), from, search.span).whole.g1 > 0);
+  // What the ends already exclude is not searched for.
+  bool may_turn = !motion.keeps_course(half_cycles.amplitude(), end, duration);
+  bool may_cross = !motion.keeps_side(half_cycles.side(), end, duration);
+  if (!may_turn && !may_cross) return duration;
+  Real no_turn_before = from;
+  // A zero of x within (M7.1) of a motion's end is the next motion's: an impact there may throw x back, and
+  // then the signs of x and x' tell whether it crosses.
+  const Real at_speed = absolute(motion.at(Real(0)).x / end.v), scale = at_speed < 1 ? at_speed : Real(1);
+  const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (duration + scale);
+  for (;;) {
+    std::optional<Real> crossing;
+    if (may_cross) crossing = motion.falls(0, half_cycles.side(), from, last, search);
+    const Real until = crossing ? *crossing : duration;
+    if (may_turn && no_turn_before <= until)
+      find_peaks(motion, from, until, rising, now, half_cycles, search, no_turn_before);
+    if (search.exhausted()) return from;
+    if (!crossing) return duration;
+    from = *crossing;
+    if (!goes_on(from)) return from;
+    rising = true;
+    // That x stays below the best of a half cycle holds for the one that has ended, not for this one.
+    may_turn = may_turn || !motion.keeps_course(half_cycles.amplitude(), end, duration);
+    may_cross = !motion.leaves_zero(from, end, duration);
+  }
+}
+
+}  // namespace impact_damper
