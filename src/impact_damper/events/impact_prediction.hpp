@@ -49,12 +49,45 @@ template <class Real>
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
 
+// Where the prediction begins: by the parabola through the beginning of u, which may begin with its third
+// derivative alone.
+template <class Real>
+struct FirstGuess {
+  Real time;
+  bool across;  // at the other wall
+};
+template <class Real>
+[[gnu::always_inline]] inline FirstGuess<Real> guess_by_parabola(const Derivatives<Real, 10>& u,
+                                                                 const Real& most) {
+  const bool from_rest = u[1] == 0 && u[2] == 0;
+  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
+  const Real ahead = rising ? Real(1 - u[0]) : u[0];
+  const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
+  const Real reach = speed * speed + 2 * push * ahead;
+  const bool arrives = reach >= 0;
+  const Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
+                 : u[0] == 0 ? Real(2 * speed / -push)
+                             : Real((speed + square_root(Real(reach - 2 * push))) / -push);
+  return {t < most ? t : from_rest ? Real(most * Real(0.75)) : most, arrives == rising};
+}
+
+// Whether the terms left out of the series are below rounding at t, where u' is u1: in the time, for which
+// |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion of x,
+// which may be far smaller.
+template <class Real>
+[[gnu::always_inline]] inline bool omits_nothing(const Real& u1, const Real& fourth, const Real& rate,
+                                                 const Real& t) {
+  constexpr double nine_factorial = 362880;
+  const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2, omitted = rt_4 * rt_4 * rt;
+  const Real tiny = nine_factorial * std::numeric_limits<Real>::epsilon() / 16;
+  return omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate);
+}
+
 // Predicts when a mass that has left one wall of a gap of 1 meets either, and `most` at the latest: by the
-// parabola through its beginning, then by Halley's method on the series (docs/mathematics.md, 7.5). u:
-// distance from the wall it left; it may begin with its third derivative alone. `fourth`: bound on |u''''|;
-// each further derivative is at most `rate` times the one before. `exact`: the terms left out of the series
-// are below rounding, and `gained` is then by how much u and u' differ from the straight line u + u' t, with
-// digits that a fast mass's own u and u' do not have.
+// parabola, then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall it
+// left. `fourth`: bound on |u''''|; each further derivative is at most `rate` times the one before. `exact`:
+// the terms left out of the series are below rounding, and `gained` is then by how much u and u' differ from
+// the straight line u + u' t, with digits that a fast mass's own u and u' do not have.
 template <class Real>
 struct Prediction {
   Real time;
@@ -62,22 +95,14 @@ struct Prediction {
   bool exact;
   Shifted<Real> gained;
 };
-inline constexpr double two_to_the_25 = 33554432, nine_factorial = 362880;
 template <class Real>
 [[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, 10>& u,
                                                               const Real& fourth, const Real& rate,
                                                               const Real& most) {
   SearchCounter<Real>::prediction();
-  const bool from_rest = u[1] == 0 && u[2] == 0;
-  const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
-  const Real ahead = rising ? Real(1 - u[0]) : u[0];
-  const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
-  const Real reach = speed * speed + 2 * push * ahead;
-  const bool arrives = reach >= 0, across = arrives == rising;
-  Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
-           : u[0] == 0 ? Real(2 * speed / -push)
-                       : Real((speed + square_root(Real(reach - 2 * push))) / -push);
-  if (!(t < most)) t = from_rest ? Real(most * Real(0.75)) : most;
+  const FirstGuess<Real> guess = guess_by_parabola(u, most);
+  const bool across = guess.across;
+  Real t = guess.time;
   const Real gap = (across ? Real(1) : Real(0)) - u[0];
   const auto departure = departure_of(u);
   // First by few terms, as a parabola may be far off.
@@ -91,15 +116,12 @@ template <class Real>
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
+    constexpr double two_to_the_25 = 33554432;
     if (size * two_to_the_25 < t && t < most) {
+      if (!omits_nothing(u1, fourth, rate, t)) return {t, across, false, {}};
       // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and
-      // below it in that of u', ~ u'' t. The omitted terms of the series, |u^(10)| t^9/9!, are compared with
-      // u' for the time, and with the motion of x, which may be far smaller, for the departure.
-      const Real rt = rate * t, rt_2 = rt * rt, rt_4 = rt_2 * rt_2, omitted = rt_4 * rt_4 * rt;
-      const Real tiny = nine_factorial * std::numeric_limits<Real>::epsilon() / 16;
-      if (omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate))
-        return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
-      return {t, across, false, {}};
+      // below it in that of u', ~ u'' t.
+      return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
     }
     if (i == 4 || !(size < t / 2)) break;
     t += step;

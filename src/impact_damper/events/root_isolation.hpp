@@ -30,69 +30,116 @@ struct LocalEnclosure {
   Real rest{0};    // bound on |rest| from there on; infinity: no such splitting
 };
 
-// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
-// or `most` where it has none up to there. Needs jet.g >= 0.
+// The cubic p(s) = g + g1 s + g2 s^2/2 - third s^3/6, which bounds the function from below.
 template <class Real>
-Real step_without_root(const Jet<Real>& jet, Real most) {
-  SearchCounter<Real>::step();
-  const Real &g = jet.g, &g1 = jet.g1, &g2 = jet.g2, &third = jet.third;
-  // From `far` on the cube outdoes each other term three times, and p is negative.
-  const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
-  Real far = by_g > 1 ? square_root(by_g) : Real(1);
-  if (by_g1 > far * far) far = square_root(by_g1);
-  if (by_g2 > far) far = by_g2;
-  if (far < most) most = far;
-  const Real half = g2 / 2, sixth = third / 6, half_third = third / 2;
-  const auto p = [&](const Real& s) { return g + s * (g1 + s * (half - s * sixth)); };
-  const auto slope = [&](const Real& s) { return g1 + s * (g2 - s * half_third); };
-  Real low{0};
-  // Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
-  // rising ground there is none.
-  const Real inflection = g2 > 0 ? (third * most > g2 ? Real(g2 / third) : most) : Real(0);
-  if (g1 < 0 && g2 > 0) {
-    bool falling = true;
-    for (int i = 0; falling && i < 8; ++i) {
-      const Real next = low - p(low) / slope(low);
-      if (!(next < inflection)) break;
-      if (next - low <= next / 1048576) return low > 0 ? low : next;
-      low = next;
-      falling = slope(low) < 0;
-      if (i == 7 && falling) return low;
-    }
+struct LowerCubic {
+  Real g, g1, g2, third, half, sixth, half_third;
+  explicit LowerCubic(const Jet<Real>& jet)
+      : g(jet.g),
+        g1(jet.g1),
+        g2(jet.g2),
+        third(jet.third),
+        half(g2 / 2),
+        sixth(third / 6),
+        half_third(third / 2) {}
+  Real at(const Real& s) const { return g + s * (g1 + s * (half - s * sixth)); }
+  Real slope(const Real& s) const { return g1 + s * (g2 - s * half_third); }
+  // From here on the cube outdoes each other term three times, and p is negative.
+  Real negative_from() const {
+    const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
+    Real far = by_g > 1 ? square_root(by_g) : Real(1);
+    if (by_g1 > far * far) far = square_root(by_g1);
+    if (by_g2 > far) far = by_g2;
+    return far;
   }
-  // Beyond it p is concave, and has one root: chords come from below, Newton's steps from above.
-  if (low < inflection) low = inflection;
-  if (!(low < most) || p(most) >= 0) return most;
+};
+
+// Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
+// rising ground there is none. `done`: `from` is the root from below; else p has none before `from`.
+template <class Real>
+struct ConvexPart {
+  Real from;
+  bool done;
+};
+template <class Real>
+ConvexPart<Real> step_through_convex_part(const LowerCubic<Real>& p, const Real& inflection) {
+  Real low{0};
+  if (!(p.g1 < 0 && p.g2 > 0)) return {low, false};
+  for (int i = 0; i < 8; ++i) {
+    const Real next = low - p.at(low) / p.slope(low);
+    if (!(next < inflection)) break;
+    if (next - low <= next / 1048576) return {low > 0 ? low : next, true};
+    low = next;
+    if (!(p.slope(low) < 0)) break;
+    if (i == 7) return {low, true};
+  }
+  return {low, false};
+}
+
+// The root of p in [low, most], where p is concave, positive at `low` and negative at `most`, from below:
+// chords come from below, Newton's steps from above.
+template <class Real>
+Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most) {
   Real high = most;
-  if (slope(low) < 0) {
-    const Real tangent = low - p(low) / slope(low);
+  if (p.slope(low) < 0) {
+    const Real tangent = low - p.at(low) / p.slope(low);
     if (tangent < high) high = tangent;
-  } else if (g2 < 0) {
-    const Real parabola = (g1 + square_root(Real(g1 * g1 - 2 * g2 * g))) / -g2;
+  } else if (p.g2 < 0) {
+    const Real parabola = (p.g1 + square_root(Real(p.g1 * p.g1 - 2 * p.g2 * p.g))) / -p.g2;
     if (parabola < high) high = parabola;
   }
   // From zero on quartering is exact, so many at once come to the same number: the root may be 1e300 times
   // nearer.
   const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
-  while (low == 0 && p(high * much_nearer) < 0) high *= much_nearer;
+  while (low == 0 && p.at(high * much_nearer) < 0) high *= much_nearer;
   // Wherever p is still positive lies before the root.
   Real nearer = low + (high - low) / 4;
-  while (p(nearer) < 0) {
+  while (p.at(nearer) < 0) {
     high = nearer;
     nearer = low + (high - low) / 4;
     if (!(low < nearer)) return low;
   }
   low = nearer;
   for (int i = 0; i < 8 && high - low > high / 1048576; ++i) {
-    const Real below = p(low), above = p(high);
+    const Real below = p.at(low), above = p.at(high);
     if (!(above < 0)) return high;
     const Real chord = low + (high - low) * (below / (below - above));
-    const Real newton = high - above / slope(high);
+    const Real newton = high - above / p.slope(high);
     if (!(chord > low) && !(newton < high)) break;
     low = chord;
     if (newton < high) high = newton;
   }
   return low;
+}
+
+// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
+// or `most` where it has none up to there. Needs jet.g >= 0.
+template <class Real>
+Real step_without_root(const Jet<Real>& jet, Real most) {
+  SearchCounter<Real>::step();
+  const LowerCubic<Real> p(jet);
+  const Real far = p.negative_from();
+  if (far < most) most = far;
+  const Real inflection = p.g2 > 0 ? (p.third * most > p.g2 ? Real(p.g2 / p.third) : most) : Real(0);
+  const ConvexPart<Real> convex = step_through_convex_part(p, inflection);
+  if (convex.done) return convex.from;
+  const Real low = convex.from < inflection ? inflection : convex.from;
+  if (!(low < most) || p.at(most) >= 0) return most;
+  return root_of_concave_part(p, low, most);
+}
+
+// The root, if the third derivative cannot move that of the parabola by more than a rounding error of `time`
+// plus it: where the parabola has one, that is met at no less than half the slope here, and up to it none is
+// nearer than `proven`.
+template <class Real>
+std::optional<Real> root_of_parabola(const Jet<Real>& jet, const Real& proven, const Real& time) {
+  const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
+  if (!(jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1)) return {};
+  const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
+  const bool nothing_between = root <= proven + proven / 1024;
+  const Real rounding = 2 * std::numeric_limits<Real>::epsilon() * (time + root);
+  if (nothing_between && jet.third * root * root * root < -jet.g1 * rounding) return root;
+  return {};
 }
 
 template <class Real>
@@ -141,17 +188,8 @@ std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Re
       waits = waits || (departed && !(proven > least && proven > wait));
       if (!(proven < step)) continue;
       step = proven;
-      // Where the third derivative cannot move the root by more than a rounding error, the parabola's is it:
-      // if it has one, that is met at no less than half the slope here.
       near.reset();
-      const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
-      if (jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1) {
-        const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
-        const bool nothing_between = root <= proven + proven / 1024;
-        const Real rounding = 2 * std::numeric_limits<Real>::epsilon() * (time + root);
-        if (nothing_between && jet.third * root * root * root < -jet.g1 * rounding)
-          near = Root<Real>{time + root, i};
-      }
+      if (const auto root = root_of_parabola(jet, proven, time)) near = Root<Real>{time + *root, i};
     }
     if (step >= rest_of_horizon) return std::nullopt;
     if (near) return near->time < horizon ? near : std::nullopt;

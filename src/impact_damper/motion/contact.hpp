@@ -237,17 +237,29 @@ class Contact {
   std::optional<typename ShortContactMap<Real>::End> end_of_sustained_contact() const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
-    const auto& [slow, fast] = parts();
+    const ContactState<Real>& slow = parts().slow;
     const Real depth = inward_ * slow.q;
     if (!(depth > 0)) return {};
     const Real h = c.slow.fall(depth, Real(inward_ * slow.w)), early = h / 4, late = h * Real(0.75);
     const Real chord = c.slow.lower_bound_of_decay(h) * depth;
     const Real slow_fourth = fourth_of(c.slow, slow.q, slow.w);
+    const auto ringing = ringing_left(late, early, chord, slow_fourth);
+    if (!ringing) return {};
+    const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
+    if (*ringing * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
+      const ContactState<Real> end = slow_at(h);
+      return typename ShortContactMap<Real>::End{h, end.x, end.v, end.w};
+    }
+    return corrected_end(late, h, slow_fourth);
+  }
+  // Step (1): a bound on the ringing from `late` on; nothing where the proof fails before.
+  std::optional<Real> ringing_left(const Real& late, const Real& early, const Real& chord,
+                                   const Real& slow_fourth) const {
+    const ContactModes<Real, Force>& c = system_;
+    const auto& [slow, fast] = parts();
     const bool oscillates = c.fast.half_period() < std::numeric_limits<Real>::infinity();
-
     Overlap slow_now{inward_ * slow.q, inward_ * slow.w}, fast_now{inward_ * fast.q, inward_ * fast.w};
     Moment now{0, {0, inward_ * start_.w}, fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth};
-    Real ringing_late;
     for (int n = 1;; ++n) {
       const Moment before = now;
       now.time = Real(n) * c.piece;
@@ -257,19 +269,13 @@ class Contact {
       now.depth = {slow_now.q + fast_now.q, slow_now.w + fast_now.w};
       now.fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
       if (!stays_in_wall(before, now, slow_fourth, 4)) return {};
-      ringing_late = c.fast.bound_after(fast_now.q, fast_now.w, Real(late - now.time));
-      if (!oscillates && fast_now.q >= 0) break;
+      const Real left = c.fast.bound_after(fast_now.q, fast_now.w, Real(late - now.time));
+      if (!oscillates && fast_now.q >= 0) return left;
       const Real wait = now.time < early ? Real(early - now.time) : Real(0);
       if (c.fast.bound_after(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
           c.fast.bound_after(fast_now.q, fast_now.w, wait) < chord / 4)
-        break;
+        return left;
     }
-    const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
-    if (ringing_late * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
-      const ContactState<Real> end = slow_at(h);
-      return typename ShortContactMap<Real>::End{h, end.x, end.v, end.w};
-    }
-    return corrected_end(late, h, slow_fourth);
   }
   std::optional<typename ShortContactMap<Real>::End> corrected_end(const Real& late, Real h,
                                                                    const Real& slow_fourth) const {

@@ -55,60 +55,16 @@ class ShortContactMap {
     if (!(half_period_ < std::numeric_limits<Real>::infinity())) return;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
     decay_factor_ = exponential(Real(-fast.a() * half_period_));
-    const Propagator<Real> p = slow.propagate(half_period_);
-    const Real omega = half_turn<Real>() / half_period_;
     few_ = reach_of(few, fast);
     more_ = reach_of(more, fast);
     many_ = reach_of(many, fast);
     most_ = reach_of(most, fast);
     accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
-    unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
     growth_ = exponential(Real(fast.a() * half_period_));
-    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
-    const auto fastest = [](const Oscillator<Real>& o) {
-      const Real root_b = square_root(o.b()), z = o.a() / root_b;
-      return Real(root_b * (z + square_root(Real(1 + z * z))));
-    };
-    const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& [s, f, fast_centre] = start[i];
-      const Real b = slow.b(), gone = 1 + decay_factor_;
-      const Real centre_x = i == 0 ? 1 : 0, centre_v = i == 1 ? Real(1) : i == 2 ? share : Real(0);
-      const Centre<Real> slow_centre{centre_x - fast_centre.x, centre_v - fast_centre.v};
-      // By how much the centre has changed after T.
-      const Centre<Real> change{
-          p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
-          (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v};
-      const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
-      const Real q_then = slow_q - decay_factor_ * f.q;
-      const Real w_then =
-          i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w);  // but for -E w
-      const Real w_whole = i == 2 ? Real(w_then - decay_factor_) : w_then;
-      constexpr std::size_t terms = 2 * most;
-      std::array<Real, terms> x, q, centre;
-      derive({centre_x + change.x - share * q_then, centre_v + change.v - share * w_whole, q_then, w_whole},
-             x, q);
-      q[1] = w_then;
-      Real factorial{1};
-      for (std::size_t n = 0; n < terms; ++n) {
-        if (n > 1) factorial *= Real(double(n));
-        q[n] /= factorial;
-        centre[n] = n == 0   ? change.x
-                    : n == 1 ? change.v
-                             : Real(-(1 - share) * (2 * zeta * x[n - 1] + x[n - 2]) / factorial);
-      }
-      for (std::size_t n = 0; n < most; ++n) {
-        q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
-        centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
-      }
-      const Real along = (f.w + fast.a() * f.q) / omega;
-      fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
-      slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * slow.bound(s.q, s.w);
-      const Real slow_x = slow_rate * slow_rate * slow.bound(s.x, s.v);
-      const Real fast_x = fast_rate * fast_rate * fast.bound(f.x, f.v);
-      second_of_x_[i] = slow_x + fast_x;
-      third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
+      tabulate_series(i, slow, start[i], derive);
+      tabulate_bounds(i, slow, fast, start[i]);
     }
   }
 
@@ -153,6 +109,62 @@ class ShortContactMap {
     for (std::size_t n = 0; n < pairs; ++n)
       all[n] = by[0][n] * start[0] + by[1][n] * start[1] + by[2][n] * start[2];
     return all;
+  }
+
+  // The terms of q and of the centre's change after T, for one of x, v and w at the touch.
+  template <class Derive>
+  void tabulate_series(std::size_t i, const Oscillator<Real>& slow, const Touch<Real>& touch,
+                       Derive&& derive) {
+    const Propagator<Real> p = slow.propagate(half_period_);
+    const auto& [s, f, fast_centre] = touch;
+    const Real b = slow.b(), gone = 1 + decay_factor_;
+    const Real centre_x = i == 0 ? 1 : 0, centre_v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
+    const Centre<Real> slow_centre{centre_x - fast_centre.x, centre_v - fast_centre.v};
+    const Centre<Real> change{
+        p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
+        (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v};
+    const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
+    const Real q_then = slow_q - decay_factor_ * f.q;
+    const Real w_then =
+        i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w);  // but for -E w
+    const Real w_whole = i == 2 ? Real(w_then - decay_factor_) : w_then;
+    constexpr std::size_t terms = 2 * most;
+    std::array<Real, terms> x, q, centre;
+    derive({centre_x + change.x - share_ * q_then, centre_v + change.v - share_ * w_whole, q_then, w_whole},
+           x, q);
+    q[1] = w_then;
+    Real factorial{1};
+    for (std::size_t n = 0; n < terms; ++n) {
+      if (n > 1) factorial *= Real(double(n));
+      q[n] /= factorial;
+      centre[n] = n == 0   ? change.x
+                  : n == 1 ? change.v
+                           : Real(-(1 - share_) * (2 * zeta_ * x[n - 1] + x[n - 2]) / factorial);
+    }
+    for (std::size_t n = 0; n < most; ++n) {
+      q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
+      centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
+    }
+  }
+  // What it contributes to the bounds on the fourth derivative of exp(a t) q, and on x'' and x'''.
+  void tabulate_bounds(std::size_t i, const Oscillator<Real>& slow, const Oscillator<Real>& fast,
+                       const Touch<Real>& touch) {
+    const ContactState<Real>&s = touch.slow, &f = touch.fast;
+    const Real omega = half_turn<Real>() / half_period_;
+    unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
+    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
+    const auto fastest = [](const Oscillator<Real>& o) {
+      const Real root_b = square_root(o.b()), z = o.a() / root_b;
+      return Real(root_b * (z + square_root(Real(1 + z * z))));
+    };
+    const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
+    const Real along = (f.w + fast.a() * f.q) / omega;
+    fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
+    slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * slow.bound(s.q, s.w);
+    const Real slow_x = slow_rate * slow_rate * slow.bound(s.x, s.v);
+    const Real fast_x = fast_rate * fast_rate * fast.bound(f.x, f.v);
+    second_of_x_[i] = slow_x + fast_x;
+    third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
   }
 
   // What a number of terms is good for.
