@@ -51,4 +51,7 @@ def formula(match) -> str:
 
 
 def tidied(page: str) -> str:
-    return re.sub(r"<math .*?</math>", formula, page, flags=re.S)
+    """The page with its formulas so; brackets and stops of the text stay on the line of the formula that they belong to."""
+    page = re.sub(r"<math .*?</math>", formula, page, flags=re.S)
+    beside = r"(\(?)(<math>(?:(?!</math>).)*</math>)([,.;:)]*)"
+    return re.sub(beside, lambda m: f'<span class="line">{m[0]}</span>' if m[1] or m[3] else m[0], page, flags=re.S)

@@ -73,14 +73,21 @@ def html_of(text: str, values: Values) -> str:
     page = converted(whole(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
                      "--shift-heading-level-by=1", "--toc-depth=3")
     page = tidied(page)
+    page = re.sub(r"<table>\n<(?:colgroup|thead).*?</table>", r'<div class="wide">\g<0></div>', page, flags=re.S)
     page = re.sub(r'((?:section-number">|data-number="))0\.', r"\1", page)  # headings are shifted, numbers are not
     return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
 def kept_together(latex: str) -> str:
-    """The tables of the text as boxes that no page's end divides; pandoc makes long tables, near which floats go astray."""
-    return re.sub(r"\\begin\{longtable\}\[\](.*?)\\endhead\n(.*?)\\end\{longtable\}",
-                  r"\\begin{center}\\begin{tabular}\1\2\\end{tabular}\\end{center}", latex, flags=re.S)
+    """The tables as boxes that no page's end divides; pandoc makes long tables, near which floats go astray. What has more
+    rows than half a page stays one. A formula belongs to the paragraph before it."""
+    def table(match) -> str:
+        if match[2].count("\\\\\n") > 25:
+            return match[0]
+        return rf"\begin{{center}}\begin{{tabular}}{match[1]}{match[2]}\end{{tabular}}\end{{center}}"
+
+    latex = re.sub(r"\\begin\{longtable\}\[\](.*?)\\endhead\n(.*?)\\end\{longtable\}", table, latex, flags=re.S)
+    return re.sub(r"\n\n(?=\\begin\{equation\})", r"\n", latex)
 
 
 def pdf_of(text: str, values: Values) -> bytes:

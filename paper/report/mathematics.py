@@ -73,6 +73,8 @@ def appendix(values, form) -> str:
         return "\n" + "\n".join(match[1] + line for line in block.split("\n")) + "\n"
 
     def picture(match) -> str:
+        if not (values.source / "docs" / match[2]).exists():
+            raise Mistake(f"{FILE}: there is no file {match[2]}")
         letter = form.letter_of(values.source / "docs" / match[2])
         return form.picture(letter, form.pictures[letter], match[1])
 
