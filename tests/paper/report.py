@@ -219,6 +219,20 @@ class TheAppendix(unittest.TestCase):
                 appendix(values, Html(values))
             self.assertIn(said, str(caught.exception))
 
+    def test_formulas_have_the_spaces_of_tex(self):
+        sys.path.insert(0, str(SOURCE / "paper/report"))
+        from formulas import tidied
+        text = r"($f(t) = -\sin(t)$), $a \sin t$ and $\left(\frac ab\right) - b$."
+        page = tidied(subprocess.run(["pandoc", "--from=markdown", "--to=html5", "--mathml"], input=text, capture_output=True,
+                                     text=True, check=True).stdout)
+        first, second, third = re.findall("<math>.*?</math>", page, re.S)
+        self.assertEqual(first.count('stretchy="false"'), 4)
+        self.assertIn('<mo>=</mo><mo form="prefix">−</mo><mo lspace="0" rspace="0">sin</mo>', first)
+        self.assertIn('<mo lspace="0.167em" rspace="0.167em">sin</mo>', second)
+        self.assertEqual(third.count('stretchy="true"'), 2)
+        self.assertIn("<mo>−</mo>", third)
+        self.assertRegex(page, r'(?s)<span class="line">\(<math>.*</math>\),</span>.*</math>\.</span>')
+
     def test_a_formula_that_cannot_be_set_is_rejected(self):
         copy, text = copied(), MATHEMATICS.read_text(encoding="utf-8")
         self.assertIn(r"$\nu = m/M$", text)
