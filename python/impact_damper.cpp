@@ -37,26 +37,18 @@ std::string text_of(const Run& run) {
   return text.get();
 }
 
-// A number as JSON can hold it. What it cannot hold becomes a text, which the reader of scenes rejects
-// together with all else that is wrong, each by its name.
-py::object as_json(const py::handle& value) {
-  if (value.is_none() || py::isinstance<py::bool_>(value) || py::isinstance<py::str>(value))
-    return py::reinterpret_borrow<py::object>(value);
-  if (PyNumber_Check(value.ptr()) != 0) {
-    PyObject* const whole = PyIndex_Check(value.ptr()) != 0 ? PyNumber_Index(value.ptr()) : nullptr;
-    if (whole != nullptr) return py::reinterpret_steal<py::object>(whole);
-    PyErr_Clear();
-    const double number = PyFloat_AsDouble(value.ptr());
-    if (std::isfinite(number) && PyErr_Occurred() == nullptr) return py::float_(number);
-    PyErr_Clear();
-  }
-  return py::str(value);
-}
-
+// The JSON text of keyword arguments or options. What JSON cannot hold becomes a text, which the reader
+// rejects together with all else that is wrong, each by its name.
 std::string json_of(const py::dict& object) {
-  py::dict values;
-  for (const auto& item : object) values[item.first] = as_json(item.second);
-  return py::module_::import("json").attr("dumps")(values).cast<std::string>();
+  py::dict plain;
+  for (const auto& [name, given] : object) {
+    const bool is_of_numpy = py::hasattr(given, "tolist");
+    const py::object value = is_of_numpy ? given.attr("tolist")() : py::reinterpret_borrow<py::object>(given);
+    const bool is_finite = !PyFloat_Check(value.ptr()) || std::isfinite(PyFloat_AsDouble(value.ptr()));
+    plain[name] = is_finite ? value : py::str(value);
+  }
+  const py::object to_text = py::module_::import("builtins").attr("str");
+  return py::module_::import("json").attr("dumps")(plain, py::arg("default") = to_text).cast<std::string>();
 }
 
 std::optional<impact_damper_window> window_of(const py::object& history) {
@@ -70,7 +62,7 @@ std::optional<impact_damper_window> window_of(const py::object& history) {
   }
 }
 
-// Problems of a scene by the names of the arguments, without the pointers into a file.
+// Problems of a scene by the names of the arguments: "x0: must be ..." for "scene: /x0: must be ...".
 std::string by_argument(std::string problems) {
   const std::string_view pointer = "scene: /";
   for (std::size_t line = 0; line != std::string::npos;) {
@@ -107,7 +99,9 @@ py::dict attributes_of(const py::capsule& owner) {
   return attributes;
 }
 
-py::object run(const std::string& engine, const py::object& history, const py::kwargs& scene) {
+py::object run(const py::object& engine, const py::object& history, const py::kwargs& scene) {
+  const std::string engine_text =
+      py::isinstance<py::dict>(engine) ? json_of(engine) : py::str(engine).cast<std::string>();
   const std::string scene_text = json_of(scene);
   const std::optional<impact_damper_window> window = window_of(history);
   std::string error(1 << 14, '\0');
@@ -115,8 +109,8 @@ py::object run(const std::string& engine, const py::object& history, const py::k
   impact_damper_status status{};
   {
     const py::gil_scoped_release others_may_run;
-    status = impact_damper_simulate(scene_text.c_str(), engine.c_str(), window ? &*window : nullptr, &run,
-                                    error.data(), error.size());
+    status = impact_damper_simulate(scene_text.c_str(), engine_text.c_str(), window ? &*window : nullptr,
+                                    &run, error.data(), error.size());
   }
   error.resize(error.find('\0'));
   switch (status) {
@@ -160,13 +154,14 @@ std::string doc_of_run() {
   using impact_damper::number_text;
   std::string text = R"(Simulates a scene and returns its Run.
 
-engine        exact, restitution or cem, with its default options
+engine        exact, restitution or cem with its default options, or a dict with options as in a run file's
+              "engine", such as {"name": "cem", "time_step": 1e-4, "locate": True}
 history       (begin, end, count): records the motion at so many equally spaced times, both ends included
 all others    the scene, by the keys of a scene file: **json.load(open("scene.json")) is a scene, too
 
 Raises ValueError with a line for each argument that is not valid, and ArithmeticError where the engine fails or
 this process's arithmetic has been changed. Other threads run meanwhile; Ctrl-C takes effect when the run has ended,
-after a second or two at most.
+with default options after a second or two at most.
 
 Dimensionless: lengths divided by the clearance epsilon, times by 1/Omega_n = sqrt(M/K), forces by K epsilon.
 )";

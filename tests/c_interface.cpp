@@ -119,6 +119,42 @@ TEST_CASE("every number of a run file is a column for C, with the same bits") {
   check(in_units, "exact", Exact{});
 }
 
+TEST_CASE("an engine's options are those of a run file, each with its default") {
+  const auto text_of_run = [](const char* engine) {
+    impact_damper_run* run = nullptr;
+    REQUIRE(impact_damper_simulate(forced, engine, nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
+    char* const text = impact_damper_run_text(run);
+    std::string copy = text;
+    std::free(text);
+    impact_damper_free(run);
+    return copy;
+  };
+  const auto wanted = [](const Engine& engine) {
+    return run_text(
+        simulate(parse_scene("scene", forced), engine, {.impacts = true, .contacts = true, .energy = true}));
+  };
+  CHECK(text_of_run(R"({"name": "exact"})") == wanted(Exact{}));
+  CHECK(text_of_run(R"({"name": "cem"})") == wanted(Cem{}));
+  Exact exact{.calibration = Calibration::two_body, .max_steps = 9000};
+  exact.budget = {.max_impacts = 70, .max_half_cycles = 11, .max_time = 40};
+  CHECK(text_of_run(R"({"name": "exact", "calibration": "two-body", "max_steps": 9000, "max_impacts": 70,
+                        "max_half_cycles": 11, "max_time": 40})") == wanted(exact));
+  Restitution restitution{.accumulation_tolerance = 1e-5};
+  CHECK(text_of_run(R"({"name": "restitution", "accumulation_tolerance": 1e-5})") == wanted(restitution));
+  Cem cem{
+      .time_step = 1e-3, .damper = Damper::lagged, .locate = true, .large_step = 0.03, .stuck_speed = 0.02};
+  cem.calibration = Calibration::two_body;
+  cem.unstable = true;
+  CHECK(text_of_run(
+            R"({"name": "cem", "time_step": 1e-3, "damper": "lagged", "locate": true, "large_step": 0.03,
+                        "stuck_speed": 0.02, "calibration": "two-body", "unstable": true})") == wanted(cem));
+
+  CHECK(error_of(forced, "{}") == "engine: /name: is missing");
+  CHECK(error_of(forced, R"({"name": "exact", "time_step": 1})")
+            .starts_with("engine: /time_step: unknown key"));
+  CHECK(error_of(forced, R"({"name": "cem", "time_step": null})").starts_with("engine: /time_step: must be"));
+}
+
 TEST_CASE("what is not recorded is no column, and an empty column is one") {
   impact_damper_run* run = nullptr;
   REQUIRE(impact_damper_simulate(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})", "exact", nullptr, &run,

@@ -134,11 +134,12 @@ class Columns {
   impact_damper_run& all_;
 };
 
-Engine engine_of(std::string_view name) {
+Engine engine_of(const std::string& name) {
+  if (name.starts_with('{')) return parse_engine("engine", name);
   if (name == Exact::name) return Exact{};
   if (name == Restitution::name) return Restitution{};
   if (name == Cem::name) return Cem{};
-  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + std::string(name));
+  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + name);
 }
 
 std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,

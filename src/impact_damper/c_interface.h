@@ -27,10 +27,11 @@ typedef enum impact_damper_status {
 } impact_damper_status;
 
 /* Runs a scene, given as the JSON text of a scene file (data/schema/scene.schema.json), with the engine
- * "exact", "restitution" or "cem" and its default options; everything is recorded, the motion's history if
- * `history` is not NULL. `*run` becomes the run, to be given to impact_damper_free(). Where that cannot be
- * done it becomes NULL, and `error` says why, one line for each problem, cut to `error_size` - 1 characters
- * and ended by '\0'. `error` may be NULL if `error_size` is 0. */
+ * "exact", "restitution" or "cem" and its default options, or with the JSON text of the object "engine" of a
+ * run file, in which all but its name may be missing: {"name": "cem", "time_step": 1e-4}; everything is
+ * recorded, the motion's history if `history` is not NULL. `*run` becomes the run, to be given to
+ * impact_damper_free(). Where that cannot be done it becomes NULL, and `error` says why, one line for each
+ * problem, cut to `error_size` - 1 characters and ended by '\0'. `error` may be NULL if `error_size` is 0. */
 impact_damper_status impact_damper_simulate(const char* scene, const char* engine,
                                             const impact_damper_window* history, impact_damper_run** run,
                                             char* error, size_t error_size);

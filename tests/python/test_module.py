@@ -96,6 +96,18 @@ class Module(unittest.TestCase):
             return 0, 5, 101
         return 0, 5 / math.sqrt(scene["mass"] / scene["stiffness"]), 101
 
+    def test_an_engine_with_options_has_the_programs_bits(self):
+        for engine, options in (({"name": "cem", "time_step": np.float64(2e-3), "locate": np.True_, "damper": "lagged"},
+                                 ("--time-step", "2e-3", "--locate", "--damper", "lagged")),
+                                ({"name": "exact", "max_impacts": np.int64(9), "calibration": "two-body"},
+                                 ("--max-impacts", "9", "--calibration", "two-body"))):
+            with self.subTest(engine):
+                self.assertEqual(impact_damper.run(engine=engine, **FORCED).text(),
+                                 by_the_program(FORCED, engine["name"], *options))
+                again = json.loads(impact_damper.run(engine=engine, **FORCED).text())["engine"]
+                self.assertEqual(impact_damper.run(engine=again, **FORCED).text(),
+                                 impact_damper.run(engine=engine, **FORCED).text())
+
     def test_what_was_not_asked_for_is_no_attribute(self):
         run = impact_damper.run(until_time=10)
         self.assertFalse(hasattr(run, "history") or hasattr(run, "units"))
@@ -122,6 +134,8 @@ class Module(unittest.TestCase):
         for arguments, word in (({}, "until_time"), ({"mass": 40, "until_seconds": 1}, "stiffness"),
                                 ({"mass": 40, "x0": 1, "until_time": 5}, "either in units or dimensionless"),
                                 ({"until_time": 5, "engine": "exakt"}, "exact, restitution or cem, got exakt"),
+                                ({"until_time": 5, "engine": {"name": "exact", "time_step": 1}}, "engine: /time_step: unknown"),
+                                ({"until_time": 5, "engine": None}, "exact, restitution or cem, got None"),
                                 ({"until_time": 5, "y0": 2, "engine": "restitution"}, "y0: must be >= 0 and <= 1"),
                                 ({"until_time": 5, "history": (5, 1, 10)}, "history: "),
                                 ({"until_time": 5, "history": (0, 1, 10**30)}, "history: "),
