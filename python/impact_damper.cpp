@@ -133,7 +133,7 @@ py::object run(const py::object& engine, const py::object& history, const py::kw
 
 constexpr const char* doc_of_run_class =
     R"(What became of a scene, under the names of a run file. Each column is a one-dimensional, read-only
-numpy array of float64 that needs no copy; an absent number is nan. All is dimensionless: lengths are divided by
+numpy array of float64, a view into the run; an absent number is nan. All is dimensionless: lengths are divided by
 the clearance epsilon, times by 1/Omega_n = sqrt(M/K), energies by K epsilon^2.
 
 stop_reason   time, amplitude, or the budget that ended the run early
@@ -174,9 +174,12 @@ Dimensionless: lengths divided by the clearance epsilon, times by 1/Omega_n = sq
   add("until_time", "stop at this time");
   add("until_amplitude",
       "stop at the end of the first half cycle below it; one of the two must be given, or both");
-  text += "\n\nIn units; what is left out is 0 or as above:\n";
+  text +=
+      "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
+      "exciting_frequency that of\n"
+      "the primary system by itself. The Run is dimensionless, history as well:\n";
   for (const impact_damper::UnitField& field : impact_damper::unit_fields) {
-    const std::string unit = field.unit.empty() ? "" : ", " + std::string(field.unit);
+    const std::string unit = field.unit.empty() ? "" : "; in " + std::string(field.unit);
     add(field.name, std::string(field.meaning) + unit);
   }
   return text;

@@ -149,7 +149,7 @@ TEST_CASE("an engine's options are those of a run file, each with its default") 
             R"({"name": "cem", "time_step": 1e-3, "damper": "lagged", "locate": true, "large_step": 0.03,
                         "stuck_speed": 0.02, "calibration": "two-body", "unstable": true})") == wanted(cem));
 
-  CHECK(error_of(forced, "{}") == "engine: /name: is missing");
+  CHECK(error_of(forced, "{}") == "engine: /name: missing, a value must be given");
   CHECK(error_of(forced, R"({"name": "exact", "time_step": 1})")
             .starts_with("engine: /time_step: unknown key"));
   CHECK(error_of(forced, R"({"name": "cem", "time_step": null})").starts_with("engine: /time_step: must be"));
