@@ -51,6 +51,11 @@ def by_the_program(scene: dict, engine: str, *options: str) -> str:
     return done.stdout
 
 
+def without_provenance(text: str) -> str:
+    """Module and program may have been built at two commits."""
+    return text[:text.index('\n "provenance": ')]
+
+
 def bits(number) -> bytes:
     return struct.pack("<d", number)
 
@@ -81,7 +86,9 @@ class Module(unittest.TestCase):
                 with self.subTest(scene=name, engine=engine):
                     text = by_the_program(scene, engine, "--history", "0:5:101")
                     run = impact_damper.run(engine=engine, history=self.first_times(scene), **scene)
-                    self.assertEqual(run.text(), text)
+                    self.assertEqual(without_provenance(run.text()), without_provenance(text))
+                    (FOLDER / "run.json").write_text(run.text())
+                    subprocess.run([PROGRAM, "check", "run", FOLDER / "run.json"], capture_output=True, check=True)
                     wanted = json.loads(text)
                     self.assertEqual(run.stop_reason, wanted["stop_reason"])
                     for key in ("schema", "scene", "engine", "stop_reason", "provenance"):
@@ -102,11 +109,10 @@ class Module(unittest.TestCase):
                                 ({"name": "exact", "max_impacts": np.int64(9), "calibration": "two-body"},
                                  ("--max-impacts", "9", "--calibration", "two-body"))):
             with self.subTest(engine):
-                self.assertEqual(impact_damper.run(engine=engine, **FORCED).text(),
-                                 by_the_program(FORCED, engine["name"], *options))
-                again = json.loads(impact_damper.run(engine=engine, **FORCED).text())["engine"]
-                self.assertEqual(impact_damper.run(engine=again, **FORCED).text(),
-                                 impact_damper.run(engine=engine, **FORCED).text())
+                text = impact_damper.run(engine=engine, **FORCED).text()
+                self.assertEqual(without_provenance(text),
+                                 without_provenance(by_the_program(FORCED, engine["name"], *options)))
+                self.assertEqual(impact_damper.run(engine=json.loads(text)["engine"], **FORCED).text(), text)
 
     def test_what_was_not_asked_for_is_no_attribute(self):
         run = impact_damper.run(until_time=10)
