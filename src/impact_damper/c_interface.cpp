@@ -1,7 +1,7 @@
 #include "impact_damper/c_interface.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <list>
 #include <memory>
@@ -208,10 +208,7 @@ const char* impact_damper_stop_reason(const impact_damper_run* run) {
 
 char* impact_damper_run_text(const impact_damper_run* run) {
   try {
-    const std::string text = impact_damper::run_text(run->run, run->scales);
-    char* const copy = static_cast<char*>(std::malloc(text.size() + 1));
-    if (copy != nullptr) *std::copy(text.begin(), text.end(), copy) = '\0';
-    return copy;
+    return strdup(impact_damper::run_text(run->run, run->scales).c_str());
   } catch (const std::exception&) {
     return nullptr;
   }
