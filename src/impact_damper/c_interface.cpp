@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -70,10 +71,10 @@ void add_energy(Columns& columns, const EnergyBalance& energy) {
 }
 
 Engine engine_of(std::string_view name) {
-  if (name == Exact::name) return Exact{};
-  if (name == Restitution::name) return Restitution{};
-  if (name == Cem::name) return Cem{};
-  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + std::string(name));
+  const std::vector<std::string_view> names = engine_names();
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return default_engines()[static_cast<std::size_t>(found - names.begin())];
+  throw std::invalid_argument("engine: must be " + listed(names, "or") + ", got " + std::string(name));
 }
 
 std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,

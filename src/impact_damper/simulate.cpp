@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
@@ -35,24 +35,13 @@ void collect(std::string& all, const std::string& field, const std::string& mess
 std::string problems_of(const Scene& scene, const Engine& engine, const Record& record) {
   std::string all;
   for (const Problem& problem : problems_of(scene)) collect(all, problem.field, problem.message);
+  for (const Problem& problem : problems_of(engine)) collect(all, problem.field, problem.message);
+  if (all.empty())
+    for (const Problem& problem : incompatibilities_of(scene, engine))
+      collect(all, problem.field, problem.message);
 
   const Budget& budget =
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
-  if (budget.max_impacts < 0) collect(all, "max_impacts", "must be >= 0");
-  if (budget.max_half_cycles < 1) collect(all, "max_half_cycles", "must be >= 1");
-  if (budget.max_time && !(*budget.max_time > 0 && *budget.max_time <= 1e12)) {
-    collect(all, "max_time", "must be > 0 and <= 1e12");
-  }
-  if (const auto* options = std::get_if<Restitution>(&engine)) {
-    if (!(options->accumulation_tolerance > 0 && options->accumulation_tolerance <= 1e-3)) {
-      collect(all, "accumulation_tolerance", "must be > 0 and <= 0.001");
-    }
-    if (!(scene.y0 >= 0 && scene.y0 <= 1)) {
-      collect(all, "y0",
-              "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid, got " +
-                  number_text(scene.y0));
-    }
-  }
 
   // What would not fit into memory is not begun.
   const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what) {

@@ -52,9 +52,9 @@ namespace impact_damper {
 // period of the primary mass or of the forcing where that is shorter.
 Cem resolved(const Scene& scene, Cem options);
 
-// What is wrong with the (resolved) options: no steps allowed, a step that is no positive number, or one
-// beyond the stability limit without `unstable`; a large step that is no larger, beyond the limit in flight,
-// or longer than half a period of the forcing; a stuck speed that is no positive number. Empty if nothing.
+// What is wrong with the (resolved) options: each by itself (engine.hpp), then, if nothing, a step beyond the
+// stability limit without `unstable`; a large step that is no larger, beyond the limit in flight, or longer
+// than half a period of the forcing. Empty if nothing.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 // Throws them as std::invalid_argument.
 void require_no_problems(const Scene& scene, const Cem& options);

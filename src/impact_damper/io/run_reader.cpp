@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
-#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engine_options.hpp"
+#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -50,57 +50,41 @@ class Columns {
   std::optional<std::size_t> length_;
 };
 
-Calibration read_calibration(ObjectReader& object) {
-  Calibration calibration{};
-  object.required("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
-  return calibration;
+// False, having said so, unless there is a value that is allowed, or none where none is needed.
+template <class Value>
+bool read_option(ObjectReader& object, const OptionInfo& option, Value& value) {
+  if (!option.in_every_file && !object.has(option.name)) return true;
+  if constexpr (std::is_enum_v<Value>) {
+    if (!object.require(option.name)) return false;
+    const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
+    if (index) value = all_of<Value>[*index];
+    return index.has_value();
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return object.required(option.name, value);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    double number = 0;  // null is no number
+    if (!object.required(option.name, number, option.range)) return false;
+    value = number;
+    return true;
+  } else {
+    return object.required(option.name, value, option.range);
+  }
 }
 
-Exact read_options(ObjectReader& object, Exact engine) {
-  engine.calibration = read_calibration(object);
-  return engine;
-}
-
-Restitution read_options(ObjectReader& object, Restitution engine) {
-  object.required("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
-  return engine;
-}
-
-Cem read_options(ObjectReader& object, Cem engine) {
-  if (double step = 0; object.required("time_step", step, above(0))) engine.time_step = step;
-  object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
-  object.required("locate", engine.locate);
-  if (double step = 0; object.has("large_step") && object.optional("large_step", step, above(0)))
-    engine.large_step = step;
-  if (double speed = 0; object.has("stuck_speed") && object.optional("stuck_speed", speed, above(0)))
-    engine.stuck_speed = speed;
-  object.required("unstable", engine.unstable);
-  engine.calibration = read_calibration(object);
-  return engine;
-}
-
-Engine read_engine(ObjectReader& object) {
-  constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
-  if (!object.require("name")) return {};
-  const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
+// Absent if any of it is not valid.
+std::optional<Engine> read_engine(ObjectReader& object) {
+  if (!object.require("name")) return std::nullopt;
+  const std::optional<std::size_t> name = object.word("name", engine_names());
   if (!name) {
     object.keys();  // which of them are known depends on the name
-    return {};
+    return std::nullopt;
   }
-  Engine engine = *name == 0 ? Engine(Exact{}) : *name == 1 ? Engine(Restitution{}) : Engine(Cem{});
-  std::visit(
-      [&](auto& options) {
-        options = read_options(object, options);
-        // Files of before it was an option of all engines have none: the default was what they were made
-        // with.
-        if (object.has("max_steps") || std::holds_alternative<Cem>(engine))
-          object.required("max_steps", options.max_steps, at_least(1));
-        object.required("max_impacts", options.budget.max_impacts, at_least(0));
-        object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
-        if (double time = 0; object.required("max_time", time, NumberRange{0, 1e12, false}))
-          options.budget.max_time = time;
-      },
-      engine);
+  Engine engine = default_engines()[*name];
+  bool all_read = true;
+  for_each_option(engine, [&](const OptionInfo& option, auto& value) {
+    all_read = read_option(object, option, value) && all_read;
+  });
+  if (!all_read) return std::nullopt;
   return engine;
 }
 
@@ -218,12 +202,10 @@ Scene read_full_scene(ObjectReader& object) {
 // What the engine would reject of the scene: a run of it cannot have been.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   if (!problems_of(run.scene).empty()) return;
-  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).allows(run.scene.y0)) {
-    scene.reject("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
-                           number_text(run.scene.y0));
-  }
-  if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && cem->time_step) {
-    for (const Problem& problem : problems_of(run.scene, *cem)) engine.reject(problem.field, problem.message);
+  for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
+    const bool of_scene =
+        std::ranges::find(scene_fields, problem.field, &SceneField::name) != scene_fields.end();
+    (of_scene ? scene : engine).reject(problem.field, problem.message);
   }
 }
 
@@ -243,8 +225,10 @@ Run read_whole(JsonDocument document, bool sealed) {
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_full_scene(scene);
-  run.engine = read_engine(engine);
-  check_together(scene, engine, run);
+  if (const std::optional<Engine> whole = read_engine(engine)) {
+    run.engine = *whole;
+    check_together(scene, engine, run);
+  }
   object.required("stop_reason", run.stop_reason,
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
                    StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});

@@ -6,6 +6,7 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
+#include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -109,36 +110,22 @@ class Writer {
 
 using Layout = Writer::Layout;
 
-void write_options(Writer& out, const Exact& engine) {
-  out.field("calibration", name_of(engine.calibration));
-}
-
-void write_options(Writer& out, const Restitution& engine) {
-  out.field("accumulation_tolerance", engine.accumulation_tolerance);
-}
-
-void write_options(Writer& out, const Cem& engine) {
-  out.field("time_step", engine.time_step);
-  out.field("damper", name_of(engine.damper));
-  out.field("locate", engine.locate);
-  if (engine.large_step) out.field("large_step", engine.large_step);
-  if (engine.stuck_speed) out.field("stuck_speed", engine.stuck_speed);
-  out.field("unstable", engine.unstable);
-  out.field("calibration", name_of(engine.calibration));
+template <class Value>
+void write_option(Writer& out, const OptionInfo& option, const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    out.field(option.name, name_of(value));
+  } else {
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
+      if (!value && !option.in_every_file) return;
+    out.field(option.name, value);
+  }
 }
 
 void write(Writer& out, const Engine& engine) {
   out.open("engine", Layout::one_line);
   out.field("name", name_of(engine));
-  std::visit(
-      [&](const auto& options) {
-        write_options(out, options);
-        out.field("max_steps", options.max_steps);
-        out.field("max_impacts", options.budget.max_impacts);
-        out.field("max_half_cycles", options.budget.max_half_cycles);
-        out.field("max_time", options.budget.max_time);
-      },
-      engine);
+  for_each_option(engine,
+                  [&](const OptionInfo& option, const auto& value) { write_option(out, option, value); });
   out.close();
 }
 

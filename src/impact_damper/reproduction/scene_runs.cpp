@@ -3,6 +3,7 @@
 #include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 
@@ -12,8 +13,10 @@ namespace {
 std::string text_of(const std::optional<double>& number) { return number ? number_text(*number) : "none"; }
 
 Engine without_defaults_by_scene(Engine engine) {
-  std::visit([](auto& options) { options.budget.max_time.reset(); }, engine);
-  if (Cem* const cem = std::get_if<Cem>(&engine)) cem->time_step.reset();
+  for_each_option(engine, [](const OptionInfo& option, auto& value) {
+    if constexpr (std::is_same_v<decltype(value), std::optional<double>&>)
+      if (option.in_every_file) value.reset();
+  });
   return engine;
 }
 
