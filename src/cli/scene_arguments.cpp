@@ -209,16 +209,9 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
        "--max-steps");
 }
 
-void reject_as_options(const std::invalid_argument& problems) {
-  std::istringstream lines(problems.what());
-  std::string text;
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = std::min(line.find(':'), line.size());
-    if (!text.empty()) text += '\n';
-    text += option_of(line.substr(0, colon));
-    text += line.substr(colon);
-  }
-  throw UsageError(text);
+void reject_as_options(std::vector<Problem> problems) {
+  for (Problem& problem : problems) problem.field = option_of(problem.field);
+  throw UsageError(std::move(problems));
 }
 
 Option threads_option() {

@@ -196,17 +196,17 @@ std::set<std::string> scenes_of(const Claim& claim) {
 void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
   std::set<std::string> ids;
   for (const Claim& claim : claims) ids.insert(claim.id);
-  std::vector<std::string> problems;
+  std::vector<Problem> problems;
   const std::vector<Figure> figures = read_catalogue(file).figures;
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const std::vector<std::string>& rests_on = figures[i].claims;
     for (std::size_t j = 0; j < rests_on.size(); ++j) {
       if (ids.contains(rests_on[j])) continue;
-      problems.push_back(file.string() + ": /figures/" + std::to_string(i) + "/claims/" + std::to_string(j) +
-                         ": must be the id of a claim, got the string " + in_quotes(rests_on[j]));
+      problems.push_back({"/figures/" + std::to_string(i) + "/claims/" + std::to_string(j),
+                          "must be the id of a claim, got the string " + in_quotes(rests_on[j])});
     }
   }
-  if (!problems.empty()) throw InputError(problems);
+  if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
 // Every run that a claim rests on, before anything is measured: consistent, of its scene, and all of one
@@ -302,8 +302,12 @@ int verify(Arguments& arguments) {
       const Spread ours = spreads[""] = measure(runs, claim.measure);
       all.push_back(
           {&claim, ours, std::move(also), in_words(claim.words, spreads), judge(claim, ours.median)});
+    } catch (const InvalidArguments& error) {
+      std::vector<Problem> problems = error.problems();
+      for (Problem& problem : problems) problem.field.insert(0, "claim " + claim.id + ": ");
+      throw InvalidArguments(problems);
     } catch (const std::invalid_argument& problem) {
-      throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
+      throw InvalidArguments({{"claim " + claim.id, problem.what()}});
     }
   }
   const std::string engine = runs.engine();

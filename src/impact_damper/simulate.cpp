@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 #include "impact_damper/engines/cem.hpp"
@@ -27,18 +26,13 @@ Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
   return run_cem<double>(scene, options, recorder);
 }
 
-void collect(std::string& all, const std::string& field, const std::string& message) {
-  if (!all.empty()) all += '\n';
-  all += field + ": " + message;
-}
-
-std::string problems_of(const Scene& scene, const Engine& engine, const Record& record) {
-  std::string all;
-  for (const Problem& problem : problems_of(scene)) collect(all, problem.field, problem.message);
-  for (const Problem& problem : problems_of(engine)) collect(all, problem.field, problem.message);
-  if (all.empty())
-    for (const Problem& problem : incompatibilities_of(scene, engine))
-      collect(all, problem.field, problem.message);
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {
+  std::vector<Problem> problems = problems_of(scene);
+  const auto add_all = [&](const std::vector<Problem>& more) {
+    problems.insert(problems.end(), more.begin(), more.end());
+  };
+  add_all(problems_of(engine));
+  if (problems.empty()) add_all(incompatibilities_of(scene, engine));
 
   const Budget& budget =
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
@@ -46,9 +40,8 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   // What would not fit into memory is not begun.
   const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what) {
     if (rows <= most_rows) return;
-    collect(all, field,
-            "must be <= " + std::to_string(most_rows) + " where " + what + " recorded, got " +
-                std::to_string(rows));
+    problems.push_back({field, "must be <= " + std::to_string(most_rows) + " where " + what +
+                                   " recorded, got " + std::to_string(rows)});
   };
   if (record.impacts || record.contacts || record.energy) {
     bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
@@ -63,19 +56,20 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   add(record.history);
   add(record.history_below);
   if (samples > most_samples) {
-    collect(all, record.history.empty() ? "history_below" : "history",
-            "must ask for at most " + std::to_string(most_samples) + " samples in all");
+    problems.push_back({record.history.empty() ? "history_below" : "history",
+                        "must ask for at most " + std::to_string(most_samples) + " samples in all"});
   }
 
   if (!record.history.empty() && !record.history_below.empty()) {
-    collect(all, "history", "either by times or by amplitudes, not both in one run");
+    problems.push_back({"history", "either by times or by amplitudes, not both in one run"});
   }
   double last = 0;
   for (const HistoryWindow& window : record.history) {
     if (!(window.begin >= last && window.end > window.begin && window.end <= 1e12 && window.count >= 2)) {
-      collect(all, "history",
-              "each window must begin at or after the end of the one before, end after it begins, "
-              "and have at least 2 samples");
+      problems.push_back(
+          {"history",
+           "each window must begin at or after the end of the one before, end after it begins, "
+           "and have at least 2 samples"});
       break;
     }
     last = window.end;
@@ -83,20 +77,19 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   double above = std::numeric_limits<double>::infinity();
   for (const AmplitudeWindow& window : record.history_below) {
     if (!(window.amplitude > 0 && window.amplitude < above && window.length > 0 && window.count >= 2)) {
-      collect(all, "history_below",
-              "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2");
+      problems.push_back(
+          {"history_below", "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2"});
       break;
     }
     above = window.amplitude;
   }
-  return all;
+  return problems;
 }
 
 }  // namespace
 
 Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
-  const std::string problems = problems_of(scene, engine, record);
-  if (!problems.empty()) throw std::invalid_argument(problems);
+  require_none(problems_of(scene, engine, record));
 
   Run result;
   result.scene = scene;

@@ -2,10 +2,8 @@
 
 #include <charconv>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
-#include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
@@ -57,15 +55,6 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
     }
   }
   return problems;
-}
-
-void require_no_problems(const Scene& scene, const Cem& options) {
-  std::string all;
-  for (const Problem& problem : problems_of(scene, options)) {
-    if (!all.empty()) all += '\n';
-    all += problem.field + ": " + problem.message;
-  }
-  if (!all.empty()) throw std::invalid_argument(all);
 }
 
 std::int64_t whole_steps(double steps) {

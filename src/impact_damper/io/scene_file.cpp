@@ -81,7 +81,8 @@ void reject_run(const std::filesystem::path& file) {
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(enough));
   if (head.find('"' + std::string(run_schema) + '"') == std::string::npos) return;
   throw InputError(
-      {file.string() + ": this is a run, must be a scene; the scene of a run is the object \"scene\" in it"});
+      file.string(),
+      {{"", "this is a run, must be a scene; the scene of a run is the object \"scene\" in it"}});
 }
 
 }  // namespace
