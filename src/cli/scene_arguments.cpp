@@ -59,7 +59,7 @@ std::vector<OfferedOption> offered_options() {
   const auto of_some = [](const OfferedOption& each) {
     return each.engines.size() < default_engines().size();
   };
-  std::ranges::stable_partition(offered, of_some);
+  std::stable_partition(offered.begin(), offered.end(), of_some);
   // How a speed is chosen without a number: the one option that is no member of an engine.
   const auto speed =
       std::ranges::find_if(offered, [](const auto& each) { return each.info.name == "stuck_speed"; });
