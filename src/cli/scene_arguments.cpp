@@ -250,7 +250,7 @@ Options engine_options() {
   for (const Engine& each : default_engines()) {
     const std::string name(name_of(each));
     engine.help += (engine.type.empty() ? name + " (default)" : ";\n" + name) + ": ";
-    engine.help += std::visit([](const auto& options) { return options.meaning; }, each);
+    engine.help += std::visit([](const auto& chosen) { return chosen.meaning; }, each);
     engine.type += (engine.type.empty() ? "" : "|") + name;
   }
   options.push_back(engine);

@@ -168,6 +168,7 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   out.close();
   if (!open.empty()) {
     std::vector<std::string> ids;
+    ids.reserve(open.size());
     for (const OpenStatement& each : open) ids.push_back(each.id);
     out.new_line();
     out.field("open", ids);

@@ -35,6 +35,7 @@ const std::vector<Engine>& default_engines() {
 
 std::vector<std::string_view> engine_names() {
   std::vector<std::string_view> names;
+  names.reserve(default_engines().size());
   for (const Engine& engine : default_engines()) names.push_back(name_of(engine));
   return names;
 }

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
@@ -49,6 +51,7 @@ inline constexpr std::array all_of<Damper>{Damper::centred, Damper::lagged};
 template <class Enum>
 std::vector<std::string_view> words_of() {
   std::vector<std::string_view> words;
+  words.reserve(all_of<Enum>.size());
   for (const Enum value : all_of<Enum>) words.push_back(name_of(value));
   return words;
 }
