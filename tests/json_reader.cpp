@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_writer.hpp"
 
 using namespace impact_damper;
 
@@ -272,4 +273,58 @@ TEST_CASE("a file may have just the length that is allowed, and not a byte more"
   CHECK_THROWS_WITH_AS(read_text(file, {"thing", 4}),
                        doctest::Contains("too long, allowed are 4 bytes for a thing, got 5"), InputError);
   std::filesystem::remove(file);
+}
+
+TEST_CASE("what is written reads back, on the lines that were asked for") {
+  using Layout = JsonWriter::Layout;
+  JsonWriter out("thing");
+  out.open_object(Layout::lines);
+  out.fields("x", -0.0, "n", std::int64_t{-7}, "on", true, "none", std::optional<double>());
+  out.field("text", "a \"word\" \\ ν");
+  out.object("object", Layout::one_line, "column", std::vector<double>{1, 0.1 + 0.2}, "names",
+             std::vector<std::string>{"a", "b"});
+  out.open_array("list", Layout::lines);
+  for (const double each : {1.0, 2.0}) {
+    out.open_object(Layout::one_line);
+    out.field("a", each);
+    out.new_line();
+    out.field("b", std::vector<double>());
+    out.close();
+  }
+  out.close();
+  out.close();
+  const std::string text = out.finish();
+  CHECK(text == R"({
+ "x": -0.0,
+ "n": -7,
+ "on": true,
+ "none": null,
+ "text": "a \"word\" \\ ν",
+ "object": {"column": [1,0.30000000000000004], "names": ["a", "b"]},
+ "list": [
+  {"a": 1,
+   "b": []},
+  {"a": 2,
+   "b": []}
+ ]
+})");
+  CHECK(problems(text, [](ObjectReader& root) {
+          std::string word;
+          std::vector<double> column;
+          root.keys();
+          ObjectReader object = root.required_object("object");
+          object.required("column", column, NumberRange{});
+          object.keys();
+          root.required("text", word);
+          for (ObjectReader each : root.required_objects("list", 2)) each.keys();
+          CHECK(word == "a \"word\" \\ ν");
+          CHECK(column == std::vector<double>{1, 0.1 + 0.2});
+        }).empty());
+  for (const double value : {std::nan(""), double(INFINITY)}) {
+    JsonWriter astray("thing");
+    astray.open_object(Layout::lines);
+    CHECK_THROWS_WITH_AS(astray.field("x", value),
+                         doctest::Contains("the thing went astray: a number in its \"x\" is "),
+                         NumericalError);
+  }
 }

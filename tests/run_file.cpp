@@ -11,8 +11,10 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
+#include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
 
@@ -242,6 +244,45 @@ TEST_CASE("a run that is read and written again has the same bytes, whatever its
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
     CHECK(!parse_run("r.json", run_text(run)).impacts);
     CHECK(parse_run("r.json", run_text(run)).history);
+  }
+}
+
+TEST_CASE("each option of each engine survives the file, and one that is out of its range is named") {
+  for (Engine engine : default_engines()) {
+    CAPTURE(name_of(engine));
+    double next = 1e-4;  // ascending: a large step is larger than the time step
+    for_each_option(engine, [&](const OptionInfo&, auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (std::is_enum_v<Value>) {
+        value = all_of<Value>.back();
+      } else if constexpr (std::is_same_v<Value, bool>) {
+        value = true;
+      } else if constexpr (std::is_same_v<Value, std::int64_t>) {
+        ++value;
+      } else {
+        value = next *= 2;
+      }
+    });
+    CHECK(problems_of(engine).empty());
+    CHECK(parse_run("r.json", run_text(full_run(engine))).engine == engine);
+
+    std::vector<std::string> numbers, named;
+    for_each_option(engine, [&](const OptionInfo& option, auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (!std::is_enum_v<Value> && !std::is_same_v<Value, bool>) {
+        const Value allowed = std::exchange(value, Value(-1));
+        numbers.emplace_back(option.name);
+        const std::vector<Problem> found = problems_of(engine);
+        REQUIRE(found.size() == 1);
+        named.push_back(found[0].field);
+        CHECK(found[0].message.starts_with("must be >"));
+        CHECK(found[0].message.ends_with(", got -1"));
+        CHECK_THROWS_AS(simulate(Scene{.until_time = 1}, engine, {}), std::invalid_argument);
+        value = allowed;
+      }
+    });
+    CHECK(numbers == named);
+    CHECK(numbers.size() >= 4);
   }
 }
 

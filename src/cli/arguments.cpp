@@ -111,7 +111,7 @@ void reject_csv_name(Arguments& arguments, const std::optional<std::string>& out
 }
 
 void Arguments::reject(const std::string& option, const std::string& what) {
-  problems_ += (problems_.empty() ? "" : "\n") + option + ": " + what;
+  problems_.push_back({option, what});
 }
 
 void Arguments::finish() const {

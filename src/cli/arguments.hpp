@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the parser's
@@ -22,10 +22,10 @@ class App;
 
 namespace impact_damper::cli {
 
-// A command line that is not valid: what() has one line for each problem.
-class UsageError : public std::runtime_error {
+// A command line that is not valid. The field of a problem is an option or an argument.
+class UsageError : public InvalidArguments {
  public:
-  using std::runtime_error::runtime_error;
+  using InvalidArguments::InvalidArguments;
 };
 
 class Arguments {
@@ -61,7 +61,7 @@ class Arguments {
 
  private:
   const CLI::App& app_;
-  std::string problems_;
+  std::vector<Problem> problems_;
 };
 
 // --format: in which form a result is written.

@@ -49,7 +49,7 @@ std::vector<std::string> files_of(Arguments& arguments) {
   std::vector<std::string> files;
   if (const auto first = arguments.file("FILE")) files.push_back(*first);
   for (const std::string& more : arguments.more()) {
-    if (more.starts_with('-')) throw UsageError("unknown argument " + in_quotes(more));
+    if (more.starts_with('-')) throw UsageError({Problem{"", "unknown argument " + in_quotes(more)}});
     files.push_back(more);
   }
   return files;

@@ -28,14 +28,13 @@ using namespace impact_damper;
 enum Exit { done = 0, check_failed = 1, usage = 2, bad_input = 3, numerical_failure = 4, input_output = 5 };
 
 // `head` stands before each problem; those of files begin with the file's name and need none.
-int fail(Exit code, const std::string& head, const std::string& problems) {
-  std::istringstream lines(problems);
-  for (std::string line; std::getline(lines, line);) std::cerr << head + line + '\n';
+int fail(Exit code, const std::string& head, const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::cerr << head + problem + '\n';
   return code;
 }
 
-// One line for each argument that nobody asked for, with the option or subcommand it was meant to be.
-std::string unknown_arguments(const CLI::App& program, const CLI::App& command) {
+// The arguments that nobody asked for, each with the option or subcommand it was meant to be.
+std::vector<Problem> unknown_arguments(const CLI::App& program, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -44,7 +43,7 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
     for (const CLI::App* each : program.get_subcommands({})) names.push_back(each->get_name());
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
-  std::string lines;
+  std::vector<Problem> problems;
   bool value_follows = false;
   for (const std::string& argument : program.remaining(true)) {
     // What stands behind an unknown option is its value, if it is neither an option nor missing.
@@ -57,12 +56,12 @@ std::string unknown_arguments(const CLI::App& program, const CLI::App& command) 
     std::error_code unknown;
     const bool is_scene = !meant && !is_option && std::count(known.begin(), known.end(), "--scene") > 0 &&
                           std::filesystem::is_regular_file(argument, unknown);
-    lines += (lines.empty() ? "" : "\n") + std::string("unknown argument ") + in_quotes(argument) +
-             (meant      ? ", did you mean " + std::string(*meant) + "?"
-              : is_scene ? ", did you mean --scene " + cut(argument) + "?"
-                         : "");
+    problems.push_back({"", "unknown argument " + in_quotes(argument) +
+                                (meant      ? ", did you mean " + std::string(*meant) + "?"
+                                 : is_scene ? ", did you mean --scene " + cut(argument) + "?"
+                                            : "")});
   }
-  return lines;
+  return problems;
 }
 
 // The arguments, last first as the parser takes them; "help" and "help run" are "--help" and "run --help".
@@ -81,8 +80,8 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
   return arguments;
 }
 
-// Options without a value that took the option behind them for it (--x0 --y0 1), one line for each.
-std::string swallowed_options(const CLI::App& command) {
+// Options without a value that took the option behind them for it (--x0 --y0 1).
+std::vector<Problem> swallowed_options(const CLI::App& command) {
   const std::vector<const CLI::Option*> options = command.get_options();
   const auto is_option = [&](const std::string& value) {
     const std::string name = value.substr(0, value.find('='));
@@ -90,15 +89,13 @@ std::string swallowed_options(const CLI::App& command) {
            std::any_of(options.begin(), options.end(),
                        [&](const CLI::Option* option) { return option->check_name(name); });
   };
-  std::string lines;
+  std::vector<Problem> problems;
   for (const CLI::Option* option : options) {
-    for (const std::string& value : option->results()) {
-      if (!is_option(value)) continue;
-      if (!lines.empty()) lines += '\n';
-      lines += option->get_name() + ": needs a value, got the option " + cut(value);
-    }
+    for (const std::string& value : option->results())
+      if (is_option(value))
+        problems.push_back({option->get_name(), "needs a value, got the option " + cut(value)});
   }
-  return lines;
+  return problems;
 }
 
 // What is said above the subcommands.
@@ -179,7 +176,7 @@ int main(int argc, char** argv) {
       write_standard_output(text.str());
       return code;
     }
-    const std::string swallowed = swallowed_options(command_of());
+    const std::vector<Problem> swallowed = swallowed_options(command_of());
     if (!swallowed.empty()) throw cli::UsageError(swallowed);
     for (const cli::Command& command : commands) {
       if (command_of().get_name() != command.name) continue;
@@ -187,28 +184,29 @@ int main(int argc, char** argv) {
       cli::Arguments arguments(command_of());
       return command.act(arguments);
     }
-    throw cli::UsageError("a subcommand must be given, see impact-damper --help");
+    throw cli::UsageError({Problem{"", "a subcommand must be given, see impact-damper --help"}});
   } catch (const CLI::ExtrasError&) {
-    const std::string swallowed = swallowed_options(command_of());
-    return fail(usage, head(), swallowed.empty() ? unknown_arguments(program, command_of()) : swallowed);
+    const std::vector<Problem> swallowed = swallowed_options(command_of());
+    return fail(usage, head(),
+                lines_of(swallowed.empty() ? unknown_arguments(program, command_of()) : swallowed));
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), option = text.substr(0, text.find(':'));
     const bool missing = text.find("missing") != std::string::npos;
     return fail(usage, head(),
-                option + (missing ? ": needs a value, none is given" : ": is given more than once"));
+                {option + (missing ? ": needs a value, none is given" : ": is given more than once")});
   } catch (const CLI::ParseError& error) {
-    return fail(usage, head(), error.what());
-  } catch (const cli::UsageError& error) {
-    return fail(usage, head(), error.what());
+    return fail(usage, head(), {error.what()});
+  } catch (const InvalidArguments& error) {
+    return fail(usage, head(), lines_of(error.problems()));
   } catch (const InputError& error) {
-    return fail(bad_input, {}, error.what());
+    return fail(bad_input, {}, error.problems());
   } catch (const IoError& error) {
-    return fail(input_output, {}, error.what());
+    return fail(input_output, {}, {error.what()});
   } catch (const std::invalid_argument& error) {
-    return fail(usage, head(), error.what());
+    return fail(usage, head(), {error.what()});
   } catch (const std::bad_alloc&) {
-    return fail(numerical_failure, head(), "out of memory");
+    return fail(numerical_failure, head(), {"out of memory"});
   } catch (const std::exception& error) {
-    return fail(numerical_failure, head(), error.what());
+    return fail(numerical_failure, head(), {error.what()});
   }
 }

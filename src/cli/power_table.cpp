@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_writer.hpp"
 #include "text_table.hpp"
 
 namespace impact_damper::cli {
@@ -50,26 +51,16 @@ std::string summary_text(const PowerTable& table) {
          std::to_string(table.rows.size() - static_cast<std::size_t>(some)) + " turn none\n";
 }
 
-std::string json_string(const std::string& text) {
-  return '"' + text + '"';
-}  // names have no other characters
+using Layout = JsonWriter::Layout;
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text = "[";
-  for (const std::string& name : names) {
-    if (text.size() > 1) text += ", ";
-    text += json_string(name);
-  }
-  return text + "]";
-}
-
-std::string json_of(const Direction& direction) {
-  std::string text = "{\"searched_to\": " + number_text(direction.searched_to.value);
-  if (direction.turn)
-    text += ", \"change\": " + number_text(direction.turn->trial.change) +
-            ", \"value\": " + number_text(direction.turn->trial.value) +
-            ", \"claims\": " + list_of(direction.turn->claims);
-  return text + "}";
+void write(JsonWriter& out, std::string_view name, const std::optional<Direction>& direction) {
+  if (!direction) return;
+  out.new_line();
+  out.open_object(name, Layout::one_line);
+  out.field("searched_to", direction->searched_to.value);
+  if (const auto& turn = direction->turn)
+    out.fields("change", turn->trial.change, "value", turn->trial.value, "claims", turn->claims);
+  out.close();
 }
 
 // The rows that `wanted` holds for, as a table whose first column is the scene, if they are of several.
@@ -126,22 +117,28 @@ std::string table_text(const PowerTable& table) {
 }
 
 std::string json_text(const PowerTable& table) {
-  std::string text = "{\"schema\": \"impact-damper/power/1\",\n \"engine\": " + json_string(table.engine) +
-                     ", \"members\": " + std::to_string(table.members) +
-                     ", \"claims\": " + std::to_string(table.claims) +
-                     ", \"other_ensembles\": " + std::to_string(table.ensembles) +
-                     ",\n \"unsettled\": " + list_of(table.unsettled) + ",\n \"numbers\": [";
-  const char* separator = "\n";
+  JsonWriter out("table");
+  out.open_object(Layout::one_line);
+  out.field("schema", "impact-damper/power/1");
+  out.new_line();
+  out.fields("engine", table.engine, "members", table.members, "claims", std::int64_t(table.claims),
+             "other_ensembles", table.ensembles);
+  out.new_line();
+  out.field("unsettled", table.unsettled);
+  out.new_line();
+  out.open_array("numbers", Layout::lines);
   for (const PowerRow& row : table.rows) {
-    text += separator;
-    text += "  {\"of\": " + json_string(row.number.of) + ", \"name\": " + json_string(row.number.name) +
-            ", \"value\": " + number_text(row.number.value);
-    if (row.up) text += ",\n   \"up\": " + json_of(*row.up);
-    if (row.down) text += ",\n   \"down\": " + json_of(*row.down);
-    text += ",\n   \"noticed_by\": " + json_string(std::string(row.number.noticed_by)) + "}";
-    separator = ",\n";
+    out.open_object(Layout::one_line);
+    out.fields("of", row.number.of, "name", row.number.name, "value", row.number.value);
+    write(out, "up", row.up);
+    write(out, "down", row.down);
+    out.new_line();
+    out.field("noticed_by", row.number.noticed_by);
+    out.close();
   }
-  return text + "\n ]}\n";
+  out.close();
+  out.close();
+  return out.finish() + '\n';
 }
 
 std::string markdown_text(const PowerTable& table) {

@@ -6,6 +6,7 @@
 
 #include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine_options.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -22,40 +23,118 @@ NumberRange range_of(const SceneField& field) {
   return {field.least <= -1e12 ? -any : field.least, field.most >= 1e6 ? any : field.most};
 }
 
-Budget budget_of(Arguments& arguments) {
-  Budget budget;
-  if (const auto most = arguments.whole_number("--max-impacts", at_least(0))) budget.max_impacts = *most;
-  if (const auto most = arguments.whole_number("--max-half-cycles", at_least(1)))
-    budget.max_half_cycles = *most;
-  if (const auto most = arguments.number("--max-time", NumberRange{0, 1e12, false})) budget.max_time = *most;
-  return budget;
+// An option of the command line, for all the engines that have it.
+struct OfferedOption {
+  OptionInfo info;
+  std::string type;  // of its value; "" for a flag
+  std::vector<std::string_view> engines;
+  std::vector<std::string> defaults;  // of each of them
+};
+
+template <class Value>
+std::string type_of(const OptionInfo& option) {
+  std::string type(option.symbol);
+  if constexpr (std::is_enum_v<Value>)
+    for (const std::string_view word : words_of<Value>())
+      type += (type.empty() ? "" : "|") + std::string(word);
+  return type;
 }
 
-// Options that only some engines have; with another they would be ignored, so they are rejected.
-void reject_foreign_options(Arguments& arguments, std::string_view engine) {
-  struct Own {
-    const char* option;
-    std::vector<std::string_view> engines;
-  };
-  const std::vector<Own> owns{
-      {"--time-step", {Cem::name}},
-      {"--damper", {Cem::name}},
-      {"--locate", {Cem::name}},
-      {"--large-step", {Cem::name}},
-      {"--stuck", {Cem::name}},
-      {"--stuck-speed", {Cem::name}},
-      {"--unstable", {Cem::name}},
-      {"--calibration", {Exact::name, Cem::name}},
-      {"--accumulation-tolerance", {Restitution::name}},
-  };
-  for (const Own& own : owns) {
-    if (!arguments.given(own.option) || std::count(own.engines.begin(), own.engines.end(), engine) > 0)
-      continue;
-    std::string list;
-    for (const std::string_view name : own.engines) list += (list.empty() ? "" : " or ") + std::string(name);
-    arguments.reject(own.option,
-                     "is an option of --engine " + list + ", got --engine " + std::string(engine));
+// First those that only some engines have.
+std::vector<OfferedOption> offered_options() {
+  std::vector<OfferedOption> offered;
+  for (const Engine& engine : default_engines()) {
+    for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
+      const auto is_it = [&](const OfferedOption& each) { return each.info.name == option.name; };
+      auto found = std::ranges::find_if(offered, is_it);
+      if (found == offered.end()) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        found = offered.insert(found, {option, type_of<Value>(option), {}, {}});
+      }
+      found->engines.push_back(name_of(engine));
+      found->defaults.push_back(option.otherwise.empty() ? option_text(value)
+                                                         : std::string(option.otherwise));
+    });
   }
+  const auto of_some = [](const OfferedOption& each) {
+    return each.engines.size() < default_engines().size();
+  };
+  std::stable_partition(offered.begin(), offered.end(), of_some);
+  // How a speed is chosen without a number: the one option that is no member of an engine.
+  const auto speed =
+      std::ranges::find_if(offered, [](const auto& each) { return each.info.name == "stuck_speed"; });
+  speed->defaults = {number_text(usual_stuck_speed)};
+  offered.insert(
+      speed, {{.name = "stuck",
+               .meaning = "a mass that sticks is in a contact that lasts (contact), or both masses are one "
+                          "as in the paper, by equation (9) with the force divided by 1 + nu, until x'' "
+                          "changes its sign"},
+              "contact|paper",
+              speed->engines,
+              {"contact"}});
+  return offered;
+}
+
+// With an engine that does not have it an option would be ignored, so it is rejected.
+void reject_foreign_options(Arguments& arguments, std::string_view engine) {
+  for (const OfferedOption& offered : offered_options()) {
+    const std::string option = option_of(offered.info.name);
+    if (arguments.given(option) && std::ranges::count(offered.engines, engine) == 0)
+      arguments.reject(option, "is an option of --engine " + listed(offered.engines, "or") +
+                                   ", got --engine " + std::string(engine));
+  }
+}
+
+template <class Value>
+void read_option(Arguments& arguments, const OptionInfo& info, Value& value) {
+  const std::string option = option_of(info.name);
+  if constexpr (std::is_enum_v<Value>) {
+    if (const auto index = arguments.word(option, words_of<Value>())) value = all_of<Value>[*index];
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    value = arguments.flag(option);
+  } else if constexpr (std::is_same_v<Value, std::int64_t>) {
+    value = arguments.whole_number(option, info.range).value_or(value);
+  } else {
+    if (const auto number = arguments.number(option, info.range)) value = *number;
+  }
+}
+
+void read_sticking(Arguments& arguments, Cem& cem) {
+  const bool as_in_paper = arguments.word("--stuck", {"contact", "paper"}) == std::size_t{1};
+  if (arguments.given("--stuck-speed") && !as_in_paper)
+    arguments.reject("--stuck-speed", "is an option of --stuck paper");
+  if (as_in_paper && !cem.stuck_speed) cem.stuck_speed = usual_stuck_speed;
+}
+
+// `text` in lines of at most so many characters.
+std::string in_lines(const std::string& text, std::size_t most) {
+  std::istringstream words(text);
+  std::string lines, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > most) {
+      lines += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return lines + line;
+}
+
+// What it is, what is allowed and what is taken otherwise.
+std::string help_of(const OfferedOption& offered) {
+  const OptionInfo& info = offered.info;
+  const std::vector<std::string_view> engines = engine_names();
+  std::string text = offered.engines.size() < engines.size() ? listed(offered.engines, "and") + ": " : "";
+  text += info.meaning;
+  if (offered.type.empty()) return text;
+  if (!info.symbol.empty())
+    text += "; " + info.range.describe(info.symbol == "N" ? "a whole number" : "a number");
+  if (!info.further.empty()) text += ", " + std::string(info.further);
+  text += (info.symbol.empty() ? "; default " : ", default ") + offered.defaults[0];
+  for (std::size_t i = 1; i < offered.engines.size(); ++i)
+    if (offered.defaults[i] != offered.defaults[0])
+      text += ", with " + std::string(offered.engines[i]) + " " + offered.defaults[i];
+  return text;
 }
 
 }  // namespace
@@ -85,43 +164,13 @@ SceneFile scene_of(Arguments& arguments) {
 }
 
 Engine engine_of(Arguments& arguments) {
-  const std::vector<std::string_view> names{Exact::name, Restitution::name, Cem::name};
-  const std::optional<std::size_t> chosen = arguments.word("--engine", names);
+  const std::optional<std::size_t> chosen = arguments.word("--engine", engine_names());
   if (!chosen && arguments.given("--engine")) return {};  // rejected; which options belong to it is unknown
-  const std::string_view name = names[chosen.value_or(0)];
-  reject_foreign_options(arguments, name);
-
-  const Budget budget = budget_of(arguments);
-  const Calibration calibration = arguments.choice(
-      "--calibration", {Calibration::fixed_wall, Calibration::two_body}, Calibration::fixed_wall);
-  const auto most_steps = arguments.whole_number("--max-steps", at_least(1));
-  if (name == Exact::name) {
-    Exact engine{calibration, budget};
-    if (most_steps) engine.max_steps = *most_steps;
-    return engine;
-  }
-  if (name == Restitution::name) {
-    Restitution engine;
-    engine.budget = budget;
-    const auto tolerance = arguments.number("--accumulation-tolerance", NumberRange{0, 1e-3, false});
-    if (tolerance) engine.accumulation_tolerance = *tolerance;
-    if (most_steps) engine.max_steps = *most_steps;
-    return engine;
-  }
-  Cem engine;
-  engine.time_step = arguments.number("--time-step", above(0));
-  engine.damper = arguments.choice("--damper", {Damper::centred, Damper::lagged}, Damper::centred);
-  engine.locate = arguments.flag("--locate");
-  engine.large_step = arguments.number("--large-step", above(0));
-  const bool stuck_as_in_paper = arguments.word("--stuck", {"contact", "paper"}) == std::size_t{1};
-  engine.stuck_speed = arguments.number("--stuck-speed", above(0));
-  if (arguments.given("--stuck-speed") && !stuck_as_in_paper)
-    arguments.reject("--stuck-speed", "is an option of --stuck paper");
-  if (stuck_as_in_paper && !engine.stuck_speed) engine.stuck_speed = usual_stuck_speed;
-  engine.unstable = arguments.flag("--unstable");
-  engine.calibration = calibration;
-  if (most_steps) engine.max_steps = *most_steps;
-  engine.budget = budget;
+  Engine engine = default_engines()[chosen.value_or(0)];
+  reject_foreign_options(arguments, name_of(engine));
+  for_each_option(engine,
+                  [&](const OptionInfo& option, auto& value) { read_option(arguments, option, value); });
+  if (Cem* const cem = std::get_if<Cem>(&engine)) read_sticking(arguments, *cem);
   return engine;
 }
 
@@ -160,16 +209,9 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
        "--max-steps");
 }
 
-void reject_as_options(const std::invalid_argument& problems) {
-  std::istringstream lines(problems.what());
-  std::string text;
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = std::min(line.find(':'), line.size());
-    if (!text.empty()) text += '\n';
-    text += option_of(line.substr(0, colon));
-    text += line.substr(colon);
-  }
-  throw UsageError(text);
+void reject_as_options(std::vector<Problem> problems) {
+  for (Problem& problem : problems) problem.field = option_of(problem.field);
+  throw UsageError(std::move(problems));
 }
 
 Option threads_option() {
@@ -204,53 +246,18 @@ Options scene_options() {
 
 Options engine_options() {
   Options options;
-  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    options.push_back({name, type, help, "Engine"});
-  };
-  const auto add_flag = [&](const std::string& name, const std::string& help) {
-    options.push_back({name, "", help, "Engine", Option::Takes::nothing});
-  };
-  add("--engine", "exact|restitution|cem",
-      "exact (default): compliant walls in closed form, no time step;\n"
-      "restitution: rigid walls, instantaneous impacts;\n"
-      "cem: the component element method, central differences");
-  add("--calibration", "fixed-wall|two-body",
-      "exact, cem: fixed-wall (default), the paper's, delivers the\n"
-      "restitution to a primary mass held still; two-body to a free one");
-  add("--time-step", "H",
-      "cem: the fixed step, a number > 0 below the stability limit;\n"
-      "default a hundredth of an impact's duration, or of half the\n"
-      "primary mass's or the forcing's period where that is shorter");
-  add("--damper", "centred|lagged",
-      "cem: the velocity the wall's damper sees, centred (default)\n"
-      "or lagged (one step behind)");
-  add_flag("--locate", "cem: locate touch and release inside the step");
-  add("--large-step", "H",
-      "cem: steps of up to H, for instance 0.05, while no wall can be\n"
-      "met, the time step near contact only; a number > the time step\n"
-      "and < 2, with forcing at most half its period. Best with --locate");
-  add("--stuck", "contact|paper",
-      "cem: a mass that sticks is in a contact that lasts (contact,\n"
-      "default), or both masses are one as in the paper, by equation (9)\n"
-      "with the force divided by 1 + nu, until x'' changes its sign");
-  add("--stuck-speed", "U",
-      "cem with --stuck paper: an impact slower than this, with the\n"
-      "wall pushing, joins the masses; a number > 0, default " +
-          number_text(usual_stuck_speed));
-  add_flag("--unstable", "cem: run even with a step beyond the stability limit");
-  add("--accumulation-tolerance", "X",
-      "restitution: bounce-down jumps to its end once the relative\n"
-      "acceleration changes by less than this fraction in the rest of\n"
-      "it; a number > 0 and <= 0.001, default 1e-8");
-  add("--max-impacts", "N", "stop after so many impacts; a whole number >= 0,\ndefault 200000");
-  add("--max-half-cycles", "N", "stop after so many half cycles; a whole number >= 1,\ndefault 200000");
-  add("--max-time", "T",
-      "stop at this time at the latest; a number > 0 and <= 1e12,\ndefault 500000, with a forcing faster "
-      "than "
-      "1 divided by its\nfrequency");
-  add("--max-steps", "N",
-      "stop after so many steps, of the searches for events or, with\n"
-      "cem, of time; a whole number >= 1, default 10000000,\nwith cem 300000000");
+  Option engine{"--engine", "", "", "Engine"};
+  for (const Engine& each : default_engines()) {
+    const std::string name(name_of(each));
+    engine.help += (engine.type.empty() ? name + " (default)" : ";\n" + name) + ": ";
+    engine.help += std::visit([](const auto& chosen) { return chosen.meaning; }, each);
+    engine.type += (engine.type.empty() ? "" : "|") + name;
+  }
+  options.push_back(engine);
+  constexpr std::size_t width = 66;
+  for (const OfferedOption& each : offered_options())
+    options.push_back({option_of(each.info.name), each.type, in_lines(help_of(each), width), "Engine",
+                       each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
   return options;
 }
 

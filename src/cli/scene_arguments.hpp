@@ -2,8 +2,6 @@
 // commands that simulate a scene of the user's own.
 #pragma once
 
-#include <stdexcept>
-
 #include "commands.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -23,13 +21,13 @@ void warn_of_cautions(const std::string& command, const Scene& scene, const std:
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
 // What simulate() rejects, naming fields, as a UsageError that names the options.
-[[noreturn]] void reject_as_options(const std::invalid_argument& problems);
+[[noreturn]] void reject_as_options(std::vector<Problem> problems);
 template <class Simulate>
 auto saying_options(Simulate&& simulate_something) {
   try {
     return simulate_something();
-  } catch (const std::invalid_argument& problems) {
-    reject_as_options(problems);
+  } catch (const InvalidArguments& error) {
+    reject_as_options(error.problems());
   }
 }
 

@@ -14,6 +14,7 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_writer.hpp"
 #include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/reproduction/claims.hpp"
 #include "impact_damper/reproduction/measures.hpp"
@@ -137,53 +138,43 @@ std::string markdown_text(const std::vector<Verified>& all, const std::vector<Op
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
-// "ours": 1, "low": 0.9, "high": 1.1
-std::string spread_json(const Spread& spread) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? number_text(value) : std::string("null");
-  };
-  return "\"ours\": " + number(spread.median) + ", \"low\": " + number(spread.low) +
-         ", \"high\": " + number(spread.high);
-}
-
-std::string also_json(const NamedSpreads& also) {
-  if (also.empty()) return "";
-  std::string text = ", \"also\": {";
-  const char* separator = "";
-  for (const auto& [name, spread] : also) {
-    text += separator + quoted(name) + ": {" + spread_json(spread) + '}';
-    separator = ", ";
-  }
-  return text + '}';
+// A number that is not finite as null.
+void write(JsonWriter& out, const Spread& spread) {
+  const auto number = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  out.fields("ours", number(spread.median), "low", number(spread.low), "high", number(spread.high));
 }
 
 std::string verdicts_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
-  std::string text = "{\"schema\": \"impact-damper/verdicts/1\",\n \"verdicts\": [";
-  const char* separator = "\n";
+  using Layout = JsonWriter::Layout;
+  JsonWriter out("table");
+  out.open_object(Layout::one_line);
+  out.field("schema", "impact-damper/verdicts/1");
+  out.new_line();
+  out.open_array("verdicts", Layout::lines);
   for (const Verified& each : all) {
-    text += separator;
-    text += "  {\"claim\": " + quoted(each.claim->id) + ", " + spread_json(each.ours) + also_json(each.also) +
-            ", \"words\": " + quoted(each.words) +
-            ", \"verdict\": " + quoted(std::string(name_of(each.verdict))) +
-            ", \"recorded\": " + quoted(std::string(name_of(each.recorded))) + "}";
-    separator = ",\n";
+    out.open_object(Layout::one_line);
+    out.field("claim", each.claim->id);
+    write(out, each.ours);
+    if (!each.also.empty()) out.open_object("also", Layout::one_line);
+    for (const auto& [name, spread] : each.also) {
+      out.open_object(name, Layout::one_line);
+      write(out, spread);
+      out.close();
+    }
+    if (!each.also.empty()) out.close();
+    out.fields("words", each.words, "verdict", name_of(each.verdict), "recorded", name_of(each.recorded));
+    out.close();
   }
-  text += "\n ]";
-  separator = ",\n \"open\": [";
-  for (const OpenStatement& each : open) {
-    text += separator + quoted(each.id);
-    separator = ", ";
+  out.close();
+  if (!open.empty()) {
+    std::vector<std::string> ids;
+    ids.reserve(open.size());
+    for (const OpenStatement& each : open) ids.push_back(each.id);
+    out.new_line();
+    out.field("open", ids);
   }
-  return text + (open.empty() ? "}\n" : "]}\n");
+  out.close();
+  return out.finish() + '\n';
 }
 
 std::set<std::string> scenes_of(const Claim& claim) {
@@ -196,17 +187,17 @@ std::set<std::string> scenes_of(const Claim& claim) {
 void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
   std::set<std::string> ids;
   for (const Claim& claim : claims) ids.insert(claim.id);
-  std::vector<std::string> problems;
+  std::vector<Problem> problems;
   const std::vector<Figure> figures = read_catalogue(file).figures;
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const std::vector<std::string>& rests_on = figures[i].claims;
     for (std::size_t j = 0; j < rests_on.size(); ++j) {
       if (ids.contains(rests_on[j])) continue;
-      problems.push_back(file.string() + ": /figures/" + std::to_string(i) + "/claims/" + std::to_string(j) +
-                         ": must be the id of a claim, got the string " + in_quotes(rests_on[j]));
+      problems.push_back({"/figures/" + std::to_string(i) + "/claims/" + std::to_string(j),
+                          "must be the id of a claim, got the string " + in_quotes(rests_on[j])});
     }
   }
-  if (!problems.empty()) throw InputError(problems);
+  if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
 // Every run that a claim rests on, before anything is measured: consistent, of its scene, and all of one
@@ -302,8 +293,12 @@ int verify(Arguments& arguments) {
       const Spread ours = spreads[""] = measure(runs, claim.measure);
       all.push_back(
           {&claim, ours, std::move(also), in_words(claim.words, spreads), judge(claim, ours.median)});
+    } catch (const InvalidArguments& error) {
+      std::vector<Problem> problems = error.problems();
+      for (Problem& problem : problems) problem.field.insert(0, "claim " + claim.id + ": ");
+      throw InvalidArguments(problems);
     } catch (const std::invalid_argument& problem) {
-      throw std::invalid_argument("claim " + claim.id + ": " + problem.what());
+      throw InvalidArguments({{"claim " + claim.id, problem.what()}});
     }
   }
   const std::string engine = runs.engine();

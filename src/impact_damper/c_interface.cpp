@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
@@ -136,10 +137,10 @@ class Columns {
 
 Engine engine_of(const std::string& name) {
   if (name.starts_with('{')) return parse_engine("engine", name);
-  if (name == Exact::name) return Exact{};
-  if (name == Restitution::name) return Restitution{};
-  if (name == Cem::name) return Cem{};
-  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + name);
+  const std::vector<std::string_view> names = engine_names();
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return default_engines()[static_cast<std::size_t>(found - names.begin())];
+  throw std::invalid_argument("engine: must be " + listed(names, "or") + ", got " + name);
 }
 
 std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,

@@ -1,12 +1,16 @@
 // The three engines that can run a scene, each as the options that can change its result.
 // The engines themselves: exact.hpp, restitution.hpp, cem.hpp; the one entry point to all three:
-// simulate.hpp.
+// simulate.hpp; what is allowed of each option, and what files and the command line call it:
+// engine_options.hpp.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string_view>
 #include <variant>
+#include <vector>
+
+#include "impact_damper/scene.hpp"
 
 namespace impact_damper {
 
@@ -39,7 +43,8 @@ struct Budget {
 inline constexpr std::int64_t usual_search_steps = 10'000'000;
 
 struct Exact {
-  static constexpr std::string_view name = "exact";
+  static constexpr std::string_view name = "exact", meaning = "compliant walls in closed form, no time step";
+  static constexpr bool rigid_walls = false;
   Calibration calibration = Calibration::fixed_wall;
   Budget budget;
   std::int64_t max_steps = usual_search_steps;  // > 0
@@ -48,7 +53,8 @@ struct Exact {
 };
 
 struct Restitution {
-  static constexpr std::string_view name = "restitution";
+  static constexpr std::string_view name = "restitution", meaning = "rigid walls, instantaneous impacts";
+  static constexpr bool rigid_walls = true;
   // Bounce-down jumps to its accumulation point once the rest of it is so short that the relative
   // acceleration changes by less than this fraction in it (restitution.hpp). In (0, 1e-3].
   double accumulation_tolerance = 1e-8;
@@ -59,7 +65,9 @@ struct Restitution {
 };
 
 struct Cem {
-  static constexpr std::string_view name = "cem";
+  static constexpr std::string_view name = "cem",
+                                    meaning = "the component element method, central differences";
+  static constexpr bool rigid_walls = false;
   // h, > 0; absent: a hundredth of the shortest of the nominal contact time, half a period of the primary
   // mass, pi, and with forcing half a period of that, pi/omega_f.
   std::optional<double> time_step;
@@ -85,6 +93,14 @@ struct Cem {
 inline constexpr double usual_stuck_speed = 0.01;
 
 using Engine = std::variant<Exact, Restitution, Cem>;
+
+// One of each with its default options: every list of engines is made of these.
+const std::vector<Engine>& default_engines();
+std::vector<std::string_view> engine_names();
+
+// What is wrong with the options, each by itself, as problems_of(Scene).
+std::vector<Problem> problems_of(const Engine& engine);
+bool has_rigid_walls(const Engine& engine);
 
 std::string_view name_of(const Engine& engine);
 std::string_view name_of(Calibration calibration);  // "fixed-wall", "two-body"

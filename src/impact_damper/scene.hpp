@@ -7,9 +7,10 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
+
+#include "impact_damper/base/errors.hpp"
 
 namespace impact_damper {
 
@@ -43,10 +44,6 @@ extern const std::array<SceneField, 10> scene_fields;
 
 // What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
 // Empty means that any engine may run it. Written so that a NaN is always an offence.
-struct Problem {
-  std::string field;
-  std::string message;
-};
 std::vector<Problem> problems_of(const Scene& scene);
 
 }  // namespace impact_damper

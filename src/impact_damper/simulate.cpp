@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
@@ -27,39 +26,22 @@ Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
   return run_cem<double>(scene, options, recorder);
 }
 
-void collect(std::string& all, const std::string& field, const std::string& message) {
-  if (!all.empty()) all += '\n';
-  all += field + ": " + message;
-}
-
-std::string problems_of(const Scene& scene, const Engine& engine, const Record& record) {
-  std::string all;
-  for (const Problem& problem : problems_of(scene)) collect(all, problem.field, problem.message);
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {
+  std::vector<Problem> problems = problems_of(scene);
+  const auto add_all = [&](const std::vector<Problem>& more) {
+    problems.insert(problems.end(), more.begin(), more.end());
+  };
+  add_all(problems_of(engine));
+  if (problems.empty()) add_all(incompatibilities_of(scene, engine));
 
   const Budget& budget =
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
-  if (budget.max_impacts < 0) collect(all, "max_impacts", "must be >= 0");
-  if (budget.max_half_cycles < 1) collect(all, "max_half_cycles", "must be >= 1");
-  if (budget.max_time && !(*budget.max_time > 0 && *budget.max_time <= 1e12)) {
-    collect(all, "max_time", "must be > 0 and <= 1e12");
-  }
-  if (const auto* options = std::get_if<Restitution>(&engine)) {
-    if (!(options->accumulation_tolerance > 0 && options->accumulation_tolerance <= 1e-3)) {
-      collect(all, "accumulation_tolerance", "must be > 0 and <= 0.001");
-    }
-    if (!(scene.y0 >= 0 && scene.y0 <= 1)) {
-      collect(all, "y0",
-              "must be >= 0 and <= 1 with the restitution engine, whose walls are rigid, got " +
-                  number_text(scene.y0));
-    }
-  }
 
   // What would not fit into memory is not begun.
   const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what) {
     if (rows <= most_rows) return;
-    collect(all, field,
-            "must be <= " + std::to_string(most_rows) + " where " + what + " recorded, got " +
-                std::to_string(rows));
+    problems.push_back({field, "must be <= " + std::to_string(most_rows) + " where " + what +
+                                   " recorded, got " + std::to_string(rows)});
   };
   if (record.impacts || record.contacts || record.energy) {
     bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
@@ -74,19 +56,20 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   add(record.history);
   add(record.history_below);
   if (samples > most_samples) {
-    collect(all, record.history.empty() ? "history_below" : "history",
-            "must ask for at most " + std::to_string(most_samples) + " samples in all");
+    problems.push_back({record.history.empty() ? "history_below" : "history",
+                        "must ask for at most " + std::to_string(most_samples) + " samples in all"});
   }
 
   if (!record.history.empty() && !record.history_below.empty()) {
-    collect(all, "history", "either by times or by amplitudes, not both in one run");
+    problems.push_back({"history", "either by times or by amplitudes, not both in one run"});
   }
   double last = 0;
   for (const HistoryWindow& window : record.history) {
     if (!(window.begin >= last && window.end > window.begin && window.end <= 1e12 && window.count >= 2)) {
-      collect(all, "history",
-              "each window must begin at or after the end of the one before, end after it begins, "
-              "and have at least 2 samples");
+      problems.push_back(
+          {"history",
+           "each window must begin at or after the end of the one before, end after it begins, "
+           "and have at least 2 samples"});
       break;
     }
     last = window.end;
@@ -94,20 +77,19 @@ std::string problems_of(const Scene& scene, const Engine& engine, const Record& 
   double above = std::numeric_limits<double>::infinity();
   for (const AmplitudeWindow& window : record.history_below) {
     if (!(window.amplitude > 0 && window.amplitude < above && window.length > 0 && window.count >= 2)) {
-      collect(all, "history_below",
-              "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2");
+      problems.push_back(
+          {"history_below", "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2"});
       break;
     }
     above = window.amplitude;
   }
-  return all;
+  return problems;
 }
 
 }  // namespace
 
 Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
-  const std::string problems = problems_of(scene, engine, record);
-  if (!problems.empty()) throw std::invalid_argument(problems);
+  require_none(problems_of(scene, engine, record));
 
   Run result;
   result.scene = scene;

@@ -7,11 +7,11 @@
 namespace impact_damper {
 
 // Runs `scene` with `engine`, recording what `record` asks for.
-// Throws std::invalid_argument naming every problem if the scene, the engine's options or the record
-// are not valid (an unstable time step of the component element method among them), and NumericalError
-// (base/errors.hpp) where that method overflows, and where this process's arithmetic cannot give the promised
-// bits (base/floating_point.hpp). A search that uses up its steps is no error: the run ends there, with
-// StopReason::step_budget.
+// Throws InvalidArguments, a std::invalid_argument that names every problem (base/errors.hpp), if the scene,
+// the engine's options or the record are not valid (an unstable time step of the component element method
+// among them), and NumericalError where that method overflows, and where this process's arithmetic cannot
+// give the promised bits (base/floating_point.hpp). A search that uses up its steps is no error: the run ends
+// there, with StopReason::step_budget.
 Run simulate(const Scene& scene, const Engine& engine, const Record& record);
 
 }  // namespace impact_damper

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/series.hpp"
@@ -75,25 +76,6 @@ struct Change {
   }
 };
 
-template <class Visit>
-void each_option(Exact& engine, Visit visit) {
-  visit("calibration", engine.calibration);
-}
-template <class Visit>
-void each_option(Restitution& engine, Visit visit) {
-  visit("accumulation_tolerance", engine.accumulation_tolerance);
-}
-template <class Visit>
-void each_option(Cem& engine, Visit visit) {
-  visit("time_step", engine.time_step);
-  visit("damper", engine.damper);
-  visit("locate", engine.locate);
-  visit("large_step", engine.large_step);
-  visit("stuck_speed", engine.stuck_speed);
-  visit("unstable", engine.unstable);
-  visit("calibration", engine.calibration);
-}
-
 // Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own
 // keys.
 template <class Visit>
@@ -109,15 +91,7 @@ void each_entry(Run& run, Visit all) {
   for (const SceneField& field : scene_fields) scene(field.name, run.scene.*field.member);
   scene("until_time", run.scene.until_time);
   scene("until_amplitude", run.scene.until_amplitude);
-  std::visit(
-      [&](auto& options) {
-        each_option(options, engine);
-        engine("max_steps", options.max_steps);
-        engine("max_impacts", options.budget.max_impacts);
-        engine("max_half_cycles", options.budget.max_half_cycles);
-        engine("max_time", options.budget.max_time);
-      },
-      run.engine);
+  for_each_option(run.engine, [&](const OptionInfo& option, auto& value) { engine(option.name, value); });
   if (run.half_cycles) {
     const auto visit = under("half_cycles");
     visit("zero_crossing", run.half_cycles->zero_crossing);

@@ -38,7 +38,7 @@ class Examination {
   }
 
  private:
-  bool is_rigid() const { return std::holds_alternative<Restitution>(run_.engine); }
+  bool is_rigid() const { return has_rigid_walls(run_.engine); }
 
   // Notes a problem unless `holds`, and returns `holds`.
   bool require(bool holds, const std::string& field, const std::string& message) {

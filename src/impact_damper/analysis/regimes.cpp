@@ -30,7 +30,7 @@ void for_each_stuck_part(const Run& run, const RegimeOptions& options, Visit vis
 
 Contacts stuck_contacts(const Run& run, const RegimeOptions& options) {
   if (!run.contacts) throw std::invalid_argument("contacts: the run did not record them");
-  if (std::holds_alternative<Restitution>(run.engine)) return *run.contacts;
+  if (has_rigid_walls(run.engine)) return *run.contacts;
   const double least = options.stuck_contact_times * nominal_contact_time(run.scene);
   const Contacts& all = *run.contacts;
   Contacts stuck;

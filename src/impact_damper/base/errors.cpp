@@ -1,5 +1,7 @@
 #include "impact_damper/base/errors.hpp"
 
+#include <utility>
+
 namespace impact_damper {
 namespace {
 
@@ -11,7 +13,28 @@ std::string joined(const std::vector<std::string>& lines) {
 
 }  // namespace
 
+std::vector<std::string> lines_of(const std::vector<Problem>& problems, const std::string& head) {
+  std::vector<std::string> lines;
+  lines.reserve(problems.size());
+  for (const auto& [field, message] : problems) {
+    lines.push_back(head);
+    if (!field.empty()) lines.back() += field + ": ";
+    lines.back() += message;
+  }
+  return lines;
+}
+
+InvalidArguments::InvalidArguments(std::vector<Problem> problems)
+    : std::invalid_argument(joined(lines_of(problems))), problems_(std::move(problems)) {}
+
+void require_none(const std::vector<Problem>& problems) {
+  if (!problems.empty()) throw InvalidArguments(problems);
+}
+
 InputError::InputError(std::vector<std::string> problems)
     : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+
+InputError::InputError(const std::string& file, const std::vector<Problem>& problems)
+    : InputError(lines_of(problems, file + ": ")) {}
 
 }  // namespace impact_damper

@@ -7,11 +7,33 @@
 
 namespace impact_damper {
 
+// What is wrong with one field of a scene, option, or entry of a file: "mass_ratio", "must be ..., got ...".
+struct Problem {
+  std::string field;  // "" if it is about the whole
+  std::string message;
+};
+// Each as one line, "FIELD: MESSAGE", with `head` before it.
+std::vector<std::string> lines_of(const std::vector<Problem>& problems, const std::string& head = {});
+
+// What was given to a function, by the names of its fields, is not valid. what() has a line for each problem.
+class InvalidArguments : public std::invalid_argument {
+ public:
+  explicit InvalidArguments(std::vector<Problem> problems);
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+// Throws InvalidArguments if there are any.
+void require_none(const std::vector<Problem>& problems);
+
 // A file that was read but whose content is not valid. Each problem is one whole line,
 // "FILE: /json/pointer: what is wrong, what is allowed, what was given"; what() joins them.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<std::string> problems);
+  InputError(const std::string& file, const std::vector<Problem>& problems);  // fields: JSON pointers
   const std::vector<std::string>& problems() const { return problems_; }
 
  private:

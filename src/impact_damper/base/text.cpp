@@ -113,6 +113,15 @@ std::string cut(std::string_view text, std::size_t most) {
 
 std::string in_quotes(std::string_view text) { return '"' + cut(text) + '"'; }
 
+std::string listed(const std::vector<std::string_view>& words, std::string_view last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 < words.size() ? ", " : ' ' + std::string(last) + ' ';
+    text += words[i];
+  }
+  return text;
+}
+
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
   if (word.size() > 100) return std::nullopt;
   const std::string asked = bare(word);

@@ -18,14 +18,16 @@ struct NumberRange {
   bool allows(double value) const;
   std::string describe(std::string_view kind) const;  // "a number" -> "a number >= 0 and <= 1"
 };
-inline NumberRange within(double least, double most) { return {least, most}; }
-inline NumberRange at_least(double least) { return {least}; }
-inline NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
+constexpr NumberRange within(double least, double most) { return {least, most}; }
+constexpr NumberRange at_least(double least) { return {least}; }
+constexpr NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
 // `text` on one line of UTF-8, shortened to `most` characters; a question mark for each that is no character
 // or a control character.
 std::string cut(std::string_view text, std::size_t most = 60);
 std::string in_quotes(std::string_view text);  // cut, between double quotes
+// "a", "a or b", "a, b or c".
+std::string listed(const std::vector<std::string_view>& words, std::string_view last);
 
 // The word of `known` that was meant by `word`: what the symbol `word` stands for (nu: mass_ratio), else the
 // nearest if it is near enough, else the first of which `word` begins a part (force: exciting_force). Options

@@ -2,10 +2,8 @@
 
 #include <charconv>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
-#include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
@@ -32,10 +30,9 @@ Cem resolved(const Scene& scene, Cem options) {
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
-  if (options.max_steps < 1) return {{"max_steps", "must be >= 1, got " + std::to_string(options.max_steps)}};
+  std::vector<Problem> problems = problems_of(options);
+  if (!problems.empty()) return problems;
   const double h = options.time_step.value();
-  if (!(h > 0 && std::isfinite(h))) return {{"time_step", "must be > 0 and finite, got " + number_text(h)}};
-  std::vector<Problem> problems;
   const double limit = stability_limit(scene, options.damper, options.calibration);
   if (!(h <= limit || options.unstable)) {
     problems.push_back(
@@ -44,9 +41,6 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
              ": beyond this stability limit the fastest mode in contact grows (angular frequency " +
              rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
              " damper); take a smaller step, or run it all the same with --unstable"});
-  }
-  if (options.stuck_speed && !(*options.stuck_speed > 0 && std::isfinite(*options.stuck_speed))) {
-    problems.push_back({"stuck_speed", "must be > 0 and finite, got " + number_text(*options.stuck_speed)});
   }
   if (options.large_step) {
     const double large = *options.large_step;
@@ -61,15 +55,6 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
     }
   }
   return problems;
-}
-
-void require_no_problems(const Scene& scene, const Cem& options) {
-  std::string all;
-  for (const Problem& problem : problems_of(scene, options)) {
-    if (!all.empty()) all += '\n';
-    all += problem.field + ": " + problem.message;
-  }
-  if (!all.empty()) throw std::invalid_argument(all);
 }
 
 std::int64_t whole_steps(double steps) {

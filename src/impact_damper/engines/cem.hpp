@@ -52,12 +52,10 @@ namespace impact_damper {
 // period of the primary mass or of the forcing where that is shorter.
 Cem resolved(const Scene& scene, Cem options);
 
-// What is wrong with the (resolved) options: no steps allowed, a step that is no positive number, or one
-// beyond the stability limit without `unstable`; a large step that is no larger, beyond the limit in flight,
-// or longer than half a period of the forcing; a stuck speed that is no positive number. Empty if nothing.
+// What is wrong with the (resolved) options: each by itself (engine.hpp), then, if nothing, a step beyond the
+// stability limit without `unstable`; a large step that is no larger, beyond the limit in flight, or longer
+// than half a period of the forcing. Empty if nothing.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
-// Throws them as std::invalid_argument.
-void require_no_problems(const Scene& scene, const Cem& options);
 
 [[noreturn]] void fail_of_overflow(double time, double step);
 // Rounded up, 1 at least and 1e15 at most.
@@ -255,13 +253,13 @@ class CemEngine {
   std::optional<Outcome> end_;
 };
 
-// Runs the scene for an observer with the members of Recorder. Checks the step first: throws
-// std::invalid_argument with the problem; throws NumericalError where the numbers overflow.
+// Runs the scene for an observer with the members of Recorder. Checks the options first: throws
+// InvalidArguments with the problems; throws NumericalError where the numbers overflow.
 template <Scalar Real = double, RunObserver Observer>
 Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
   require_arithmetic();
   const Cem complete = resolved(scene, options);
-  require_no_problems(scene, complete);
+  require_none(problems_of(scene, complete));
   return CemEngine<Real, Observer>(scene, complete, observer).run();
 }
 

@@ -144,7 +144,7 @@ JsonProblems::JsonProblems(const std::string& file) : file_(cut(file, 1000)) {}
 
 void JsonProblems::add(const std::string& pointer, std::string_view what) {
   if (++count_ > most_problems) return;
-  lines_.push_back(file_ + ": " + (pointer.empty() ? "" : pointer + ": ") + std::string(what));
+  problems_.push_back({pointer, std::string(what)});
 }
 
 std::size_t JsonProblems::open(const std::string& pointer, const Json& object) {
@@ -155,11 +155,10 @@ std::size_t JsonProblems::open(const std::string& pointer, const Json& object) {
 
 void JsonProblems::throw_if_any() const {
   if (count_ == 0) return;
-  std::vector<std::string> lines = lines_;
-  if (count_ > most_problems) {
-    lines.push_back(file_ + ": and " + std::to_string(count_ - most_problems) + " more problems");
-  }
-  throw InputError(std::move(lines));
+  std::vector<Problem> problems = problems_;
+  if (count_ > most_problems)
+    problems.push_back({"", "and " + std::to_string(count_ - most_problems) + " more problems"});
+  throw InputError(file_, problems);
 }
 
 void JsonProblems::throw_if_any_or_unknown() const {

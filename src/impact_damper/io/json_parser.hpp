@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/errors.hpp"
+
 namespace impact_damper {
 
 // What a document collects while it is read: problems, and which keys of its objects are known.
@@ -36,7 +38,7 @@ class JsonProblems {
   };
 
   std::string file_;
-  std::vector<std::string> lines_;
+  std::vector<Problem> problems_;
   std::size_t count_ = 0;
   std::vector<Opened> opened_;
   std::map<const nlohmann::json*, std::size_t> index_;

@@ -106,8 +106,8 @@ std::string wanted(const std::int64_t&, const NumberRange& range, const Json& gi
 std::string wanted(const std::string&, const TextRule& rule, const Json&) { return rule.describe(); }
 
 [[noreturn]] void reject_length(const std::string& name, const FileKind& kind, const std::string& given) {
-  throw InputError({name + ": too long, allowed are " + std::to_string(kind.most_bytes) + " bytes for a " +
-                    std::string(kind.name) + ", got " + given});
+  throw InputError(name, {{"", "too long, allowed are " + std::to_string(kind.most_bytes) + " bytes for a " +
+                                   std::string(kind.name) + ", got " + given}});
 }
 
 constexpr std::size_t any_length = std::numeric_limits<std::size_t>::max();

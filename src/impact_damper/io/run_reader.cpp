@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <numeric>
@@ -7,7 +6,8 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
-#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engine_options.hpp"
+#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -52,77 +52,42 @@ class Columns {
   std::optional<std::size_t> length_;
 };
 
-// An engine's options. A run file has all of them; elsewhere one that is missing keeps its default.
-class EngineOptions {
- public:
-  EngineOptions(ObjectReader& object, bool may_be_missing)
-      : object_(object), may_be_missing_(may_be_missing) {}
-
-  bool is_wanted(std::string_view key) { return !may_be_missing_ || object_.has(key); }
-
-  template <typename Target, typename... Allowed>
-  void read(std::string_view key, Target& target, Allowed... allowed) {
-    if (is_wanted(key)) object_.required(key, target, allowed...);
+// False, having said so, unless there is a value that is allowed, or none where none is needed: a run file
+// has all options, elsewhere one that is missing keeps its default.
+template <class Value>
+bool read_option(ObjectReader& object, const OptionInfo& option, bool may_be_missing, Value& value) {
+  if ((may_be_missing || !option.in_every_file) && !object.has(option.name)) return true;
+  if constexpr (std::is_enum_v<Value>) {
+    if (!object.require(option.name)) return false;
+    const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
+    if (index) value = all_of<Value>[*index];
+    return index.has_value();
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return object.required(option.name, value);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    double number = 0;  // null is no number
+    if (!object.required(option.name, number, option.range)) return false;
+    value = number;
+    return true;
+  } else {
+    return object.required(option.name, value, option.range);
   }
-  template <typename Enum>
-  void read(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
-    if (is_wanted(key)) object_.required(key, target, allowed);
-  }
-  void read(std::string_view key, std::optional<double>& target, NumberRange range) {
-    if (double value = 0; is_wanted(key) && object_.required(key, value, range)) target = value;
-  }
-  // One that also a run file has only where it is set.
-  void read_if_set(std::string_view key, std::optional<double>& target, NumberRange range) {
-    if (double value = 0; object_.has(key) && object_.optional(key, value, range)) target = value;
-  }
-
- private:
-  ObjectReader& object_;
-  bool may_be_missing_;
-};
-
-void read_calibration(EngineOptions& options, Calibration& calibration) {
-  options.read("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
 }
 
-void read_options(EngineOptions& options, Exact& engine) { read_calibration(options, engine.calibration); }
-
-void read_options(EngineOptions& options, Restitution& engine) {
-  options.read("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
-}
-
-void read_options(EngineOptions& options, Cem& engine) {
-  options.read("time_step", engine.time_step, above(0));
-  options.read("damper", engine.damper, {Damper::centred, Damper::lagged});
-  options.read("locate", engine.locate);
-  options.read_if_set("large_step", engine.large_step, above(0));
-  options.read_if_set("stuck_speed", engine.stuck_speed, above(0));
-  options.read("unstable", engine.unstable);
-  read_calibration(options, engine.calibration);
-}
-
-Engine read_engine(ObjectReader& object, bool options_may_be_missing = false) {
-  constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
-  if (!object.require("name")) return {};
-  const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
+// Absent if any of it is not valid.
+std::optional<Engine> read_engine(ObjectReader& object, bool options_may_be_missing = false) {
+  if (!object.require("name")) return std::nullopt;
+  const std::optional<std::size_t> name = object.word("name", engine_names());
   if (!name) {
     object.keys();  // which of them are known depends on the name
-    return {};
+    return std::nullopt;
   }
-  Engine engine = *name == 0 ? Engine(Exact{}) : *name == 1 ? Engine(Restitution{}) : Engine(Cem{});
-  EngineOptions options(object, options_may_be_missing);
-  std::visit(
-      [&](auto& chosen) {
-        read_options(options, chosen);
-        // Files of before it was an option of all engines have none: the default was what they were made
-        // with.
-        if (object.has("max_steps") || std::holds_alternative<Cem>(engine))
-          options.read("max_steps", chosen.max_steps, at_least(1));
-        options.read("max_impacts", chosen.budget.max_impacts, at_least(0));
-        options.read("max_half_cycles", chosen.budget.max_half_cycles, at_least(1));
-        options.read("max_time", chosen.budget.max_time, NumberRange{0, 1e12, false});
-      },
-      engine);
+  Engine engine = default_engines()[*name];
+  bool all_read = true;
+  for_each_option(engine, [&](const OptionInfo& option, auto& value) {
+    all_read = read_option(object, option, options_may_be_missing, value) && all_read;
+  });
+  if (!all_read) return std::nullopt;
   return engine;
 }
 
@@ -240,12 +205,10 @@ Scene read_full_scene(ObjectReader& object) {
 // What the engine would reject of the scene: a run of it cannot have been.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   if (!problems_of(run.scene).empty()) return;
-  if (std::holds_alternative<Restitution>(run.engine) && !within(0, 1).allows(run.scene.y0)) {
-    scene.reject("y0", within(0, 1).describe("must be") + " with the restitution engine, got " +
-                           number_text(run.scene.y0));
-  }
-  if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && cem->time_step) {
-    for (const Problem& problem : problems_of(run.scene, *cem)) engine.reject(problem.field, problem.message);
+  for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
+    const bool of_scene =
+        std::ranges::find(scene_fields, problem.field, &SceneField::name) != scene_fields.end();
+    (of_scene ? scene : engine).reject(problem.field, problem.message);
   }
 }
 
@@ -265,8 +228,10 @@ Run read_whole(JsonDocument document, bool sealed) {
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_full_scene(scene);
-  run.engine = read_engine(engine);
-  check_together(scene, engine, run);
+  if (const std::optional<Engine> whole = read_engine(engine)) {
+    run.engine = *whole;
+    check_together(scene, engine, run);
+  }
   object.required("stop_reason", run.stop_reason,
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
                    StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
@@ -316,9 +281,9 @@ Run parse_run(const std::string& name, const std::string& text) {
 Engine parse_engine(const std::string& name, const std::string& text) {
   JsonDocument document = JsonDocument::parse(name, text);
   ObjectReader object = document.root();
-  Engine engine = read_engine(object, true);
-  document.finish();
-  return engine;
+  const std::optional<Engine> engine = read_engine(object, true);
+  document.finish();  // throws if anything is not valid
+  return engine.value_or(Engine{});
 }
 
 }  // namespace impact_damper

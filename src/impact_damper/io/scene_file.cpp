@@ -6,6 +6,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/json_writer.hpp"
 #include "impact_damper/io/run_file.hpp"
 
 namespace impact_damper {
@@ -81,7 +82,8 @@ void reject_run(const std::filesystem::path& file) {
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(enough));
   if (head.find('"' + std::string(run_schema) + '"') == std::string::npos) return;
   throw InputError(
-      {file.string() + ": this is a run, must be a scene; the scene of a run is the object \"scene\" in it"});
+      file.string(),
+      {{"", "this is a run, must be a scene; the scene of a run is the object \"scene\" in it"}});
 }
 
 }  // namespace
@@ -114,16 +116,18 @@ Scene parse_scene(const std::string& name, const std::string& text) {
   return parse_scene_file(name, text).scene;
 }
 
+void write_scene_fields(JsonWriter& out, const Scene& scene) {
+  for (const SceneField& each : scene_fields) out.field(each.name, scene.*each.member);
+  out.field("until_time", scene.until_time);
+  out.field("until_amplitude", scene.until_amplitude);
+}
+
 std::string scene_text(const Scene& scene) {
-  std::string text = "{";
-  const auto field = [&](std::string_view name, const std::optional<double>& value) {
-    if (text.size() > 1) text += ", ";
-    text += '"' + std::string(name) + "\": " + (value ? number_text(*value) : "null");
-  };
-  for (const SceneField& each : scene_fields) field(each.name, scene.*each.member);
-  field("until_time", scene.until_time);
-  field("until_amplitude", scene.until_amplitude);
-  return text + '}';
+  JsonWriter out("scene");
+  out.open_object(JsonWriter::Layout::one_line);
+  write_scene_fields(out, scene);
+  out.close();
+  return out.finish();
 }
 
 }  // namespace impact_damper

@@ -23,6 +23,7 @@
 namespace impact_damper {
 
 class ObjectReader;  // json_reader.hpp
+class JsonWriter;    // json_writer.hpp
 
 inline constexpr FileKind scene_kind{"scene", 1 << 16};
 
@@ -39,11 +40,13 @@ SceneFile parse_scene_file(const std::string& name, const std::string& text);
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);
 
-// The fields of a scene out of an object that may hold others beside them; problems are reported there. For
-// the project's own readers: an ObjectReader is no part of the library's interface.
+// The fields of a scene out of an object that may hold others beside them, where problems are reported, and
+// into one. For the project's own readers and writers: neither class is part of the library's interface.
 Scene read_scene_fields(ObjectReader& object);
+void write_scene_fields(JsonWriter& out, const Scene& scene);
 
 // The scene on one line with every field in the order of Scene, absent stops as null: reads back as equal.
+// Throws NumericalError if a number is not finite.
 std::string scene_text(const Scene& scene);
 
 }  // namespace impact_damper

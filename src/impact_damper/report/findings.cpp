@@ -105,9 +105,12 @@ void find_best_damping(Findings& findings) {
 }
 
 Calibration calibration_of(const Engine& engine) {
-  if (const auto* exact = std::get_if<Exact>(&engine)) return exact->calibration;
-  if (const auto* cem = std::get_if<Cem>(&engine)) return cem->calibration;
-  return Calibration::fixed_wall;
+  return std::visit(
+      [](const auto& options) {
+        if constexpr (requires { options.calibration; }) return options.calibration;
+        return Calibration::fixed_wall;
+      },
+      engine);
 }
 
 void find_loads(Findings& findings) {
@@ -120,7 +123,7 @@ void find_loads(Findings& findings) {
   const double end = findings.run.end_time, from = findings.forced() ? 0.75 * end : 0;
   loads.impacts = static_cast<double>(impacts.time.end() - std::ranges::lower_bound(impacts.time, from));
   loads.time = end - from;
-  if (!std::holds_alternative<Restitution>(engine)) {
+  if (!has_rigid_walls(engine)) {
     loads.initial_force = initial_wall_force(scene, calibration_of(engine));
     if (nominal_contact_time(scene) <= longest_short_contact)
       loads.contact = short_contact(scene, calibration_of(engine), loads.speed);

@@ -349,7 +349,7 @@ std::string loads_html(const Findings& findings) {
               (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "") +
               ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
               (scales ? "contact_stiffness" : "wall_stiffness") + "</code>) before you use these two. ";
-  } else if (std::holds_alternative<Restitution>(findings.subject.engine)) {
+  } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
         "contact "

@@ -45,7 +45,7 @@ class SceneTable {
 std::string scene_table(const Subject& subject) {
   const Scene& scene = subject.scene;
   const Scales scales = subject.scales.value_or(Scales{});
-  const bool rigid = std::holds_alternative<Restitution>(subject.engine);
+  const bool rigid = has_rigid_walls(subject.engine);
   SceneTable table(subject);
   table.scale("Primary mass", "M", scales.mass, "kg");
   table.scale("Stiffness", "K", scales.stiffness, "N/m");
@@ -70,24 +70,25 @@ std::string scene_table(const Subject& subject) {
                                    : "The scene, as it is computed");
 }
 
+// How the engine goes about it; of the options of the run, which are filled in.
+struct Method {
+  std::string operator()(const Exact&) const {
+    return "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
+           "time step, and no impact is missed.";
+  }
+  std::string operator()(const Restitution&) const {
+    return "The walls are rigid and impacts take no time; of infinitely many bounces the sum is taken.";
+  }
+  std::string operator()(const Cem& cem) const {
+    return "The walls are springs with dampers, and the motion is followed by central differences with a "
+           "fixed step of " +
+           number_html(cem.time_step.value_or(0)) + " in units of 1/Ω.";
+  }
+};
+
 std::string engine_sentence(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
-  std::string text = "<p>";
-  switch (findings.subject.engine.index()) {
-    case 0:
-      text +=
-          "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
-          "time step, and no impact is missed.";
-      break;
-    case 1:
-      text += "The walls are rigid and impacts take no time; of infinitely many bounces the sum is taken.";
-      break;
-    default:
-      text +=
-          "The walls are springs with dampers, and the motion is followed by central differences with a "
-          "fixed step of " +
-          number_html(std::get<Cem>(findings.run.engine).time_step.value_or(0)) + " in units of 1/Ω.";
-  }
+  std::string text = "<p>" + std::visit(Method{}, findings.run.engine);
   text += " It was followed for " + quantities.time(findings.run.end_time) + ", ";
   switch (findings.run.stop_reason) {
     case StopReason::time:
@@ -130,7 +131,7 @@ std::string warnings_html(const Findings& findings) {
   if (quantities.in_units() && reach > 0 && reach < 1e-3)
     looks.push_back("The clearance is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
-  if (scene.wall_stiffness < 100 && !std::holds_alternative<Restitution>(findings.subject.engine))
+  if (scene.wall_stiffness < 100 && !has_rigid_walls(findings.subject.engine))
     looks.push_back(
         "The walls are only " + number_html(scene.wall_stiffness) +
         " times as stiff as the primary spring: an impact takes as long as a good part of a period.");

@@ -131,7 +131,7 @@ Claim read_claim(ObjectReader& object) {
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
   const bool recorded = object.required("verdict", claim.recorded, verdicts);
   if (auto engines = object.optional_object("with_engine")) {
-    for (const std::string_view engine : {Exact::name, Restitution::name, Cem::name}) {
+    for (const std::string_view engine : engine_names()) {
       auto otherwise = engines->optional_object(engine);
       if (!otherwise) continue;
       Claim::Otherwise& read = claim.with_engine[std::string(engine)];

@@ -1,7 +1,6 @@
 #include "impact_damper/reproduction/manifest.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "impact_damper/engine.hpp"
 
@@ -10,7 +9,6 @@ namespace {
 
 constexpr std::string_view dot = "\u00b7";
 constexpr std::size_t stamped_digits = 8;
-constexpr std::array table_engines{Exact::name, Restitution::name, Cem::name};
 
 bool is_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
 
@@ -57,8 +55,9 @@ void read_cited_figure(ObjectReader& item, CitedFigure& figure, const std::strin
   for (const ObjectReader& scene : item.required_objects("scenes", 100))
     read_cited_file(scene, figure.scenes.emplace_back());
   bool sums_are_read = !version.empty();
-  for (ObjectReader table : item.required_objects("tables", table_engines.size())) {
-    const std::string_view engine = table_engines[figure.tables.size()];
+  const std::vector<std::string_view> engines = engine_names();
+  for (ObjectReader table : item.required_objects("tables", engines.size())) {
+    const std::string_view engine = engines[figure.tables.size()];
     CitedTable& read = figure.tables.emplace_back();
     read.engine = engine;
     const bool in_order = table.require("engine") && table.word("engine", {engine});

@@ -7,6 +7,7 @@
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/reproduction/series_blocks.hpp"
 
@@ -44,36 +45,33 @@ std::string equation(const Scene& scene, Varied varied) {
 }
 
 // The engine in words, for the line under the title; each run has a step of its own.
-std::string engine_words(const std::vector<const FigureRun*>& runs) {
-  if (std::holds_alternative<Exact>(runs[0]->run.engine)) return "exact engine";
-  if (std::holds_alternative<Restitution>(runs[0]->run.engine)) return "restitution model";
-  std::vector<double> steps;
-  for (const FigureRun* source : runs) {
-    const auto& step = std::get<Cem>(source->run.engine).time_step;
-    if (step) steps.push_back(*step);
-  }
-  if (steps.empty()) return "component element method";
-  const auto [least, most] = std::ranges::minmax(steps);
-  return "component element method, step " + rounded_text(least, 3) +
-         (least < most ? " to " + rounded_text(most, 3) : "");
-}
+struct EngineWords {
+  const std::vector<const FigureRun*>& runs;
 
-// The engine with all its options, for the header.
-struct EngineOptions {
-  std::string operator()(const Exact& exact) const {
-    return "exact calibration=" + std::string(name_of(exact.calibration));
-  }
-  std::string operator()(const Restitution& restitution) const {
-    return "restitution accumulation_tolerance=" + number_text(restitution.accumulation_tolerance);
-  }
-  std::string operator()(const Cem& cem) const {
-    return "cem" + (cem.time_step ? " time_step=" + number_text(*cem.time_step) : "") +
-           " damper=" + std::string(name_of(cem.damper)) + " locate=" + (cem.locate ? "true" : "false") +
-           (cem.large_step ? " large_step=" + number_text(*cem.large_step) : "") +
-           (cem.stuck_speed ? " stuck_speed=" + number_text(*cem.stuck_speed) : "") +
-           " calibration=" + std::string(name_of(cem.calibration));
+  std::string operator()(const Exact&) const { return "exact engine"; }
+  std::string operator()(const Restitution&) const { return "restitution model"; }
+  std::string operator()(const Cem&) const {
+    std::vector<double> steps;
+    for (const FigureRun* source : runs) {
+      const auto& step = std::get<Cem>(source->run.engine).time_step;
+      if (step) steps.push_back(*step);
+    }
+    if (steps.empty()) return "component element method";
+    const auto [least, most] = std::ranges::minmax(steps);
+    return "component element method, step " + rounded_text(least, 3) +
+           (least < most ? " to " + rounded_text(most, 3) : "");
   }
 };
+
+// The engine with the options that decide the motion, for the header.
+std::string options_text(const Engine& engine) {
+  std::string text(name_of(engine));
+  for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
+    const std::string given = option_text(value);
+    if (option.decides_motion && !given.empty()) text += " " + std::string(option.name) + "=" + given;
+  });
+  return text;
+}
 
 // What all curves have in common, and what sets one apart, for the line under the title.
 std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs) {
@@ -90,7 +88,7 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   }
   // The exact engine is the house's own answer; a figure made with another one says so.
   if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
-    text += "; " + engine_words(runs);
+    text += "; " + std::visit(EngineWords{runs}, runs[0]->run.engine);
   }
   return text;
 }
@@ -187,7 +185,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& 
   for (const std::string& scene : scenes_of(figure)) {
     const Run& run = runs.at(scene).run;
     table.header.push_back("Scene " + scene + ": " + scene_text(run.scene));
-    table.header.push_back("  engine: " + std::visit(EngineOptions{}, run.engine));
+    table.header.push_back("  engine: " + options_text(run.engine));
   }
   switch (figure.table) {
     case TableKind::motion:

@@ -1,0 +1,14 @@
+// What of a scene and an engine's options is not allowed together.
+#pragma once
+
+#include <vector>
+
+#include "impact_damper/engine.hpp"
+
+namespace impact_damper {
+
+// One entry per offending field, of the scene or of the engine, as problems_of(Scene). Both must be free of
+// problems by themselves.
+std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engine);
+
+}  // namespace impact_damper
