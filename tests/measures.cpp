@@ -277,9 +277,10 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
   CHECK(files.complaint<InputError>().starts_with(third.string() + ": /engine: must be that of "));
 
   Run wrong = member;
-  wrong.half_cycles->amplitude[3] *= 1.5;
+  wrong.half_cycles->amplitude[0] *= 1.5;
   files.write(third, wrong);
-  CHECK(files.complaint<InputError>().starts_with(third.string() + ": "));
+  CHECK(files.complaint<InputError>().starts_with(third.string() +
+                                                  ": /half_cycles/amplitude/0: contradicts the rest"));
 
   files.write(third, member);
   CHECK(files.complaint<std::exception>() == "nothing");

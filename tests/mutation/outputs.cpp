@@ -91,9 +91,9 @@ void list_tables(const std::filesystem::path& source) {
     if (figure.table == TableKind::drawing) continue;
     for (FigureCurve& curve : figure.curves) {
       curve.ensemble = std::min<std::int64_t>(curve.ensemble, 2);
-      FigureRun& source = runs.at(curve.scene);
-      if (curve.ensemble == 2 && source.others.empty())
-        source.others.push_back(simulate(ensemble_of(source.run.scene)[1], Exact{}, {}));
+      FigureRun& drawn = runs.at(curve.scene);
+      if (curve.ensemble == 2 && drawn.others.empty())
+        drawn.others.push_back(simulate(ensemble_of(drawn.run.scene)[1], Exact{}, {}));
     }
     const Table table = figure_table(figure, runs);
     for (const TableBlock& block : table.blocks)
