@@ -227,10 +227,10 @@ Options output_options() {
       Option::Takes::nothing);
   add("-o,--output", "FILE", "write the run there instead of to stdout");
   add("--members", "N",
-      "run an ensemble of N members: the scene itself, into FILE, and\n"
-      "the same with perturbed initial conditions, without history and\n"
-      "energy, into FILE without .json and with .members/02.json ...;\n"
-      "1 (default) to 100");
+      "run an ensemble of N members, 1 (default) to 100: the scene itself\n"
+      "and the same with perturbed initial conditions. With -o NAME.json\n"
+      "these are NAME.members/02.json and so on, each a run file with\n"
+      "what is recorded but history and energy");
   options.push_back(threads_option());
   options.back().group = "Output";
   return options;
