@@ -113,7 +113,7 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
 paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
-	@$(alone) cmake --build $(BUILD) --target figures-exact || exit; \
+	@$(alone) cmake --build $(BUILD) --target figures-exact runs-exact || exit; \
 	$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts-exact.json \
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	echo "Setting the report"; \

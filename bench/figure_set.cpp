@@ -42,8 +42,19 @@ class Parts {
   std::vector<FigureSet::Part> parts_;
 };
 
+// Simulates the ensembles that a figure shows, on one thread.
+void add_members(const Figure& figure, FigureRuns& runs) {
+  for (const std::string& scene : scenes_of(figure)) {
+    FigureRun& source = runs.at(scene);
+    const std::int64_t members = members_shown(figure, scene);
+    if (members <= std::int64_t(source.others.size()) + 1) continue;
+    std::vector<Scene> scenes = ensemble_of(source.run.scene, {.members = members});
+    scenes.erase(scenes.begin());
+    source.others = simulate_scenes(scenes, source.run.engine, Record{}, 1);
+  }
+}
+
 void make_all(const Work& work, Parts& parts, FigureSet& set) {
-  const Threads one{1};
   FigureRuns runs;
   set.scenes = set.tables = set.bytes = 0;
   for (const CatalogueScene& scene : work.catalogue.scenes) {
@@ -59,7 +70,10 @@ void make_all(const Work& work, Parts& parts, FigureSet& set) {
     const std::string kind =
         "tables: " + std::string(name_of(figure.table)) + (ensemble ? " with an ensemble" : "");
     Table table;
-    parts.spend(kind, [&] { table = figure_table(figure, runs, one); });
+    parts.spend(kind, [&] {
+      add_members(figure, runs);
+      table = figure_table(figure, runs);
+    });
     parts.spend("tables as text", [&] { set.bytes += std::int64_t(to_text(table).size()); });
     ++set.tables;
   }

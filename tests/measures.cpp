@@ -6,13 +6,18 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "closed_forms.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -174,24 +179,124 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
         doctest::Approx(gives / flies).epsilon(3e-3).scale(0));
 }
 
-TEST_CASE("an ensemble is the run file and the same scene released otherwise") {
-  const std::filesystem::path folder =
+namespace {
+
+// A folder with the run of a short decay, "short", and the other members of an ensemble of three.
+struct ShortEnsemble {
+  std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("impact-damper-measures-test-" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  Scene scene;
-  scene.until_amplitude = 5.5;
   Record record;
-  record.contacts = true;
-  write_file(folder / "short.json", run_text(simulate(scene, Exact{}, record)));
-  Runs runs(folder, {.members = 3});
-  CHECK(runs.file("short").scene == scene);
+  Run first;
+
+  ShortEnsemble() {
+    Scene scene;
+    scene.until_amplitude = 5.5;
+    record.contacts = true;
+    first = simulate(scene, Exact{}, record);
+    const std::vector<Scene> scenes = ensemble_of(scene, {.members = 3});
+    write(run_file(), first);
+    std::filesystem::create_directories(member_file(run_file(), 2).parent_path());
+    for (int member = 2; member <= 3; ++member)
+      write(member_file(run_file(), member), simulate(scenes[std::size_t(member) - 1], Exact{}, record));
+  }
+  ~ShortEnsemble() { std::filesystem::remove_all(folder); }
+  ShortEnsemble(const ShortEnsemble&) = delete;
+  ShortEnsemble& operator=(const ShortEnsemble&) = delete;
+
+  std::filesystem::path run_file() const { return folder / "short.json"; }
+  void write(const std::filesystem::path& file, const Run& run) const {
+    std::filesystem::create_directories(file.parent_path());
+    write_file(file, run_text(run));
+  }
+  // What reading the ensemble throws.
+  template <class Error>
+  std::string complaint(const EnsembleOptions& options = {.members = 3}) const {
+    try {
+      Runs(folder, options).ensemble("short");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an ensemble is the run file and the files of the same scene released otherwise") {
+  const ShortEnsemble files;
+  CHECK(member_file(files.run_file(), 2) == files.folder / "short.members/02.json");
+  CHECK(member_file("a.b/some.csv", 100) == "a.b/some.csv.members/100.json");
+  Runs runs(files.folder, {.members = 3});
+  CHECK(runs.file("short").scene == files.first.scene);
   const std::vector<Run>& members = runs.ensemble("short");
   REQUIRE(members.size() == 3);
-  CHECK(!members[0].impacts);
-  CHECK(members[1].impacts);
-  CHECK(members[1].scene.x0 != 6);
+  CHECK(members[0].scene == files.first.scene);
+  for (std::size_t member = 1; member < 3; ++member) {
+    CHECK(members[member].scene == ensemble_of(files.first.scene)[member]);
+    CHECK(run_text(members[member]) ==
+          run_text(simulate(members[member].scene, files.first.engine, files.record)));
+  }
   // A measure that needs what the file does not hold says so instead of guessing.
   CHECK_THROWS_AS(measure(runs, {"wall_overlap", {"short"}, {}}), std::invalid_argument);
   CHECK(measure(runs, {"stuck_share", {"short"}, {{"from", 5.5}, {"to", 5.9}}}).low == 1);
-  std::filesystem::remove_all(folder);
+  // As many as are asked for; nothing of an ensemble is needed for one.
+  CHECK(Runs(files.folder, {.members = 2}).ensemble("short").size() == 2);
+  std::filesystem::remove_all(member_file(files.run_file(), 2).parent_path());
+  CHECK(Runs(files.folder, {.members = 1}).ensemble("short").size() == 1);
+}
+
+TEST_CASE("without a folder an ensemble is simulated") {
+  const ShortEnsemble files;
+  Runs runs(std::nullopt, {.members = 3});
+  CHECK_THROWS_WITH_AS(runs.file("short"), "there is no run of scene short", std::invalid_argument);
+  runs.put("short", files.first);
+  const std::vector<Run>& simulated = runs.ensemble("short");
+  REQUIRE(simulated.size() == 3);
+  Runs read(files.folder, {.members = 3});
+  for (std::size_t member = 0; member < 3; ++member)
+    CHECK(simulated[member].half_cycles->amplitude == read.ensemble("short")[member].half_cycles->amplitude);
+}
+
+TEST_CASE("a member that is missing, of another release or engine, or contradicts itself is rejected") {
+  const ShortEnsemble files;
+  const std::filesystem::path third = member_file(files.run_file(), 3);
+  const Run member = read_run(third);
+  CHECK(files.complaint<std::exception>() == "nothing");
+  CHECK(files.complaint<IoError>({.members = 4}) ==
+        member_file(files.run_file(), 4).string() +
+            ": cannot be read: No such file or directory; made by: impact-damper run --members 4 -o " +
+            files.run_file().string() + ", with the other options that made that run");
+
+  files.write(third, read_run(member_file(files.run_file(), 2)));
+  CHECK(files.complaint<InputError>().starts_with(third.string() + ": /scene/x0: must be "));
+  CHECK(files.complaint<InputError>().find(" as in member 3 of the ensemble of " +
+                                           files.run_file().string()) != std::string::npos);
+  CHECK(files.complaint<std::exception>({.members = 2}) == "nothing");
+
+  files.write(third, simulate(member.scene, Exact{.calibration = Calibration::two_body}, files.record));
+  CHECK(files.complaint<InputError>().starts_with(third.string() + ": /engine: must be that of "));
+
+  Run wrong = member;
+  wrong.half_cycles->amplitude[0] *= 1.5;
+  files.write(third, wrong);
+  CHECK(files.complaint<InputError>().starts_with(third.string() +
+                                                  ": /half_cycles/amplitude/0: contradicts the rest"));
+
+  files.write(third, member);
+  CHECK(files.complaint<std::exception>() == "nothing");
+}
+
+TEST_CASE("members record all that is asked for but the history and the energy balance") {
+  Record record;
+  record.half_cycles = false;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = {{0, 1, 2}};
+  record.history_below = {{1, 1, 2}};
+  const Record kept = record_of_member(record);
+  CHECK(kept.impacts);
+  CHECK(kept.contacts);
+  CHECK(!kept.half_cycles);
+  CHECK(!kept.energy);
+  CHECK(kept.history.empty());
+  CHECK(kept.history_below.empty());
 }

@@ -326,7 +326,9 @@ TEST_CASE("an ensemble's band encloses the curve of the undisturbed release") {
   Figure figure = loss_figure(LossOrdinate::amplitude_times);
   figure.down_to = 0.2;
   figure.curves[0].ensemble = 4;
-  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  FigureRun source{"decay.json", run, simulate_ensemble(run.scene, Exact{}, {}, {.members = 4})};
+  source.others.erase(source.others.begin());
+  const Table table = figure_table(figure, {{"decay", source}});
   const TableBlock &curve = block(table, "curve-1"), &band = block(table, "band-1");
   REQUIRE(band.columns[0].values.size() > 100);
   CHECK(std::ranges::is_sorted(band.columns[0].values));
@@ -736,10 +738,20 @@ TEST_CASE(
   const Run run = simulate({.x0 = 3, .until_amplitude = 2}, Exact{}, {});
   Figure figure = loss_figure(LossOrdinate::amplitude_times);
   std::vector<Table> members;
-  for (const Scene& scene : ensemble_of(run.scene, {.members = 4}))
-    members.push_back(figure_table(figure, {{"decay", {"decay.json", simulate(scene, Exact{}, {})}}}));
+  FigureRun source{"decay.json", run};
+  for (const Scene& scene : ensemble_of(run.scene, {.members = 4})) {
+    const Run member = simulate(scene, Exact{}, {});
+    members.push_back(figure_table(figure, {{"decay", {"decay.json", member}}}));
+    if (members.size() > 1) source.others.push_back(member);
+  }
+  CHECK(members_shown(figure, "decay") == 0);
+  figure.curves[0].ensemble = 5;
+  CHECK(members_shown(figure, "decay") == 5);
+  CHECK(members_shown(figure, "another") == 0);
+  CHECK_THROWS_WITH_AS(figure_table(figure, {{"decay", source}}),
+                       "figure 8: decay.json: has 4 of the 5 members of its ensemble", InputError);
   figure.curves[0].ensemble = 4;
-  const Table table = figure_table(figure, {{"decay", {"decay.json", run}}});
+  const Table table = figure_table(figure, {{"decay", source}});
   const TableBlock& band = block(table, "band-1");
   const double from = std::ranges::min(column(block(table, "curve-1"), 1));
   double last_step = 0;

@@ -1,14 +1,18 @@
-// `run`: one scene through one engine into one run file.
+// `run`: one scene through one engine into one run file, or an ensemble of it into several.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "commands.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 #include "interruption.hpp"
 #include "scene_arguments.hpp"
@@ -123,6 +127,31 @@ void warn_of_missing_samples(const Run& run, const Record& record) {
             << " samples asked for\n";
 }
 
+// Simulates and writes the other members of the ensemble of `first`, so many at once as there are threads: no
+// more are kept in memory. Written before `file` is: where that is new, all are.
+void run_members(const std::string& file, const Run& first, const Record& record,
+                 const std::optional<Scales>& scales, const EnsembleOptions& ensemble) {
+  const std::filesystem::path folder = member_file(file, 2).parent_path();
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw IoError(folder.string() + ": cannot be written: " + error.message());
+  const std::vector<Scene> scenes = ensemble_of(first.scene, ensemble);
+  const std::ptrdiff_t at_once = number_of(ensemble.threads);
+  std::int64_t member = 1;
+  for (auto next = scenes.begin() + 1; next != scenes.end();) {
+    const auto end = next + std::min(at_once, scenes.end() - next);
+    for (const Run& run :
+         simulate_scenes({next, end}, first.engine, record_of_member(record), ensemble.threads)) {
+      if_interrupted_say(std::to_string(ensemble.members - member) + " of " +
+                         std::to_string(ensemble.members) + " runs are left; " + left_as_it_was(file));
+      ++member;
+      warn_of_early_end(std::string(program) + ": member " + std::to_string(member), run, scales);
+      write_file(member_file(file, member), run_text(run, scales));
+    }
+    next = end;
+  }
+}
+
 int run_scene(Arguments& arguments) {
   const SceneFile scene_file = scene_of(arguments);
   const Scene& scene = scene_file.scene;
@@ -143,6 +172,16 @@ int run_scene(Arguments& arguments) {
     arguments.reject("--si",
                      "is for --format csv; a run file is dimensionless, its units say what a unit is in SI");
   if (in_si && !scales) arguments.reject("--si", "needs a scene in units, by --scene");
+  EnsembleOptions ensemble;
+  ensemble.members = arguments.whole_number("--members", within(1, double(most_members))).value_or(1);
+  ensemble.threads = threads_of(arguments);
+  if (ensemble.members > 1 && !arguments.given("--output"))
+    arguments.reject("--members", "needs --output FILE: the members are files beside it");
+  if (ensemble.members > 1 && format == Format::csv)
+    arguments.reject("--members", "is for run files, --format json");
+  for (std::int64_t member = 2; file && member <= ensemble.members; ++member)
+    arguments.reject_overwriting("--output", member_file(*file, member).string(),
+                                 {arguments.text("--scene").value_or("")});
   arguments.finish();
   if (file) {
     require_writable(*file);
@@ -152,6 +191,7 @@ int run_scene(Arguments& arguments) {
   const Run result = saying_options([&] { return simulate(scene, engine, record); });
   warn_of_early_end(program, result, scales);
   warn_of_missing_samples(result, record);
+  if (ensemble.members > 1) run_members(*file, result, record, scales, ensemble);
   std::optional<SiUnits> units;
   if (in_si) units = si_units_of(*scales);
   const std::string text = format == Format::csv ? run_csv(result, units) : run_text(result, scales);
@@ -186,6 +226,13 @@ Options output_options() {
   add("--si", "", "csv of a scene in units: columns in SI, as their names say (time_s,\namplitude_m)",
       Option::Takes::nothing);
   add("-o,--output", "FILE", "write the run there instead of to stdout");
+  add("--members", "N",
+      "run an ensemble of N members, 1 (default) to 100: the scene itself\n"
+      "and the same with perturbed initial conditions. With -o NAME.json\n"
+      "these are NAME.members/02.json and so on, each a run file with\n"
+      "what is recorded but history and energy");
+  options.push_back(threads_option());
+  options.back().group = "Output";
   return options;
 }
 
@@ -210,7 +257,8 @@ Command run_command() {
       "  impact-damper run --scene data/scenes/my.json --engine cem --time-step 1e-4 -o cem.json\n"
       "  impact-damper run --until-time 50 --record impacts,energy --history 0:50:2001\n"
       "  impact-damper run --scene data/examples/mast.json --record history --history 0:2:401 \\\n"
-      "    --format csv --si -o mast.csv\n\n"
+      "    --format csv --si -o mast.csv\n"
+      "  impact-damper run --scene data/scenes/nu2-e06.json --members 16 -o nu2-e06.json\n\n"
       "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there, and\n"
       "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not valid, 3 "
       "the scene\n"

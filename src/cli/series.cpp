@@ -43,19 +43,26 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
   return figures;
 }
 
-// A figure's runs; what is wrong with one is reported under the figure's name. All are of one engine,
-// whatever figure they were read for.
-void load(const Figure& figure, const SceneRuns& folders, FigureRuns& runs) {
+// A figure's runs, and the members of the ensembles that it shows; what is wrong with one is reported under
+// the figure's name. All are of one engine, whatever figure they were read for.
+void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
   for (const std::string& scene : scenes_of(figure)) {
-    if (runs.contains(scene)) continue;
     const fs::path file = folders.file_of(scene);
     try {
-      const FigureRun source{file, folders.read(scene)};
-      if (!runs.empty()) {
-        const FigureRun& first = runs.begin()->second;
-        require_same_engine(source.run, file, first.run, first.file);
+      if (!runs.contains(scene)) {
+        const FigureRun source{file, folders.read(scene)};
+        if (!runs.empty()) {
+          const FigureRun& first = runs.begin()->second;
+          require_same_engine(source.run, file, first.run, first.file);
+        }
+        runs[scene] = source;
       }
-      runs[scene] = source;
+      FigureRun& source = runs.at(scene);
+      EnsembleOptions ensemble;
+      ensemble.members = members_shown(figure, scene);
+      ensemble.threads = threads;
+      if (ensemble.members > std::int64_t(source.others.size()) + 1)
+        source.others = read_members(source.run, file, ensemble);
     } catch (const InputError& error) {
       std::vector<std::string> problems;
       for (const std::string& problem : error.problems()) {
@@ -85,7 +92,12 @@ int make_tables(Arguments& arguments) {
                                      (output ? in_quotes(*output) : "none"));
   }
   std::vector<fs::path> inputs{catalogue_file};
-  for (const CatalogueScene& scene : catalogue.scenes) inputs.push_back(folders.file_of(scene.name));
+  for (const CatalogueScene& scene : catalogue.scenes) {
+    const fs::path run = folders.file_of(scene.name);
+    inputs.push_back(run);
+    for (std::int64_t member = 2; member <= most_members; ++member)
+      inputs.push_back(member_file(run, member));
+  }
   arguments.reject_overwriting("--output", output, inputs);
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
@@ -105,8 +117,8 @@ int make_tables(Arguments& arguments) {
       if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
-    load(*figure, folders, runs);
-    const Table table = figure_table(*figure, runs, threads);
+    load(*figure, folders, threads, runs);
+    const Table table = figure_table(*figure, runs);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     if (!output) {
       write_standard_output(text);
@@ -123,7 +135,9 @@ Command series_command() {
   Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
   command.options = {
       {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
-      {"--runs", "FOLDER", "where the runs are, each SCENE.json by the scene's name"},
+      {"--runs", "FOLDER",
+       "where the runs are, each SCENE.json by the scene's name, with the\n"
+       "members of the ensembles that figures show (run --members)"},
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",
@@ -131,7 +145,7 @@ Command series_command() {
        .takes = Option::Takes::repeated_value},
       {"-o,--output", "PLACE", "file, or folder for figNN.dat or figNN.csv; default standard output"},
       {"--format", "NAME", "gnuplot (default), what the figures are drawn from, or csv"},
-      threads_option()};
+      {"--threads", "N", "how many read at once; default one for each processor, same tables\nwith any"}};
   command.footer =
       "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
       "numbers.\n"

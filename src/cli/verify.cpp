@@ -245,7 +245,8 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const Ensemb
 
 int verify(Arguments& arguments) {
   EnsembleOptions ensemble;
-  ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
+  ensemble.members =
+      arguments.whole_number("--members", within(1, double(most_members))).value_or(ensemble.members);
   ensemble.threads = threads_of(arguments);
   const fs::path claims_file = arguments.file("--claims").value_or(project_file("data/claims.json")),
                  runs_folder = arguments.file("--runs").value_or(project_file("build/runs/exact"));
@@ -264,7 +265,12 @@ int verify(Arguments& arguments) {
   if (catalogue) check_catalogue(*catalogue, claims);
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
-    for (const std::string& scene : scenes_of(claim)) inputs.push_back(folders.file_of(scene));
+    for (const std::string& scene : scenes_of(claim)) {
+      const fs::path run = folders.file_of(scene);
+      inputs.push_back(run);
+      for (std::int64_t member = 2; member <= most_members; ++member)
+        inputs.push_back(member_file(run, member));
+    }
   arguments.reject_overwriting("--output", verdicts_file, inputs);
   arguments.reject_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
@@ -317,14 +323,18 @@ Command verify_command() {
                   .description = "Hold the runs against everything the paper reports, claim by claim."};
   command.options = {
       {"--claims", "FILE", "what the paper reports; default data/claims.json"},
-      {"--runs", "FOLDER", "folder of run files, SCENE.json each; default build/runs/exact"},
+      {"--runs", "FOLDER",
+       "folder of run files, SCENE.json each, with the other members of\n"
+       "its ensemble (run --members); default build/runs/exact"},
       scenes_option(),
       {.name = "--power",
        .help =
            "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
        .takes = Option::Takes::nothing},
       {"--catalogue", "FILE", "check that the claims its figures rest on exist"},
-      {"--members", "N", "releases in each ensemble, the run file's own among them;\n1 to 100, default 16"},
+      {"--members", "N",
+       "use the first N of each ensemble, the run file itself among them;\n"
+       "1 to 100, default 16; --power simulates them"},
       {"-o,--output", "FILE", "write the verdicts as JSON"},
       {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
       threads_option()};

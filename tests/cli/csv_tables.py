@@ -57,7 +57,7 @@ catalogue = json.loads((source / "figures/catalogue.json").read_text(encoding="u
 for scene in catalogue["scenes"]:
     windows = [f"--history-below={w['amplitude']}:{w['length']}:{w['count']}" for w in scene.get("history_below", [])]
     run("run", "--scene", source / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]), *windows,
-        "-o", f"runs/{scene['scene']}.json")
+        "--members", str(catalogue["members"]), "-o", f"runs/{scene['scene']}.json")
 series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", "runs",
           "-o", "tables"]
 run(*series)

@@ -29,7 +29,9 @@ content = {"schema": "impact-damper/claims/1", "open": [statement], "claims": [
     claim("all", LARGEST, also={"half_range": HALF, "middle": MIDDLE}, words="{} and {middle} and {half_range}"),
     claim("middle", MIDDLE), claim("half-range", HALF)]}
 (folder / "claims.json").write_text(json.dumps(content))
-done = subprocess.run([program, "verify", "--claims", folder / "claims.json", "--runs", files / "runs", "--scenes",
+subprocess.run([program, "run", "--scene", files / "data/scenes/small.json", "--members", "5", "-o", folder / "small.json"],
+               check=True)
+done = subprocess.run([program, "verify", "--claims", folder / "claims.json", "--runs", folder, "--scenes",
                        files / "data/scenes", "--members", "5", "-o", folder / "verdicts.json", "--markdown", folder / "table.md"],
                       capture_output=True, text=True)
 assert done.returncode == 0, done.stderr

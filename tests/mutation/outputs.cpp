@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/reproduction/measures.hpp"
@@ -88,7 +89,12 @@ void list_tables(const std::filesystem::path& source) {
   }
   for (Figure figure : catalogue.figures) {
     if (figure.table == TableKind::drawing) continue;
-    for (FigureCurve& curve : figure.curves) curve.ensemble = std::min<std::int64_t>(curve.ensemble, 2);
+    for (FigureCurve& curve : figure.curves) {
+      curve.ensemble = std::min<std::int64_t>(curve.ensemble, 2);
+      FigureRun& drawn = runs.at(curve.scene);
+      if (curve.ensemble == 2 && drawn.others.empty())
+        drawn.others.push_back(simulate(ensemble_of(drawn.run.scene)[1], Exact{}, {}));
+    }
     const Table table = figure_table(figure, runs);
     for (const TableBlock& block : table.blocks)
       for (std::size_t c = 1; c <= block.columns.size(); ++c) {

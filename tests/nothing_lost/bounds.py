@@ -126,7 +126,10 @@ def known(b, tree):
         b.rejects("--members: must be a whole number >= 1 and <= 100", [*verify, "--members", members])
     for threads in ("0", "-1", "100000", "1e9", "99999999999999999999"):
         b.rejects("--threads: must be a whole number >= 1 and <= 1024", [*verify, "--threads", threads])
-    b.run([*verify, "--members", "100", "--threads", "1024"], [0, 1])
+    b.run([*verify, "--threads", "1024"], [0, 1])
+    for members in ("1000000000", "101", "0"):
+        b.rejects("--members: must be a whole number >= 1 and <= 100", ["run", "--until-time", "10", "--members", members])
+    b.run(["run", "--until-time", "10", "--members", "100", "--threads", "1024", "-o", "out.json"], [0])
 
 
 def drawn(choose):

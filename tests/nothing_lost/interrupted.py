@@ -49,7 +49,7 @@ def interrupt(name, command, folder, files, code, wait, check):
     return not whole or name == "series"
 
 
-PROGRAMS, MAKES = ["run", "series", "verify"], ["make", "makes"]
+PROGRAMS, MAKES = ["run", "ensemble", "series", "verify"], ["make", "makes"]
 
 
 def programs(options, tree, folder, moments, check):
@@ -59,9 +59,11 @@ def programs(options, tree, folder, moments, check):
     commands = {
         "run": ([program, "run", "--engine", "cem", "--time-step", "1e-9", "--until-time", "10", "-o", "out.json"],
                 ["out.json"]),
+        "ensemble": ([program, "run", "--engine", "cem", "--until-amplitude", "5", "--members", "100", "--threads", "4",
+                      "-o", "out.json"], ["out.json"]),
         "series": ([program, "series", "--catalogue", catalogue, "--runs", runs, "--scenes", scenes,
                     "--threads", "4", "-o", "."], []),
-        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--scenes", scenes, "--members", "32",
+        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--scenes", scenes,
                     "--threads", "4", "-o", "verdicts.json"], ["verdicts.json"]),
     }
     for name, (command, files) in commands.items():
@@ -149,10 +151,11 @@ def main():
     folder = scratch.make_folder(options.folder)
     check = scratch.Check()
     tree = scratch.make_tree(folder / "tree", options.program, options.figures)
-    if options.parts != ["run"]:
+    if not set(options.parts) <= {"run", "ensemble"}:
         first = scratch.make(tree, "figures")
-        if first.returncode != 0:
-            sys.exit(first.stdout + first.stderr)
+        ensembles = subprocess.run(["cmake", "--build", "build", "--target", "runs-exact"], cwd=tree, capture_output=True)
+        if first.returncode != 0 or ensembles.returncode != 0:
+            sys.exit(f"{first} {ensembles}")
     wanted = scratch.made_in(tree)
     programs(options, tree, folder, moments, check)
     if "make" in options.parts:

@@ -52,6 +52,7 @@ class Victim:
             if content is None:
                 (self.folder / file).unlink(missing_ok=True)
             else:
+                (self.folder / file).parent.mkdir(exist_ok=True)
                 (self.folder / file).write_bytes(content)
 
 
@@ -176,7 +177,8 @@ def main():
 
     victims = [
         victim("run", [program, "run", "--until-time", "300", "--record", "impacts,contacts,energy,history",
-                       "--history", "0:300:30000", "-o", "out.json"], ["out.json"]),
+                       "--history", "0:300:30000", "--members", "3", "-o", "out.json"],
+               ["out.members/02.json", "out.members/03.json", "out.json"]),
         victim("series", [program, "series", "--catalogue", catalogue, "--runs", runs, "--scenes", scenes, "-o",
                           "."], tables),
         victim("draw", [str(tree / "figures" / "draw"), script,
@@ -184,7 +186,7 @@ def main():
                         scratch.VERSION],
                ["fig.svg", "fig.pdf", "fig.png"]),
         victim("verify", [program, "verify", "--claims", str(tree / "data" / "claims.json"), "--runs", runs,
-                          "--scenes", scenes, "--members", "2", "-o", "verdicts.json", "--markdown", "claims.md"],
+                          "--scenes", scenes, "--members", "1", "-o", "verdicts.json", "--markdown", "claims.md"],
                ["verdicts.json", "claims.md"]),
     ]
     for each in victims:

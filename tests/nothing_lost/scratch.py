@@ -69,9 +69,9 @@ def make(tree, *targets, **more):
 
 
 def made_in(tree):
-    """What stands under final names in a tree: runs, tables, figures, verdicts."""
+    """What stands under final names in a tree: runs and the members of their ensembles, tables, figures, verdicts."""
     files = {}
-    for pattern in ("runs/*/*.json", "series/*/*.dat", "figures/*.*", "verdicts-*.json"):
+    for pattern in ("runs/*/*.json", "runs/*/*.members/*.json", "series/*/*.dat", "figures/*.*", "verdicts-*.json"):
         for file in (tree / "build").glob(pattern):
             if not file.name.startswith("."):
                 files[str(file.relative_to(tree))] = file.read_bytes()

@@ -165,11 +165,15 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
         runs, tables = results / engine / "runs", results / engine / "tables"
         runs.mkdir(parents=True)
         tables.mkdir()
-        for entry in json.loads(catalogues[engine].read_text())["scenes"]:
+        catalogue = json.loads(catalogues[engine].read_text())
+        shown = [(curve["scene"], curve["ensemble"]) for figure in catalogue["figures"] for curve in figure.get("curves", [])
+                 if "ensemble" in curve]
+        for entry in catalogue["scenes"]:
+            members = max((count for scene, count in shown if scene == entry["scene"]), default=1)
             windows = [["--history-below", f"{w['amplitude']}:{w['length']}:{w['count']}"]
                        for w in entry.get("history_below", [])]
             call([program, "run", "--scene", f"data/scenes/{entry['scene']}.json", "--engine", engine, "--record",
-                  ",".join(entry["record"]), *sum(windows, []), "-o", runs / f"{entry['scene']}.json"], **options)
+                  ",".join(entry["record"]), *sum(windows, []), "--members", str(members), "-o", runs / f"{entry['scene']}.json"], **options)
         for scene in sorted((HERE / "scenes").glob("*.json")):
             for number, way in enumerate(WAYS[engine]):
                 call([program, "run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,

@@ -6,6 +6,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 
 namespace impact_damper {
 namespace {
@@ -75,7 +76,7 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
                     "must be even, so that one peak is the middle one, got " + std::to_string(half_cycles));
       }
       curve.loss_factor.half_cycles = static_cast<int>(half_cycles);
-      item.optional("ensemble", curve.ensemble, within(0, 1000));
+      item.optional("ensemble", curve.ensemble, within(0, double(most_members)));
     }
     curves.push_back(curve);
   }
@@ -184,6 +185,7 @@ Catalogue read_whole(JsonDocument document) {
   root.require("schema");
 
   Catalogue catalogue;
+  root.optional("members", catalogue.members, within(1, double(most_members)));
   for (ObjectReader item : root.required_objects("scenes", 1000)) {
     CatalogueScene scene;
     if (item.required("scene", scene.name, a_name) && find_scene(catalogue, scene.name))

@@ -3,6 +3,7 @@
 // figures/catalogue.json; the build makes its rules and the figure stage its tables from this one file.
 //
 //   {"schema": "impact-damper/catalogue/1",
+//    "members": 16,
 //    "scenes":  [{"scene": "nu2-e06", "record": ["half_cycles", "impacts"],
 //                 "history_below": [{"amplitude": 5.6, "length": 12.6, "count": 2001}]}],
 //    "figures": [{"figure": "8", "title": "...", "table": "loss_factor", "ordinate": "eta",
@@ -47,7 +48,7 @@ struct FigureCurve {
   std::string scene;
   // loss_factor tables only:
   LossFactorOptions loss_factor;  // its window of averaging
-  std::int64_t ensemble = 0;      // perturbed initial conditions whose spread is shown; 0 for none
+  std::int64_t ensemble = 0;      // members of the ensemble whose spread is shown; 0 for none
 };
 
 struct Figure {
@@ -66,6 +67,7 @@ struct Figure {
 };
 
 struct Catalogue {
+  std::int64_t members = 1;  // of each scene's ensemble that are run, the scene itself among them; 1 to 100
   std::vector<CatalogueScene> scenes;
   std::vector<Figure> figures;
 };

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
@@ -22,13 +23,23 @@ void multiply(Run& run, double factor) {
   for (auto& entry : (*(run.*section)).*column) multiply_entry(entry, factor);
 }
 
+// Half cycles, impacts and contacts: all that measures look at.
+std::vector<Run> simulated_members(const Run& first, const EnsembleOptions& options) {
+  Record record;
+  record.impacts = record.contacts = true;
+  std::vector<Scene> members = ensemble_of(first.scene, options);
+  members.erase(members.begin());
+  return simulate_scenes(members, first.engine, record, options.threads);
+}
+
 }  // namespace
 
 const Run& Runs::file(const std::string& scene) {
   auto found = ensembles_.find(scene);
   if (found == ensembles_.end()) {
+    if (!folder_) throw std::invalid_argument("there is no run of scene " + scene);
     found = ensembles_.emplace(scene, std::vector<Run>{}).first;
-    found->second.push_back(as_recorded(read_run(folder_ / (scene + ".json"))));
+    found->second.push_back(as_recorded(read_run(*folder_ / (scene + ".json"))));
   }
   return found->second.front();
 }
@@ -37,11 +48,9 @@ const std::vector<Run>& Runs::ensemble(const std::string& scene) {
   const Run& first = file(scene);
   std::vector<Run>& runs = ensembles_.at(scene);
   if (runs.size() == 1 && options_.members > 1) {
-    Record record;
-    record.impacts = record.contacts = true;
-    std::vector<Scene> members = ensemble_of(first.scene, options_);
-    members.erase(members.begin());
-    std::vector<Run> others = simulate_scenes(members, first.engine, record, options_.threads);
+    std::vector<Run> others = folder_ ? read_members(first, *folder_ / (scene + ".json"), options_)
+                                      : simulated_members(first, options_);
+    runs.reserve(others.size() + 1);
     for (Run& other : others) runs.push_back(as_recorded(std::move(other)));
   }
   return runs;

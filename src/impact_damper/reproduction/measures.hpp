@@ -1,5 +1,6 @@
 // Our side of the claims: a table of names, each a function that finds one number, from runs and, where a
-// claim compares what no run file holds, from simulations of its own.
+// claim compares with another model, engine or experiment than the scene's runs, from simulations of its own
+// (Runs::simulated).
 #pragma once
 
 #include <cstddef>
@@ -42,19 +43,21 @@ struct WrongColumn {
   double factor = 1;
 };
 
-// The runs that measures look at: a folder of run files, SCENE.json each. Every scene of it is read once,
-// and run again as an ensemble, with the file's scene and engine, once somebody asks.
+// The runs that measures look at. From a folder of run files, SCENE.json each with the other members of its
+// ensemble beside it (scene_runs.hpp), each is read once, when somebody asks. Without a folder, as power.hpp
+// needs it to try other scenes and other ensembles, there is what was put, and ensembles of that are
+// simulated.
 class Runs {
  public:
-  explicit Runs(std::filesystem::path folder, EnsembleOptions options = {}, AnalysisOptions analysis = {},
-                std::optional<WrongColumn> wrong = std::nullopt)
+  explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},
+                AnalysisOptions analysis = {}, std::optional<WrongColumn> wrong = std::nullopt)
       : folder_(std::move(folder)), options_(options), analysis_(analysis), wrong_(wrong) {}
 
-  // The run file; throws IoError or InputError.
+  // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put.
   const Run& file(const std::string& scene);
   // From now on this run stands for the scene's file.
   void put(const std::string& scene, Run run);
-  // The run file, then the other members, which record half cycles, impacts and contacts.
+  // The run file, then the other members; throws what read_members() throws.
   const std::vector<Run>& ensemble(const std::string& scene);
   // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if
   // none was or if they are of several.
@@ -68,7 +71,7 @@ class Runs {
  private:
   Run as_recorded(Run run) const;
 
-  std::filesystem::path folder_;
+  std::optional<std::filesystem::path> folder_;
   EnsembleOptions options_;
   AnalysisOptions analysis_;
   std::optional<WrongColumn> wrong_;

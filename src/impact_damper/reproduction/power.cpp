@@ -202,7 +202,7 @@ const auto by_name = [](const auto& table, std::string_view name) -> const auto&
 };
 
 Runs runs_with(const PowerInput& input, const Settings& settings, std::optional<WrongColumn> wrong = {}) {
-  Runs runs({}, settings.ensemble, settings.analysis, wrong);
+  Runs runs(std::nullopt, settings.ensemble, settings.analysis, wrong);
   for (const auto& [scene, run] : input.runs) runs.put(scene, run);
   for (const auto& [scene, run] : input.runs) runs.ensemble(scene);
   return runs;
@@ -258,7 +258,8 @@ std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t 
   return ids;
 }
 
-Power::Power(PowerInput input) : input_(std::move(input)), threads_(input_.ensemble.threads), unchanged_({}) {
+Power::Power(PowerInput input)
+    : input_(std::move(input)), threads_(input_.ensemble.threads), unchanged_(std::nullopt) {
   // The searches share the processors; no ensemble by itself does.
   input_.ensemble.threads = 1;
   const Settings settings{input_.ensemble, {}};

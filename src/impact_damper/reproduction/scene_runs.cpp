@@ -1,5 +1,7 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 
+#include <system_error>
+
 #include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -10,6 +12,8 @@
 namespace impact_damper {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string text_of(const std::optional<double>& number) { return number ? number_text(*number) : "none"; }
 
 Engine without_defaults_by_scene(Engine engine) {
@@ -18,6 +22,33 @@ Engine without_defaults_by_scene(Engine engine) {
       if (option.in_every_file) value.reset();
   });
   return engine;
+}
+
+// `source` says whose scene is wanted.
+void require_scene(const Run& run, const fs::path& file, const Scene& scene, const std::string& source) {
+  std::vector<Problem> problems;
+  const auto compare = [&](std::string_view name, std::optional<double> wanted, std::optional<double> given) {
+    if (wanted == given) return;
+    problems.push_back({"/scene/" + std::string(name), "must be " + text_of(wanted) + " as in " + source +
+                                                           ", got " + text_of(given) +
+                                                           ": a run of another scene"});
+  };
+  for (const SceneField& field : scene_fields)
+    compare(field.name, scene.*field.member, run.scene.*field.member);
+  compare("until_time", scene.until_time, run.scene.until_time);
+  compare("until_amplitude", scene.until_amplitude, run.scene.until_amplitude);
+  if (!problems.empty()) throw InputError(file.string(), problems);
+}
+
+// Reads a run file; if there is none, what is thrown names the command that makes it.
+Run read_or_name_command(const fs::path& file, const std::string& command) {
+  try {
+    return read_run(file);
+  } catch (const IoError& error) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) throw;
+    throw IoError(std::string(error.what()) + "; made by: " + command);
+  }
 }
 
 }  // namespace
@@ -30,19 +61,7 @@ void require_consistent(const Run& run, const std::filesystem::path& file) {
 
 void require_scene(const Run& run, const std::filesystem::path& file,
                    const std::filesystem::path& scene_file) {
-  const Scene scene = read_scene(scene_file);
-  std::vector<Problem> problems;
-  const auto compare = [&](std::string_view name, std::optional<double> wanted, std::optional<double> given) {
-    if (wanted == given) return;
-    problems.push_back({"/scene/" + std::string(name), "must be " + text_of(wanted) + " as in " +
-                                                           scene_file.string() + ", got " + text_of(given) +
-                                                           ": a run of another scene"});
-  };
-  for (const SceneField& field : scene_fields)
-    compare(field.name, scene.*field.member, run.scene.*field.member);
-  compare("until_time", scene.until_time, run.scene.until_time);
-  compare("until_amplitude", scene.until_amplitude, run.scene.until_amplitude);
-  if (!problems.empty()) throw InputError(file.string(), problems);
+  require_scene(run, file, read_scene(scene_file), scene_file.string());
 }
 
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
@@ -55,10 +74,52 @@ void require_same_engine(const Run& run, const std::filesystem::path& file, cons
                        ": runs of several engines are not put together"}});
 }
 
+fs::path member_file(const fs::path& run_file, std::int64_t member) {
+  fs::path folder = run_file;
+  if (folder.extension() == ".json") folder.replace_extension();
+  folder += ".members";
+  std::string name(member < 10 ? "0" : "");
+  name += std::to_string(member);
+  name += ".json";
+  return folder / name;
+}
+
+Record record_of_member(Record record) {
+  record.energy = false;
+  record.history.clear();
+  record.history_below.clear();
+  return record;
+}
+
+std::vector<Run> read_members(const Run& first, const fs::path& run_file, const EnsembleOptions& options) {
+  const std::vector<Scene> scenes = ensemble_of(first.scene, options);
+  std::vector<Run> others(scenes.size() - 1);
+  for_each_index(static_cast<std::int64_t>(others.size()), options.threads, [&](std::int64_t i) {
+    const std::int64_t member = i + 2;
+    const std::string number = std::to_string(member);
+    const fs::path file = member_file(run_file, member);
+    Run& run = others[static_cast<std::size_t>(i)];
+    run =
+        read_or_name_command(file, "impact-damper run --members " + std::to_string(options.members) + " -o " +
+                                       run_file.string() + ", with the other options that made that run");
+    require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
+                  "member " + number + " of the ensemble of " + run_file.string());
+    if (run.engine != first.engine)
+      throw InputError(
+          file.string(),
+          {{"/engine", "must be that of " + run_file.string() +
+                           ", with its options: the members of an ensemble are runs of one engine"}});
+    require_consistent(run, file);
+  });
+  return others;
+}
+
 Run SceneRuns::read(const std::string& scene) const {
-  const std::filesystem::path file = file_of(scene);
-  Run run = read_run(file);
-  require_scene(run, file, scenes / (scene + ".json"));
+  const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
+  Run run =
+      read_or_name_command(file, "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
+                                     ", with --record, --engine and --members as needed");
+  require_scene(run, file, scene_file);
   require_consistent(run, file);
   return run;
 }

@@ -1,10 +1,13 @@
-// Runs that stand for the project's scenes, FOLDER/SCENE.json each: read, and held against what they stand
-// for.
+// Runs that stand for the project's scenes, FOLDER/SCENE.json each, and the other members of their ensembles
+// beside them: read, and held against what they stand for.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -22,12 +25,29 @@ void require_scene(const Run& run, const std::filesystem::path& file,
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
                          const std::filesystem::path& other_file);
 
+// An ensemble (analysis/ensemble.hpp) is kept as the run file of the scene itself, its first member, and a
+// folder of run files beside it for the others, from 2 on: `run_file` FOLDER/SCENE.json has the members
+// FOLDER/SCENE.members/02.json, 03.json ...
+inline constexpr std::int64_t most_members = 100;
+std::filesystem::path member_file(const std::filesystem::path& run_file, std::int64_t member);
+
+// What a member records of what its scene's run does: all but the history and the energy balance, which
+// nothing looks at in an ensemble.
+Record record_of_member(Record record);
+
+// The other members of the ensemble whose first is `first`, the run in `run_file`, read by as many threads as
+// the options say. Each must agree with itself, be of its own release and of the engine of `first` with its
+// options. Throws IoError, naming the command that makes it, if a file is missing, and InputError.
+std::vector<Run> read_members(const Run& first, const std::filesystem::path& run_file,
+                              const EnsembleOptions& options = {});
+
 // Where runs and the scenes that they are of are kept.
 struct SceneRuns {
   std::filesystem::path runs, scenes;
 
   std::filesystem::path file_of(const std::string& scene) const { return runs / (scene + ".json"); }
-  // The run of that scene, consistent and of the scene in the other folder. Throws IoError or InputError.
+  // The run of that scene, consistent and of the scene in the other folder. Throws IoError, naming the
+  // command that makes it if it is missing, or InputError.
   Run read(const std::string& scene) const;
 };
 

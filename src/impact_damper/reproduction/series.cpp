@@ -174,7 +174,14 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) 
   return rows;
 }
 
-Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& threads) {
+std::int64_t members_shown(const Figure& figure, const std::string& scene) {
+  std::int64_t members = 0;
+  for (const FigureCurve& curve : figure.curves)
+    if (curve.scene == scene) members = std::max(members, curve.ensemble);
+  return members;
+}
+
+Table figure_table(const Figure& figure, const FigureRuns& runs) {
   std::vector<const FigureRun*> sources;
   for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
   check_comparable(figure, sources);
@@ -200,7 +207,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& 
         if (figure.table == TableKind::decay) {
           add_decay_block(figure, *sources[i], number, legend, table);
         } else {
-          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, threads, table);
+          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
         }
       }
       if (figure.table == TableKind::decay && figure.down_to) add_law_blocks(figure, sources, table);

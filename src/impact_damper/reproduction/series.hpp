@@ -2,11 +2,12 @@
 // computed for a figure is computed here; its script only draws.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
-#include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/reproduction/table.hpp"
 #include "impact_damper/run.hpp"
@@ -16,26 +17,31 @@ namespace impact_damper {
 struct FigureRun {
   std::filesystem::path file;  // where it was read from, for messages
   Run run;
+  std::vector<Run> others{};  // the other members of its ensemble, for curves that show one
 };
 using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
 
-// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes. Blocks by kind:
+// The members, the scene's own run among them, of the largest ensemble of that scene that the figure shows;
+// 0 if it shows none.
+std::int64_t members_shown(const Figure& figure, const std::string& scene);
+
+// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes, with as many members
+// of each as the figure shows. Blocks by kind:
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks
 //   decay        "curve-1" ... in the order of the figure's curves (time, amplitude); with Figure::down_to
 //                "law" (mass ratio, average of -dA/dt / nu down to there), "line" (nu t, amplitude)
 //   loss_factor  "curve-1" ... (amplitude, ordinate) and what of it lies behind impact failure, "failed-1"
-//                ...; "band-1" ... (amplitude, least, greatest) for curves with an ensemble, which is
-//                simulated here with the run's own scene and engine; "second-1" ... in the second ordinate,
-//                if there is one; "spread" over Figure::range, without each curve's first point; closed
-//                forms, for the curves that have them, "one-impact-1" ..., "bounce-down-1" ...
+//                ...; "band-1" ... (amplitude, least, greatest) for curves with an ensemble; "second-1"
+//                ... in the second ordinate, if there is one; "spread" over Figure::range, without each
+//                curve's first point; closed forms, for the curves that have them, "one-impact-1" ...,
+//                "bounce-down-1" ...
 //   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ...
 //                "bounce-4", "accumulation"
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
-// history, enough half cycles, the amplitude Figure::down_to; or if a drawn value is not finite.
-// `threads` simulate the ensembles; the table does not depend on them.
-Table figure_table(const Figure& figure, const FigureRuns& runs, const Threads& threads = {});
+// history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.
+Table figure_table(const Figure& figure, const FigureRuns& runs);
 
 }  // namespace impact_damper

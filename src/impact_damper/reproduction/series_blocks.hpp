@@ -1,8 +1,8 @@
 // The blocks of the figures' tables, by kind; parts of series.hpp.
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/reproduction/series.hpp"
@@ -20,12 +20,11 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
 // "motion", and "impacts" and "stuck" if there are any. Needs impacts and contacts.
 void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table& table);
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
-                    const std::string& number, const std::string& legend, const Threads& threads,
-                    Table& table);
+                    const std::string& number, const std::string& legend, Table& table);
 // The extremes over `run` and others like it, where all of them have a value: an empty block if they never
 // do.
 void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
-                    const std::vector<Run>& others, const std::string& number, Table& table);
+                    std::span<const Run> others, const std::string& number, Table& table);
 void add_spread_block(const Figure& figure, Table& table);
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table);
 void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
@@ -12,7 +13,6 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/reproduction/series_blocks.hpp"
-#include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
 namespace {
@@ -109,19 +109,10 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
 
 double largest_amplitude(const Run& run) { return std::ranges::max(run.half_cycles->amplitude); }
 
-// The run's own scene and engine, with perturbed initial conditions.
-std::vector<Run> neighbours(const FigureCurve& curve, const Run& run, const Threads& threads) {
-  EnsembleOptions options;
-  options.members = curve.ensemble;
-  std::vector<Scene> scenes = ensemble_of(run.scene, options);
-  scenes.erase(scenes.begin());
-  return simulate_scenes(scenes, run.engine, Record{}, threads);
-}
-
 }  // namespace
 
 void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
-                    const std::vector<Run>& others, const std::string& number, Table& table) {
+                    std::span<const Run> others, const std::string& number, Table& table) {
   std::vector<LossCurve> members{LossCurve(figure, curve, run)};
   for (const Run& other : others) members.emplace_back(figure, curve, other);
   const LossCurve& own = members.front();
@@ -166,8 +157,7 @@ void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& r
 }
 
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
-                    const std::string& number, const std::string& legend, const Threads& threads,
-                    Table& table) {
+                    const std::string& number, const std::string& legend, Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
   const int span = curve.loss_factor.half_cycles;
   const LossCurve own(figure, curve, source.run);
@@ -202,8 +192,14 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
                      {legend, meaning(*figure.second_ordinate),
                       part(ordinate(loss, source.run.scene, *figure.second_ordinate), 0, kept)}}});
   }
-  if (curve.ensemble > 0)
-    add_band_block(figure, curve, source.run, neighbours(curve, source.run, threads), number, table);
+  if (curve.ensemble > 0) {
+    const auto others = static_cast<std::size_t>(curve.ensemble - 1);
+    if (source.others.size() < others)
+      throw unusable(figure, source.file,
+                     "has " + std::to_string(source.others.size() + 1) + " of the " +
+                         std::to_string(curve.ensemble) + " members of its ensemble");
+    add_band_block(figure, curve, source.run, std::span(source.others).first(others), number, table);
+  }
 }
 
 void add_spread_block(const Figure& figure, Table& table) {
