@@ -49,6 +49,8 @@ template <class Real>
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
 
+inline constexpr double two_to_the_25 = 33554432;
+
 // Where the prediction begins: by the parabola through the beginning of u, which may begin with its third
 // derivative alone.
 template <class Real>
@@ -116,7 +118,6 @@ template <class Real>
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
-    constexpr double two_to_the_25 = 33554432;
     if (size * two_to_the_25 < t && t < most) {
       if (!omits_nothing(u1, fourth, rate, t)) return {t, across, false, {}};
       // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and

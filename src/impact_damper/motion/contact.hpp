@@ -105,9 +105,9 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  // From `from` on, the time within which x has one zero at most: once the ringing is below rounding (Lemma
+  // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below rounding (Lemma
   // L5).
-  Real one_zero_within(const Real& from) const {
+  Real one_turn_within(const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
@@ -116,7 +116,7 @@ class Contact {
   }
   // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
   bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
-    return t < from + one_zero_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
+    return t < from + one_turn_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
   }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
