@@ -105,8 +105,8 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below rounding (Lemma
-  // L5).
+  // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below
+  // rounding (Lemma L5).
   Real one_turn_within(const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;

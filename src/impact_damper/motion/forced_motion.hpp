@@ -50,6 +50,23 @@ class DrivenSeries {
   static Real reach(const Real& rate) { return radians / rate; }
   // What x and v depart from the straight line by.
   SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
+  // `times` that series.
+  PairedSeries<Real, terms / 2> departure_times(const Real& times) const {
+    PairedSeries<Real, terms / 2> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = departure_[n] * times;
+    return all;
+  }
+  // u, u' and then `times` the derivatives of x at the beginning, up to the fourth.
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives(const Real& u, const Real& u1, const Real& times) const {
+    static_assert(N == 4);
+    return {u, u1, times * 2 * c_[2], times * 6 * c_[3]};
+  }
+  // The n-th derivative of x at the beginning.
+  Real derivative(std::size_t n) const {
+    constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
+    return c_[n] * Real(factorial[n]);
+  }
   // The series of sign times the `order`-th derivative of x, 0 to 2.
   PairedSeries<Real, terms / 2> derivative(std::size_t order, const Real& sign) const {
     PairedSeries<Real, terms / 2> all;
@@ -137,9 +154,23 @@ class ForcedMotion {
   // The derivatives at the beginning: enough of them for a bound on the fourth derivative of x''.
   static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
   using Beginning = Instant<Real, forced ? 8 : 6, Force>;
+  // A bound on |x^(n)| for a time `span` from the beginning on, n <= 6.
+  Real bound(std::size_t n, const Real& span) const {
+    if constexpr (forced) {
+      // Where the force is fast its steady state is small beside what it could add without turning; else not.
+      if (forcing_.frequency * forcing_.frequency > 4 * oscillator_.b()) return beginning().bound(n, span);
+      Real power = absolute(forcing_.amplitude);
+      for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
+      return oscillator_.bound(series().derivative(n), series().derivative(n + 1)) +
+             power * span / oscillator_.root_b();
+    } else {
+      return beginning().bound(n, span);
+    }
+  }
   decltype(auto) beginning() const {
     if constexpr (forced) {
-      if (!cached_.beginning) cached_.beginning.emplace(oscillator_, x0_, v0_, Real(1), Real(0), forcing_, phase_);
+      if (!cached_.beginning)
+        cached_.beginning.emplace(oscillator_, x0_, v0_, Real(1), Real(0), forcing_, phase_);
       return static_cast<const Beginning&>(*cached_.beginning);
     } else {
       return instant<6>(x0_, v0_, Real(0));
@@ -157,18 +188,18 @@ class ForcedMotion {
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
   bool keeps_side(const Real& side, const Real& x, const Real& t) const {
     if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
-    return forcing_ ? keeps_sign(x0_, x, beginning().bound(2, t), t) : t < oscillator_.half_period();
+    return forcing_ ? keeps_sign(x0_, x, bound(2, t), t) : t < oscillator_.half_period();
   }
   bool keeps_course(const Real& v, const Real& t) const {
     if (!(v0_ * v > 0)) return false;
-    return forcing_ ? keeps_sign(v0_, v, beginning().bound(3, t), t) : t < oscillator_.half_period();
+    return forcing_ ? keeps_sign(v0_, v, bound(3, t), t) : t < oscillator_.half_period();
   }
   // From t on, a time in which x' has one zero at most: without a force x and all its derivatives.
   Real one_turn_within(const Real& t) const {
     if constexpr (forced) {
       if (!(t < reach())) return 0;
       // As long as x'' keeps its sign, and the bound on x''' holds.
-      const Real rest = reach() - t, within = absolute(series().departure(t).u2) / beginning().bound(3, reach());
+      const Real rest = reach() - t, within = absolute(series().departure(t).u2) / bound(3, reach());
       return within < rest ? within : rest;
     } else {
       return oscillator_.half_period();
@@ -176,7 +207,7 @@ class ForcedMotion {
   }
   // Whether x, zero at `from`, is proved to have no other zero until t, when its velocity is v.
   bool leaves_zero(const Real& from, const Real& v, const Real& t) const {
-    return forcing_ ? absolute(v) > beginning().bound(2, t) * (t - from) : t < from + oscillator_.half_period();
+    return forcing_ ? absolute(v) > bound(2, t) * (t - from) : t < from + oscillator_.half_period();
   }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
@@ -228,14 +259,15 @@ class ForcedMotion {
   }
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
- private:
-  SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
-  Real reach() const { return DrivenSeries<Real>::reach(rate()); }
+  // The series about the beginning under a force, and how long it holds.
   const DrivenSeries<Real>& series() const {
     if (!cached_.series) cached_.series.emplace(oscillator_, forcing_, phase_, x0_, v0_);
     return *cached_.series;
   }
+  Real reach() const { return DrivenSeries<Real>::reach(rate()); }
 
+ private:
+  SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
   // What falls() finds, by Halley's method on the series, if L2 proves it or proves that there is nothing;
   // nothing where neither is proved. That it does not depend on `until` keeps a shorter run the beginning of
   // a longer one.
@@ -249,7 +281,7 @@ class ForcedMotion {
     SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
     if (begin.u <= 0 && !(begin.u1 > 0)) return {};
     if (begin.u < 0) begin.u = 0;  // just left
-    const Real fourth = beginning().bound(order + 4, reach());
+    const Real fourth = bound(order + 4, reach());
     if (const auto root = root_of_series(g, begin, from)) {
       if (root->slope < 0 &&
           stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth))
@@ -274,7 +306,8 @@ class ForcedMotion {
     if (!(t < room)) t = room;
     bool near = false;
     for (int i = 0; i < 8; ++i) {
-      const SeriesAt<Real> at = near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
+      const SeriesAt<Real> at =
+          near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
       const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
       const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
       t += step;
