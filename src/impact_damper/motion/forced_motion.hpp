@@ -279,8 +279,9 @@ class ForcedMotion {
     if (!(from < reach())) return {};
     const auto g = series().derivative(order, sign);
     SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
-    if (begin.u <= 0 && !(begin.u1 > 0)) return {};
-    if (begin.u < 0) begin.u = 0;  // just left
+    // At `from` > 0 a zero has just been left, and the sign of what rounding made of it means nothing.
+    if (begin.u < 0 && from > 0) begin.u = 0;
+    if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
     const Real fourth = bound(order + 4, reach());
     if (const auto root = root_of_series(g, begin, from)) {
       if (root->slope < 0 &&
