@@ -17,7 +17,8 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
 CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev \
-  locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base pkgconf zsh fish doxygen
+  locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base pkgconf zsh fish doxygen \
+  pybind11-dev python3-dev python3-numpy
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
@@ -90,7 +91,7 @@ export DESTDIR
 ifeq ($(filter /%,$(PREFIX)),)
 $(error PREFIX must be an absolute path, got $(PREFIX))
 endif
-install: $(BUILD)/build.ninja  ## install program, data, man page, completions and library (PREFIX=/usr/local, DESTDIR=)
+install: $(BUILD)/build.ninja  ## install program, data, man page, completions, library and Python module (PREFIX=/usr/local, DESTDIR=)
 	@$(alone) cmake --build $(BUILD) --target installed || exit; \
 	cmake --install $(BUILD) --prefix "$(PREFIX)" >$(BUILD)/install.log || { cat $(BUILD)/install.log; exit 1; }; \
 	echo "Installed: $(DESTDIR)$(PREFIX)/bin/impact-damper; all files are listed in $(BUILD)/install_manifest.txt"

@@ -7,8 +7,8 @@ int main(void) {
   const char* scene = "{\"mass_ratio\": 0.05, \"restitution\": 0.5, \"x0\": 3, \"until_time\": 100}";
   const impact_damper_window history = {0, 10, 6};
   char error[1000];
-  impact_damper_run* run = impact_damper_simulate(scene, "exact", &history, error, sizeof error);
-  if (!run) {
+  impact_damper_run* run;
+  if (impact_damper_simulate(scene, "exact", &history, &run, error, sizeof error) != IMPACT_DAMPER_DONE) {
     fprintf(stderr, "%s\n", error);
     return 1;
   }

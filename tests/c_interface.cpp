@@ -4,10 +4,14 @@
 #include <doctest/doctest.h>
 
 #include <bit>
+#include <cfenv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -20,11 +24,15 @@ namespace {
 const char* const forced = R"({"mass_ratio": 0.05, "restitution": 0.5, "damping_ratio": 0.01, "x0": 3,
                                "force_amplitude": 0.05, "force_frequency": 0.97, "until_time": 60})";
 
+const char* const in_units = R"({"mass": 40, "stiffness": 16000, "secondary_mass": 2, "clearance": 10,
+                                 "initial_displacement": 30, "until_seconds": 20})";
+
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
 // How many numbers of `value`, at `name` in a run file, the run has with the same bits; each one must be
 // there.
-std::size_t same_numbers(const impact_damper_run* run, const std::string& name, const nlohmann::json& value) {
+std::size_t same_numbers(const impact_damper_run* run, const std::string& name,
+                         const nlohmann::ordered_json& value) {
   std::size_t count = 0;
   if (value.is_object()) {
     for (const auto& item : value.items()) {
@@ -32,7 +40,7 @@ std::size_t same_numbers(const impact_damper_run* run, const std::string& name, 
     }
     return count;
   }
-  const nlohmann::json column = value.is_array() ? value : nlohmann::json::array({value});
+  const nlohmann::ordered_json column = value.is_array() ? value : nlohmann::ordered_json::array({value});
   CAPTURE(name);
   std::size_t rows = 0;
   const double* numbers = impact_damper_column(run, name.c_str(), &rows);
@@ -49,10 +57,34 @@ std::size_t same_numbers(const impact_damper_run* run, const std::string& name, 
   return rows;
 }
 
+// The names of all numbers and columns of a run file; behind that of a number that stands alone a '.'.
+std::vector<std::string> names_in(const nlohmann::ordered_json& object, const std::string& above) {
+  std::vector<std::string> names;
+  for (const auto& item : object.items()) {
+    const std::string name = above + item.key();
+    if (item.value().is_object()) {
+      for (std::string& each : names_in(item.value(), name + "/")) names.push_back(std::move(each));
+    } else {
+      names.push_back(item.value().is_array() ? name : name + ".");
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> names_of(const impact_damper_run* run) {
+  std::vector<std::string> names;
+  int stands_alone = -1;
+  while (const char* name = impact_damper_column_name(run, names.size(), &stands_alone))
+    names.push_back(std::string(name) + (stands_alone == 1 ? "." : ""));
+  return names;
+}
+
 std::string error_of(const char* scene, const char* engine, const impact_damper_window* history = nullptr,
                      std::size_t size = 500) {
   std::string text(size, '#');
-  CHECK(impact_damper_simulate(scene, engine, history, text.data(), size) == nullptr);
+  impact_damper_run* run = nullptr;
+  CHECK(impact_damper_simulate(scene, engine, history, &run, text.data(), size) == IMPACT_DAMPER_INVALID);
+  CHECK(run == nullptr);
   return text.substr(0, text.find('\0'));
 }
 
@@ -60,27 +92,73 @@ std::string error_of(const char* scene, const char* engine, const impact_damper_
 
 TEST_CASE("every number of a run file is a column for C, with the same bits") {
   const impact_damper_window window = {0, 50, 101};
-  const auto check = [&](const char* name, const Engine& engine) {
+  const auto check = [&](const char* scene, const char* name, const Engine& engine) {
+    CAPTURE(scene);
     CAPTURE(name);
-    impact_damper_run* run = impact_damper_simulate(forced, name, &window, nullptr, 0);
-    REQUIRE(run != nullptr);
+    impact_damper_run* run = nullptr;
+    REQUIRE(impact_damper_simulate(scene, name, &window, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
     Record record{.impacts = true, .contacts = true, .energy = true};
     record.history = {{0, 50, 101}};
-    auto file = nlohmann::json::parse(run_text(simulate(parse_scene("scene", forced), engine, record)));
+    const SceneFile read = parse_scene_file("scene", scene);
+    const std::string wanted = run_text(simulate(read.scene, engine, record), read.scales);
+    char* const text = impact_damper_run_text(run);
+    REQUIRE(text != nullptr);
+    CHECK(text == wanted);
+    std::free(text);
+
+    auto file = nlohmann::ordered_json::parse(wanted);
     CHECK(file["stop_reason"] == impact_damper_stop_reason(run));
     for (const char* key : {"schema", "scene", "engine", "stop_reason", "provenance"}) file.erase(key);
     CHECK(same_numbers(run, "", file) > 700);
+    CHECK(names_of(run) == names_in(file, ""));
     impact_damper_free(run);
   };
-  check("exact", Exact{});
-  check("restitution", Restitution{});
-  check("cem", Cem{});
+  check(forced, "exact", Exact{});
+  check(forced, "restitution", Restitution{});
+  check(forced, "cem", Cem{});
+  check(in_units, "exact", Exact{});
+}
+
+TEST_CASE("an engine's options are those of a run file, each with its default") {
+  const auto text_of_run = [](const char* engine) {
+    impact_damper_run* run = nullptr;
+    REQUIRE(impact_damper_simulate(forced, engine, nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
+    char* const text = impact_damper_run_text(run);
+    std::string copy = text;
+    std::free(text);
+    impact_damper_free(run);
+    return copy;
+  };
+  const auto wanted = [](const Engine& engine) {
+    return run_text(
+        simulate(parse_scene("scene", forced), engine, {.impacts = true, .contacts = true, .energy = true}));
+  };
+  CHECK(text_of_run(R"({"name": "exact"})") == wanted(Exact{}));
+  CHECK(text_of_run(R"({"name": "cem"})") == wanted(Cem{}));
+  Exact exact{.calibration = Calibration::two_body, .max_steps = 9000};
+  exact.budget = {.max_impacts = 70, .max_half_cycles = 11, .max_time = 40};
+  CHECK(text_of_run(R"({"name": "exact", "calibration": "two-body", "max_steps": 9000, "max_impacts": 70,
+                        "max_half_cycles": 11, "max_time": 40})") == wanted(exact));
+  Restitution restitution{.accumulation_tolerance = 1e-5};
+  CHECK(text_of_run(R"({"name": "restitution", "accumulation_tolerance": 1e-5})") == wanted(restitution));
+  Cem cem{
+      .time_step = 1e-3, .damper = Damper::lagged, .locate = true, .large_step = 0.03, .stuck_speed = 0.02};
+  cem.calibration = Calibration::two_body;
+  cem.unstable = true;
+  CHECK(text_of_run(
+            R"({"name": "cem", "time_step": 1e-3, "damper": "lagged", "locate": true, "large_step": 0.03,
+                        "stuck_speed": 0.02, "calibration": "two-body", "unstable": true})") == wanted(cem));
+
+  CHECK(error_of(forced, "{}") == "engine: /name: missing, a value must be given");
+  CHECK(error_of(forced, R"({"name": "exact", "time_step": 1})")
+            .starts_with("engine: /time_step: unknown key"));
+  CHECK(error_of(forced, R"({"name": "cem", "time_step": null})").starts_with("engine: /time_step: must be"));
 }
 
 TEST_CASE("what is not recorded is no column, and an empty column is one") {
-  impact_damper_run* run =
-      impact_damper_simulate(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})", "exact", nullptr, nullptr, 0);
-  REQUIRE(run != nullptr);
+  impact_damper_run* run = nullptr;
+  REQUIRE(impact_damper_simulate(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})", "exact", nullptr, &run,
+                                 nullptr, 0) == IMPACT_DAMPER_DONE);
   std::size_t rows = 7;
   CHECK(impact_damper_column(run, "history/x", &rows) == nullptr);
   CHECK(rows == 0);
@@ -91,6 +169,19 @@ TEST_CASE("what is not recorded is no column, and an empty column is one") {
   impact_damper_free(nullptr);
 }
 
+TEST_CASE("a numerical failure is told from what is not valid") {
+  // The only one that a caller can bring about: a rounding mode that breaks the promise of equal bits.
+  std::fesetround(FE_UPWARD);
+  impact_damper_run* run = nullptr;
+  std::string text(500, '#');
+  const impact_damper_status status =
+      impact_damper_simulate(forced, "exact", nullptr, &run, text.data(), text.size());
+  std::fesetround(FE_TONEAREST);
+  CHECK(status == IMPACT_DAMPER_NUMERICAL_FAILURE);
+  CHECK(run == nullptr);
+  CHECK(text.starts_with("results would not have the promised bits: the rounding mode"));
+}
+
 TEST_CASE("what cannot be run is told in words, cut to the buffer") {
   CHECK(
       error_of(R"({"mass_ratio": -1, "until_time": 5})", "exact").starts_with("scene: /mass_ratio: must be"));
@@ -99,7 +190,8 @@ TEST_CASE("what cannot be run is told in words, cut to the buffer") {
   CHECK(error_of(nullptr, "exact") == "scene, engine: must not be NULL");
   CHECK(error_of(forced, "exakt", nullptr, 8) == "engine:");
   CHECK(error_of(forced, "exakt", nullptr, 1).empty());
-  CHECK(impact_damper_simulate(forced, "exakt", nullptr, nullptr, 0) == nullptr);
+  impact_damper_run* run = nullptr;
+  CHECK(impact_damper_simulate(forced, "exakt", nullptr, &run, nullptr, 0) == IMPACT_DAMPER_INVALID);
   const impact_damper_window backwards = {5, 1, 10}, endless = {0, 1, SIZE_MAX};
   CHECK(error_of(forced, "exact", &backwards).starts_with("history: "));
   CHECK(error_of(forced, "exact", &endless).starts_with("history: must ask for at most 500000"));

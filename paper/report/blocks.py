@@ -77,6 +77,11 @@ def sections_of(values: Values) -> dict:
     return {each["id"]: each["section"] for each in [*values.claims.values(), *values.open]}
 
 
+def where(section: str) -> str:
+    """Where a claim is stated; a chapter of the mathematics stands in the page itself."""
+    return re.sub(r"docs/mathematics\.md, (?:chapter )?([\d.]+)", r'<a href="#mathematics-\1">mathematics, \1</a>', escape(section))
+
+
 def scenes_of(figure: dict) -> list:
     return list(dict.fromkeys(curve["scene"] for curve in figure.get("curves", [])))
 
@@ -144,6 +149,18 @@ class Form:
         self.equations = {}  # name -> number, in the order of the text
         self.set = {}        # words of a claim -> the same, set
 
+    def letter_of(self, file: Path) -> str:
+        """The next letter, for a picture that the text does not give one."""
+        letter = chr(ord(max(name for name in [*self.pictures, *self.values.figures] if name.isalpha())) + 1)
+        self.pictures[letter] = file
+        return letter
+
+    def equation_reference(self, name: str) -> str:
+        return f"[equation ({self.equations[name]})](#equation-{name})"
+
+    def equation(self, name: str, formula: str) -> str:
+        return self.numbered(f"equation-{name}", str(self.equations[name]), formula)
+
     def words(self, text: str) -> str:
         """The words of a claim, set: all claims' by one call of pandoc, a paragraph each."""
         if not self.set:
@@ -168,11 +185,11 @@ class Html(Form):
     def reference(self, number: str) -> str:
         return f"[Figure {number}](#figure-{number})"
 
-    def equation_reference(self, name: str) -> str:
-        return f"[equation ({self.equations[name]})](#equation-{name})"
+    def numbered(self, anchor: str, number: str, formula: str) -> str:
+        return f"::: {{#{anchor} .equation}}\n$${formula}$$\n\n[({number})]{{.number}}\n:::"
 
-    def equation(self, name: str, formula: str) -> str:
-        return f"::: {{#equation-{name} .equation}}\n$${formula}$$\n\n[({self.equations[name]})]{{.number}}\n:::"
+    def claim_reference(self, name: str) -> str:
+        return f"[`{name}`](#claim-{name})"
 
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
@@ -209,7 +226,7 @@ class Html(Form):
             for verdict, count in counts.items())
         rows = "".join(
             f'<tr id="claim-{name}"><th scope="row" data-head="name"><code>{name}</code></th>'
-            f'<td data-head="where">{escape(sections[name])}</td>'
+            f'<td data-head="where">{where(sections[name])}</td>'
             f'<td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
             f'<td data-head="ours" data-value="{self.values.verdicts.get(name, {}).get("ours")}">{self.words(ours)}</td>'
             f'<td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
@@ -233,11 +250,11 @@ class Latex(Form):
     def reference(self, number: str) -> str:
         return rf"`\hyperlink{{figure-{number}}}{{Figure~{number}}}`{{=latex}}"
 
-    def equation_reference(self, name: str) -> str:
-        return rf"`\hyperref[{name}]{{equation~(\ref*{{{name}}})}}`{{=latex}}"
+    def numbered(self, anchor: str, number: str, formula: str) -> str:
+        return raw("latex", rf"\begin{{equation}}\hypertarget{{{anchor}}}{{}}\tag{{{number}}}" + f"\n{formula}\n" + r"\end{equation}")
 
-    def equation(self, name: str, formula: str) -> str:
-        return raw("latex", rf"\begin{{equation}}\label{{{name}}}" + f"\n{formula}\n" + r"\end{equation}")
+    def claim_reference(self, name: str) -> str:
+        return f"`{name}`"
 
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]

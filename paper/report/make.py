@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the report: BUILD/paper/report.html and, unless --html, BUILD/paper/report.pdf, both from text.md.
+"""Makes the report: BUILD/paper/report.html and, unless --html, BUILD/paper/report.pdf, both from text.md, with
+docs/mathematics.md as the appendix.
 
     paper/report/make.py BUILD [--html] [--verdicts FILE] [--out FOLDER]
 
@@ -18,6 +19,8 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from blocks import Html, Latex, filled  # noqa: E402
+from formulas import tidied  # noqa: E402
+from mathematics import appendix  # noqa: E402
 from values import Mistake, Values  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
@@ -57,21 +60,34 @@ def put(text, file: Path):
         part.unlink(missing_ok=True)
 
 
+def whole(text: str, values: Values, form) -> str:
+    """Text and appendix in Markdown."""
+    return filled(text, values, form) + "\n\n" + appendix(values, form)
+
+
 def html_of(text: str, values: Values) -> str:
     parts = SOURCE / "paper/page"
     frame = (HERE / "frame.html").read_text(encoding="utf-8")
     for name in ("page.css", "figures.js", "claims.js"):  # a dollar sign is pandoc's
         frame = frame.replace(f"@{name}@", (parts / name).read_text(encoding="utf-8").replace("$", "$$"))
-    page = converted(filled(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
+    page = converted(whole(text, values, Html(values)), "html5", frame, values, "--mathml", "--section-divs",
                      "--shift-heading-level-by=1", "--toc-depth=3")
+    page = tidied(page)
+    page = re.sub(r"<table>\n<(?:colgroup|thead).*?</table>", r'<div class="wide">\g<0></div>', page, flags=re.S)
     page = re.sub(r'((?:section-number">|data-number="))0\.', r"\1", page)  # headings are shifted, numbers are not
     return re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
 
 
 def kept_together(latex: str) -> str:
-    """The tables of the text as boxes that no page's end divides; pandoc makes long tables, near which floats go astray."""
-    return re.sub(r"\\begin\{longtable\}\[\](.*?)\\endhead\n(.*?)\\end\{longtable\}",
-                  r"\\begin{center}\\begin{tabular}\1\2\\end{tabular}\\end{center}", latex, flags=re.S)
+    """The tables as boxes that no page's end divides; pandoc makes long tables, near which floats go astray. What has more
+    rows than half a page stays one. A formula belongs to the paragraph before it."""
+    def table(match) -> str:
+        if match[2].count("\\\\\n") > 25:
+            return match[0]
+        return rf"\begin{{center}}\begin{{tabular}}{match[1]}{match[2]}\end{{tabular}}\end{{center}}"
+
+    latex = re.sub(r"\\begin\{longtable\}\[\](.*?)\\endhead\n(.*?)\\end\{longtable\}", table, latex, flags=re.S)
+    return re.sub(r"\n\n(?=\\begin\{equation\})", r"\n", latex)
 
 
 def pdf_of(text: str, values: Values) -> bytes:
@@ -81,7 +97,7 @@ def pdf_of(text: str, values: Values) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         form = Latex(values)
-        (work / "report.tex").write_text(kept_together(converted(filled(text, values, form), "latex", frame, values)))
+        (work / "report.tex").write_text(kept_together(converted(whole(text, values, form), "latex", frame, values)))
         for svg in form.pictures.values():
             called(["rsvg-convert", "--format=pdf", f"--output={work / svg.stem}.pdf", str(svg)], env=environment)
         command = ["latexmk", "-pdf", "-silent", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]

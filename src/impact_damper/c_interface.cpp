@@ -1,79 +1,145 @@
 #include "impact_damper/c_interface.h"
 
 #include <algorithm>
-#include <functional>
+#include <cstring>
 #include <limits>
-#include <map>
+#include <list>
 #include <memory>
+#include <new>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-
-struct impact_damper_run {
-  impact_damper::StopReason stop_reason = impact_damper::StopReason::time;
-  std::map<std::string, std::vector<double>, std::less<>> columns;
-};
 
 namespace impact_damper {
 namespace {
 
-double as_double(double value) { return value; }
+struct Column {
+  std::string name;
+  const double* values;  // never null
+  std::size_t rows;
+  bool stands_alone;
+};
+
 double as_double(std::int64_t value) { return static_cast<double>(value); }
 double as_double(Wall wall) { return wall == Wall::left ? 0 : 1; }
 double as_double(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-class Columns {
- public:
-  explicit Columns(impact_damper_run& run) : run_(run) {}
+}  // namespace
+}  // namespace impact_damper
 
-  template <class Element>
-  void add(const char* name, const std::vector<Element>& values) {
-    std::vector<double> column;
-    column.reserve(std::max<std::size_t>(values.size(), 1));  // so that an empty column, too, has an address
-    for (const Element& value : values) column.push_back(as_double(value));
-    run_.columns.emplace(name, std::move(column));
-  }
-  void add(const char* name, double value) { add(name, std::vector<double>{value}); }
-
- private:
-  impact_damper_run& run_;
+struct impact_damper_run {
+  impact_damper::Run run;
+  std::optional<impact_damper::Scales> scales;
+  std::vector<impact_damper::Column> columns;  // of `run` and of `converted`, in the order of a run file
+  std::list<std::vector<double>>
+      converted;  // what `run` has no doubles of; a list, so that they stay in place
 };
 
-void add_energy(Columns& columns, const EnergyBalance& energy) {
-  columns.add("energy/initial/kinetic", energy.initial.kinetic);
-  columns.add("energy/initial/spring", energy.initial.spring);
-  columns.add("energy/initial/wall", energy.initial.wall);
-  columns.add("energy/initial/total", energy.initial.total());
-  columns.add("energy/initial/paper", energy.initial.paper);
-  columns.add("energy/final/kinetic", energy.final.kinetic);
-  columns.add("energy/final/spring", energy.final.spring);
-  columns.add("energy/final/wall", energy.final.wall);
-  columns.add("energy/final/total", energy.final.total());
-  columns.add("energy/final/paper", energy.final.paper);
-  columns.add("energy/impact_loss", energy.impact_loss);
-  columns.add("energy/impact_loss_total",
-              std::accumulate(energy.impact_loss.begin(), energy.impact_loss.end(), 0.0));
-  columns.add("energy/contact_loss", energy.contact_loss);
-  columns.add("energy/bounce_downs", as_double(energy.bounce_downs));
-  columns.add("energy/bounce_down_loss", energy.bounce_down_loss);
-  columns.add("energy/viscous_work", energy.viscous_work);
-  columns.add("energy/forcing_work", energy.forcing_work);
-  columns.add("energy/residual", energy.residual);
-}
+namespace impact_damper {
+namespace {
 
-Engine engine_of(std::string_view name) {
+// Lists columns of what is in `all`, which must stay where it is.
+class Columns {
+ public:
+  explicit Columns(impact_damper_run& all) : all_(all) {}
+
+  void add_all() {
+    const Run& run = all_.run;
+    add("end_time", run.end_time);
+    if (all_.scales) add(si_units_of(*all_.scales));
+    if (run.half_cycles) add(*run.half_cycles);
+    if (run.impacts) add(*run.impacts);
+    if (run.contacts) add(*run.contacts);
+    if (run.energy) add(*run.energy);
+    if (run.history) add(*run.history);
+  }
+
+ private:
+  void add(std::string name, const std::vector<double>& values, bool stands_alone = false) {
+    static constexpr double none = 0;  // so that an empty column, too, has an address
+    all_.columns.push_back(
+        {std::move(name), values.empty() ? &none : values.data(), values.size(), stands_alone});
+  }
+  template <class Element>
+  void add(std::string name, const std::vector<Element>& values) {
+    std::vector<double>& column = all_.converted.emplace_back();
+    column.reserve(values.size());
+    for (const Element& value : values) column.push_back(as_double(value));
+    add(std::move(name), column);
+  }
+  void add(std::string name, double value) {
+    add(std::move(name), all_.converted.emplace_back(1, value), true);
+  }
+
+  void add(const SiUnits& units) {
+    for (const SiUnit& unit : si_units) add("units/" + std::string(unit.name), units.*unit.member);
+  }
+  void add(const HalfCycles& half_cycles) {
+    add("half_cycles/zero_crossing", half_cycles.zero_crossing);
+    add("half_cycles/peak_time", half_cycles.peak_time);
+    add("half_cycles/amplitude", half_cycles.amplitude);
+    add("half_cycles/impacts", half_cycles.impacts);
+  }
+  void add(const Impacts& impacts) {
+    add("impacts/time", impacts.time);
+    add("impacts/wall", impacts.wall);
+    add("impacts/relative_velocity", impacts.relative_velocity);
+    add("impacts/phase_deg", impacts.phase_deg);
+    add("impacts/amplitude", impacts.amplitude);
+    add("impacts/displacement", impacts.displacement);
+  }
+  void add(const Contacts& contacts) {
+    add("contacts/begin", contacts.begin);
+    add("contacts/end", contacts.end);
+    add("contacts/wall", contacts.wall);
+  }
+  void add(const std::string& name, const Energy& energy) {
+    add(name + "/kinetic", energy.kinetic);
+    add(name + "/spring", energy.spring);
+    add(name + "/wall", energy.wall);
+    add(name + "/total", energy.total());
+    add(name + "/paper", energy.paper);
+  }
+  void add(const EnergyBalance& energy) {
+    add("energy/initial", energy.initial);
+    add("energy/final", energy.final);
+    add("energy/impact_loss", energy.impact_loss);
+    add("energy/impact_loss_total",
+        std::accumulate(energy.impact_loss.begin(), energy.impact_loss.end(), 0.0));
+    add("energy/contact_loss", energy.contact_loss);
+    add("energy/bounce_downs", as_double(energy.bounce_downs));
+    add("energy/bounce_down_loss", energy.bounce_down_loss);
+    add("energy/viscous_work", energy.viscous_work);
+    add("energy/forcing_work", energy.forcing_work);
+    add("energy/residual", energy.residual);
+  }
+  void add(const History& history) {
+    add("history/time", history.time);
+    add("history/x", history.x);
+    add("history/v", history.v);
+    add("history/y", history.y);
+    add("history/w", history.w);
+  }
+
+  impact_damper_run& all_;
+};
+
+Engine engine_of(const std::string& name) {
+  if (name.starts_with('{')) return parse_engine("engine", name);
   if (name == Exact::name) return Exact{};
   if (name == Restitution::name) return Restitution{};
   if (name == Cem::name) return Cem{};
-  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + std::string(name));
+  throw std::invalid_argument("engine: must be exact, restitution or cem, got " + name);
 }
 
 std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
@@ -85,62 +151,67 @@ std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
     const auto count = std::min<std::size_t>(history->count, most_samples + 1);  // more are rejected, too
     record.history = {{history->begin, history->end, static_cast<std::int64_t>(count)}};
   }
-  const Run run = simulate(parse_scene("scene", scene), engine_of(engine), record);
-
+  const SceneFile file = parse_scene_file("scene", scene);
   auto result = std::make_unique<impact_damper_run>();
-  result->stop_reason = run.stop_reason;
-  Columns columns(*result);
-  columns.add("end_time", run.end_time);
-  columns.add("half_cycles/zero_crossing", run.half_cycles->zero_crossing);
-  columns.add("half_cycles/peak_time", run.half_cycles->peak_time);
-  columns.add("half_cycles/amplitude", run.half_cycles->amplitude);
-  columns.add("half_cycles/impacts", run.half_cycles->impacts);
-  columns.add("impacts/time", run.impacts->time);
-  columns.add("impacts/wall", run.impacts->wall);
-  columns.add("impacts/relative_velocity", run.impacts->relative_velocity);
-  columns.add("impacts/phase_deg", run.impacts->phase_deg);
-  columns.add("impacts/amplitude", run.impacts->amplitude);
-  columns.add("impacts/displacement", run.impacts->displacement);
-  columns.add("contacts/begin", run.contacts->begin);
-  columns.add("contacts/end", run.contacts->end);
-  columns.add("contacts/wall", run.contacts->wall);
-  add_energy(columns, *run.energy);
-  if (run.history) {
-    columns.add("history/time", run.history->time);
-    columns.add("history/x", run.history->x);
-    columns.add("history/v", run.history->v);
-    columns.add("history/y", run.history->y);
-    columns.add("history/w", run.history->w);
-  }
+  result->run = simulate(file.scene, engine_of(engine), record);
+  result->scales = file.scales;
+  Columns(*result).add_all();
   return result;
+}
+
+void tell(const char* problem, char* error, std::size_t error_size) {
+  if (error_size == 0) return;
+  const std::string_view text = std::string_view(problem).substr(0, error_size - 1);
+  *std::copy(text.begin(), text.end(), error) = '\0';
 }
 
 }  // namespace
 }  // namespace impact_damper
 
-impact_damper_run* impact_damper_simulate(const char* scene, const char* engine,
-                                          const impact_damper_window* history, char* error,
-                                          size_t error_size) {
-  // No exception may leave a function that C calls.
+// No exception may leave a function that C calls.
+
+impact_damper_status impact_damper_simulate(const char* scene, const char* engine,
+                                            const impact_damper_window* history, impact_damper_run** run,
+                                            char* error, size_t error_size) {
+  *run = nullptr;
   try {
-    return impact_damper::run_of(scene, engine, history).release();
+    *run = impact_damper::run_of(scene, engine, history).release();
+    return IMPACT_DAMPER_DONE;
+  } catch (const impact_damper::NumericalError& problem) {
+    impact_damper::tell(problem.what(), error, error_size);
+    return IMPACT_DAMPER_NUMERICAL_FAILURE;
+  } catch (const std::bad_alloc&) {
+    impact_damper::tell("there is not enough memory for the run", error, error_size);
+    return IMPACT_DAMPER_OUT_OF_MEMORY;
   } catch (const std::exception& problem) {
-    if (error_size > 0) {
-      const std::string_view text = std::string_view(problem.what()).substr(0, error_size - 1);
-      *std::copy(text.begin(), text.end(), error) = '\0';
-    }
-    return nullptr;
+    impact_damper::tell(problem.what(), error, error_size);
+    return IMPACT_DAMPER_INVALID;
   }
 }
 
 const double* impact_damper_column(const impact_damper_run* run, const char* name, size_t* rows) {
-  const auto found = run->columns.find(std::string_view(name));
-  *rows = found == run->columns.end() ? 0 : found->second.size();
-  return found == run->columns.end() ? nullptr : found->second.data();
+  const auto found = std::ranges::find(run->columns, std::string_view(name), &impact_damper::Column::name);
+  const bool exists = found != run->columns.end();
+  *rows = exists ? found->rows : 0;
+  return exists ? found->values : nullptr;
+}
+
+const char* impact_damper_column_name(const impact_damper_run* run, size_t index, int* stands_alone) {
+  if (index >= run->columns.size()) return nullptr;
+  *stands_alone = run->columns[index].stands_alone ? 1 : 0;
+  return run->columns[index].name.c_str();
 }
 
 const char* impact_damper_stop_reason(const impact_damper_run* run) {
-  return impact_damper::name_of(run->stop_reason).data();  // of a literal, which '\0' ends
+  return impact_damper::name_of(run->run.stop_reason).data();  // of a literal, which '\0' ends
+}
+
+char* impact_damper_run_text(const impact_damper_run* run) {
+  try {
+    return strdup(impact_damper::run_text(run->run, run->scales).c_str());
+  } catch (const std::exception&) {
+    return nullptr;
+  }
 }
 
 void impact_damper_free(impact_damper_run* run) { delete run; }

@@ -82,6 +82,12 @@ class Report(unittest.TestCase):
         self.assertEqual(lost, [])
         self.assertGreater(self.page.does('document.querySelectorAll("a[href]").length'), 30)
 
+    def test_the_contents_list_the_chapters_of_the_appendix(self):
+        for _ in self.each_width():
+            seen = self.page.does("""[...document.querySelectorAll('nav a[href^="#mathematics-"]')]
+              .filter(a => a.getBoundingClientRect().height > 0).map(a => a.textContent)""")
+            self.assertEqual([int(each.split(".")[0]) for each in seen], list(range(1, 15)))
+
     def test_every_figure_offers_its_drawing_and_its_table(self):
         self.page.open(PAGE, WIDTHS["desk"])
         for number in FIGURES:
@@ -250,7 +256,7 @@ class Report(unittest.TestCase):
                     colour = self.page.does(f'getComputedStyle(document.querySelector("main {what}")).color')
                     self.assertGreater(contrast(colour, back), 4.5, what)
                 if SCREENSHOTS:
-                    for section in ("#figures", "#theory", ".claims"):
+                    for section in ("#figures", "#theory", ".claims", "#mathematics"):
                         self.page.screenshot(SCREENSHOTS / f"{scheme}-{section[1:]}.png", section)
 
     def test_it_prints(self):

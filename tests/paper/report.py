@@ -5,6 +5,7 @@
 
 Exit codes: 1 a fault, 77 pandoc is not here.
 """
+import argparse
 import json
 import re
 import shutil
@@ -15,6 +16,7 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 TEXT = SOURCE / "paper/report/text.md"
+MATHEMATICS = SOURCE / "docs/mathematics.md"
 BUILD, VERDICTS, FOLDER = None, None, None
 
 
@@ -24,6 +26,27 @@ def made(name: str, *options: str, verdicts: Path = None) -> Path:
     subprocess.run([SOURCE / "paper/report/make.py", BUILD, "--verdicts", verdicts or VERDICTS, "--out", out, *options],
                    check=True)
     return out
+
+
+def copied() -> Path:
+    """A copy of what the report is made from."""
+    copy = FOLDER / "source"
+    shutil.rmtree(copy, ignore_errors=True)
+    for part in ("paper", "data", "docs", "figures", "bench/results", "tests/stress/results"):
+        shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference", "report.html"))
+    shutil.copy(SOURCE / "CMakeLists.txt", copy)
+    return copy
+
+
+def rejected(copy: Path) -> str:
+    """What is said of a report that cannot be made, of which nothing may be written."""
+    out = FOLDER / "rejected"
+    shutil.rmtree(out, ignore_errors=True)
+    done = subprocess.run([copy / "paper/report/make.py", BUILD, "--html", "--verdicts", VERDICTS, "--out", out],
+                          capture_output=True, text=True)
+    if done.returncode != 1 or list(out.iterdir()):
+        raise AssertionError(f"exit code {done.returncode}, {list(out.iterdir())}")
+    return done.stderr
 
 
 def typed(text: str) -> list:
@@ -128,20 +151,10 @@ class TheReport(unittest.TestCase):
             self.assertGreater(feet[-2], 0.6 * height, f"page {page}: its lower third is empty")
 
     def test_an_unknown_name_is_rejected_and_nothing_is_written(self):
-        copy = FOLDER / "source"
-        shutil.rmtree(copy, ignore_errors=True)
-        for part in ("paper", "data", "figures", "bench/results"):
-            shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference"))
-        shutil.copy(SOURCE / "CMakeLists.txt", copy)
+        copy = copied()
         text = copy / "paper/report/text.md"
         text.write_text(text.read_text(encoding="utf-8").replace("{{product-mid-range}}", "{{product-midrange}}"))
-        out = FOLDER / "rejected"
-        shutil.rmtree(out, ignore_errors=True)
-        done = subprocess.run([copy / "paper/report/make.py", BUILD, "--html", "--verdicts", VERDICTS, "--out", out],
-                              capture_output=True, text=True)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("no value is called product-midrange, did you mean product-mid-range?", done.stderr)
-        self.assertEqual(list(out.iterdir()), [])
+        self.assertIn("no value is called product-midrange, did you mean product-mid-range?", rejected(copy))
 
     def test_equal_results_make_equal_bytes(self):
         whole = [] if shutil.which("latexmk") else ["--html"]
@@ -150,6 +163,81 @@ class TheReport(unittest.TestCase):
             self.assertEqual((first / file).read_bytes(), (second / file).read_bytes(), file)
         if whole:
             print("(no LaTeX here: the PDF is not compared)")
+
+
+class TheAppendix(unittest.TestCase):
+    """docs/mathematics.md in the report."""
+
+    def test_it_is_there_whole(self):
+        source = MATHEMATICS.read_text(encoding="utf-8")
+        page = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
+        part = page[page.index('<section id="mathematics"'):page.index("</main>")]
+        formula = r"<math[ >].*?</math>"
+        shown = dict(re.findall(rf'<div id="(M[\d.]+)"\s+class="equation">\s*<p>({formula})</p>\s*<p><span\s+class="number">\(\1\)', part, re.S))
+        self.assertEqual(list(shown), re.findall(r"\\tag\{(.*?)\}", source))
+        for number, each in shown.items():
+            self.assertGreater(len(re.sub("<.*?>", "", each)), 5, number)
+        inline = re.sub(r"\$\$.*?\$\$", "", source, flags=re.S).count("$") // 2
+        self.assertEqual(len(re.findall(formula, part, re.S)), len(shown) + inline)
+        for number in re.findall(r"\*\*Lemma (L\d)", source):
+            self.assertRegex(part, rf'<span id="{number}"></span><strong>Lemma\s+{number}')
+        for title in re.findall("^##+ (.*)$", source, re.M):
+            self.assertIn(f">{title}</h".replace("'", "’"), part.replace("\n", " "))
+        words = re.sub("<.*?>", "", re.sub(rf"{formula}|<svg.*?</svg>", "", part, flags=re.S), flags=re.S)
+        self.assertEqual(re.findall(r"\$|\\\w+|\{#|:::|\*\*|\]\(", words), [], "what stands raw in the page")
+        self.assertNotIn("<annotation", page)
+
+    def test_every_number_in_it_is_a_link_that_lands(self):
+        page = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
+        part = page[page.index('<section id="mathematics"'):page.index("</main>")]
+        part = re.sub(r"<math[ >].*?</math>|<svg.*?</svg>|<span\s+class=\"number\">.*?</span>|<strong>Lemma.*?</strong>", "", part, flags=re.S)
+        anchors = set(re.findall(r'\bid="(.*?)"', page))
+        self.assertEqual(set(re.findall('href="#(.*?)"', page)) - anchors, set())
+        named = re.sub(r"\$\$.*?\$\$|\$[^$]*\$", "", MATHEMATICS.read_text(encoding="utf-8"), flags=re.S)
+        self.assertEqual(re.findall(r'<a\s+href="#(M[\d.]+)">\1</a>', part), re.findall(r"\bM\d+\.\d+", named))
+        words = re.sub("<.*?>", "", re.sub(r"<a\s.*?</a>", "", part, flags=re.S), flags=re.S)
+        self.assertEqual(re.findall(r"\bM\d+\.\d+|\bL\d\b|\[\d\]|\bchapters? \d|\bFigure \d", words), [])
+
+    def test_what_leads_nowhere_is_rejected(self):
+        sys.path.insert(0, str(SOURCE / "paper/report"))
+        from blocks import Html
+        from mathematics import appendix
+        from values import Mistake
+        copy, text = copied(), MATHEMATICS.read_text(encoding="utf-8")
+        stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))["claims"]
+        values = argparse.Namespace(source=copy, claims={each["id"]: each for each in stated}, figures={"B": {}, "12": {}})
+        self.assertIn("::: {#M2.1 .equation}", appendix(values, Html(values)))
+        for old, new, said in ((r" \tag{M4.1}", "", "has no number"), (r"\tag{M2.2}", r"\tag{M2.1}", "M2.1 stands twice"),
+                               ("by (M3.2)", "by (M3.9)", "M3.9 leads nowhere"), ("Lemma L1.", "Lemma L7.", "L7 leads nowhere"),
+                               ("[3]", "[9]", r"[9] leads nowhere"), ("chapter 5.3", "chapter 5.9", "chapter 5.9 leads nowhere"),
+                               ("Figure 12", "Figure 77", "no figure is called 77"), ("`collapse-carried`", "`collapse`", "no claim is called"),
+                               ("(cascade.svg)", "(casacde.svg)", "there is no file casacde.svg"),
+                               ("results/results.md", "results/result.md", "there is no file")):
+            self.assertIn(old, text)
+            (copy / "docs/mathematics.md").write_text(text.replace(old, new, 1), encoding="utf-8")
+            with self.assertRaises(Mistake, msg=old) as caught:
+                appendix(values, Html(values))
+            self.assertIn(said, str(caught.exception))
+
+    def test_formulas_have_the_spaces_of_tex(self):
+        sys.path.insert(0, str(SOURCE / "paper/report"))
+        from formulas import tidied
+        text = r"($f(t) = -\sin(t)$), $a \sin t$ and $\left(\frac ab\right) - b$."
+        page = tidied(subprocess.run(["pandoc", "--from=markdown", "--to=html5", "--mathml"], input=text, capture_output=True,
+                                     text=True, check=True).stdout)
+        first, second, third = re.findall("<math>.*?</math>", page, re.S)
+        self.assertEqual(first.count('stretchy="false"'), 4)
+        self.assertIn('<mo>=</mo><mo form="prefix">−</mo><mo lspace="0" rspace="0">sin</mo>', first)
+        self.assertIn('<mo lspace="0.167em" rspace="0.167em">sin</mo>', second)
+        self.assertEqual(third.count('stretchy="true"'), 2)
+        self.assertIn("<mo>−</mo>", third)
+        self.assertRegex(page, r'(?s)<span class="line">\(<math>.*</math>\),</span>.*</math>\.</span>')
+
+    def test_a_formula_that_cannot_be_set_is_rejected(self):
+        copy, text = copied(), MATHEMATICS.read_text(encoding="utf-8")
+        self.assertIn(r"$\nu = m/M$", text)
+        (copy / "docs/mathematics.md").write_text(text.replace(r"$\nu = m/M$", r"$\nu = \frac{m$", 1), encoding="utf-8")
+        self.assertIn("Could not convert TeX math", rejected(copy))
 
 
 if __name__ == "__main__":

@@ -48,4 +48,8 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 Run read_run(const std::filesystem::path& file);
 Run parse_run(const std::string& name, const std::string& text);
 
+// An engine out of the object "engine" of a run file alone, in which all but its name may be missing and then
+// has its default. Throws InputError as above.
+Engine parse_engine(const std::string& name, const std::string& text);
+
 }  // namespace impact_damper

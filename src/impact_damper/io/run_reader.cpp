@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
+#include <optional>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
@@ -50,36 +52,56 @@ class Columns {
   std::optional<std::size_t> length_;
 };
 
-Calibration read_calibration(ObjectReader& object) {
-  Calibration calibration{};
-  object.required("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
-  return calibration;
+// An engine's options. A run file has all of them; elsewhere one that is missing keeps its default.
+class EngineOptions {
+ public:
+  EngineOptions(ObjectReader& object, bool may_be_missing)
+      : object_(object), may_be_missing_(may_be_missing) {}
+
+  bool is_wanted(std::string_view key) { return !may_be_missing_ || object_.has(key); }
+
+  template <typename Target, typename... Allowed>
+  void read(std::string_view key, Target& target, Allowed... allowed) {
+    if (is_wanted(key)) object_.required(key, target, allowed...);
+  }
+  template <typename Enum>
+  void read(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
+    if (is_wanted(key)) object_.required(key, target, allowed);
+  }
+  void read(std::string_view key, std::optional<double>& target, NumberRange range) {
+    if (double value = 0; is_wanted(key) && object_.required(key, value, range)) target = value;
+  }
+  // One that also a run file has only where it is set.
+  void read_if_set(std::string_view key, std::optional<double>& target, NumberRange range) {
+    if (double value = 0; object_.has(key) && object_.optional(key, value, range)) target = value;
+  }
+
+ private:
+  ObjectReader& object_;
+  bool may_be_missing_;
+};
+
+void read_calibration(EngineOptions& options, Calibration& calibration) {
+  options.read("calibration", calibration, {Calibration::fixed_wall, Calibration::two_body});
 }
 
-Exact read_options(ObjectReader& object, Exact engine) {
-  engine.calibration = read_calibration(object);
-  return engine;
+void read_options(EngineOptions& options, Exact& engine) { read_calibration(options, engine.calibration); }
+
+void read_options(EngineOptions& options, Restitution& engine) {
+  options.read("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
 }
 
-Restitution read_options(ObjectReader& object, Restitution engine) {
-  object.required("accumulation_tolerance", engine.accumulation_tolerance, NumberRange{0, 1e-3, false});
-  return engine;
+void read_options(EngineOptions& options, Cem& engine) {
+  options.read("time_step", engine.time_step, above(0));
+  options.read("damper", engine.damper, {Damper::centred, Damper::lagged});
+  options.read("locate", engine.locate);
+  options.read_if_set("large_step", engine.large_step, above(0));
+  options.read_if_set("stuck_speed", engine.stuck_speed, above(0));
+  options.read("unstable", engine.unstable);
+  read_calibration(options, engine.calibration);
 }
 
-Cem read_options(ObjectReader& object, Cem engine) {
-  if (double step = 0; object.required("time_step", step, above(0))) engine.time_step = step;
-  object.required("damper", engine.damper, {Damper::centred, Damper::lagged});
-  object.required("locate", engine.locate);
-  if (double step = 0; object.has("large_step") && object.optional("large_step", step, above(0)))
-    engine.large_step = step;
-  if (double speed = 0; object.has("stuck_speed") && object.optional("stuck_speed", speed, above(0)))
-    engine.stuck_speed = speed;
-  object.required("unstable", engine.unstable);
-  engine.calibration = read_calibration(object);
-  return engine;
-}
-
-Engine read_engine(ObjectReader& object) {
+Engine read_engine(ObjectReader& object, bool options_may_be_missing = false) {
   constexpr std::array<std::string_view, 3> names{Exact::name, Restitution::name, Cem::name};
   if (!object.require("name")) return {};
   const std::optional<std::size_t> name = object.word("name", {names.begin(), names.end()});
@@ -88,17 +110,17 @@ Engine read_engine(ObjectReader& object) {
     return {};
   }
   Engine engine = *name == 0 ? Engine(Exact{}) : *name == 1 ? Engine(Restitution{}) : Engine(Cem{});
+  EngineOptions options(object, options_may_be_missing);
   std::visit(
-      [&](auto& options) {
-        options = read_options(object, options);
+      [&](auto& chosen) {
+        read_options(options, chosen);
         // Files of before it was an option of all engines have none: the default was what they were made
         // with.
         if (object.has("max_steps") || std::holds_alternative<Cem>(engine))
-          object.required("max_steps", options.max_steps, at_least(1));
-        object.required("max_impacts", options.budget.max_impacts, at_least(0));
-        object.required("max_half_cycles", options.budget.max_half_cycles, at_least(1));
-        if (double time = 0; object.required("max_time", time, NumberRange{0, 1e12, false}))
-          options.budget.max_time = time;
+          options.read("max_steps", chosen.max_steps, at_least(1));
+        options.read("max_impacts", chosen.budget.max_impacts, at_least(0));
+        options.read("max_half_cycles", chosen.budget.max_half_cycles, at_least(1));
+        options.read("max_time", chosen.budget.max_time, NumberRange{0, 1e12, false});
       },
       engine);
   return engine;
@@ -289,6 +311,14 @@ Run read_run(const std::filesystem::path& file) {
 
 Run parse_run(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text), is_sealed(text));
+}
+
+Engine parse_engine(const std::string& name, const std::string& text) {
+  JsonDocument document = JsonDocument::parse(name, text);
+  ObjectReader object = document.root();
+  Engine engine = read_engine(object, true);
+  document.finish();
+  return engine;
 }
 
 }  // namespace impact_damper
