@@ -171,7 +171,10 @@ TEST_CASE("a predicted impact's departure from the straight line is its series a
     Derivatives<double, 10> u{0, w};
     for (std::size_t k = 2; k < u.size(); ++k) u[k] = -x[k];
     const double rate = oscillator.rate();
-    const auto found = predict_impact<double>(u, oscillator.bound(x[4], x[5]), rate, 2 / rate);
+    const double fourth = oscillator.bound(x[4], x[5]);
+    const auto found = predict_impact<double>(
+        u, departure_of(u), 2 / rate, [&](double u1, double t) { return omits_nothing(u1, fourth, rate, t); },
+        [&](double t, double size) { return !(rate * t > 0.05 && size * 32 < t); });
     if (!found.exact) continue;
     ++exact;
     long double departure = 0, its_velocity = 0, size = 0, size1 = 0, power = found.time;  // power: t^k/k!
@@ -232,18 +235,19 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
 
 TEST_CASE("a contact ends when the certified search says, in the state that its parts give") {
   reference::Random random(13);
-  Search<double> search{infinite};
-  int left = 0, short_contacts = 0, lasting = 0;
-  for (int n = 0; n < 40000; ++n) {
-    const Scene scene = scene_of(random, false);
+  int left = 0, short_contacts = 0, lasting = 0, forced = 0;
+  for (int n = 0; n < 60000; ++n) {
+    const Scene scene = scene_of(random, n >= 40000);
     const System<double> system(scene);
+    Search<double> search{bounded_span(system)};
     const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
     const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
     const double inward = wall == Wall::left ? -1 : 1;
     const double w = random.log_uniform(1e-6, 30) * inward;
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30),
                               wall == Wall::left ? 0.0 : 1.0, w};
-    const Contact<double> contact(walls, 0.0, start, wall);
+    const double begin = scene.force_amplitude == 0 ? 0 : random.uniform(0, 1000);
+    const Contact<double> contact(walls, begin, start, wall);
     const auto found = contact.leave(100, search), expected = contact.search_leave(100, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
@@ -252,6 +256,11 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     const double swing = walls.fast.half_period(), time = expected->time;
     short_contacts += time < 1.5 * swing;
     lasting += time > 4 * swing;
+    if (walls.short_contact && scene.force_amplitude != 0) {
+      const auto phase = walls.forcing.phase(begin);
+      const double f0 = scene.force_amplitude;
+      forced += bool(walls.short_contact({start.x, start.v, start.w, f0 * phase.sin, f0 * phase.cos}));
+    }
     // What rounding makes of q, by what it is the sum of, over y' at the end.
     const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
     const double size = std::abs(slow.q) + std::abs(fast.q) + std::abs(slow.w) * time * epsilon +
@@ -259,7 +268,8 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
                         std::abs(w) / std::sqrt(walls.stiffness);
     const double w1 = std::abs(expected->state.w);
     CHECK(std::abs(found->time - time) <= 16 * epsilon * time + 64 * epsilon * size / w1);
-    const double rate = walls.fast.rate(), speed = std::abs(start.x) + std::abs(start.v) + std::abs(w);
+    const double rate = walls.fast.rate(), speed = std::abs(start.x) + std::abs(start.v) + std::abs(w) +
+                                                   scene.force_amplitude * std::min(time, 1.0);
     const double off = std::abs(found->time - time);
     CHECK(std::abs(found->state.x - expected->state.x) <= 128 * epsilon * speed + speed * off);
     CHECK(std::abs(found->state.v - expected->state.v) <=
@@ -270,6 +280,50 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
   CHECK(left > 20000);
   CHECK(short_contacts > 5000);
   CHECK(lasting > 1000);
+  CHECK(forced > 5000);
+}
+
+TEST_CASE("under a force x falls through zero, and turns, when the certified search says") {
+  reference::Random random(23);
+  int found_both = 0;
+  for (int n = 0; n < 40000; ++n) {
+    Scene scene = scene_of(random, true);
+    if (random.chance(0.2)) scene.damping_ratio = random.uniform(0.9, 1.1);
+    const System<double> system(scene);
+    const double begin = random.uniform(0, 1000), until = random.uniform(0.1, 3);
+    // Also where x begins at zero, or turns.
+    const double x0 = random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30),
+                 v0 = random.chance(0.1) ? 0 : signed_log(random, 1e-3, 30);
+    const ForcedMotion<double> motion(system.free, system.forcing, begin, x0, v0);
+    Search<double> search{bounded_span(system)};
+    for (std::size_t order = 0; order < 3; ++order) {
+      const auto enclose = [&](double sign, double t) {
+        return motion.enclosure_at(order, sign, t, search.span);
+      };
+      // The first fall, and then from there on the next one of the opposite sign.
+      double from = 0, sign = enclose(1, 0).whole.g < 0 ? -1 : 1;
+      for (int i = 0; i < 2; ++i) {
+        const auto found = motion.falls(order, sign, from, until, search);
+        const auto expected =
+            isolate_fall<double>([&](double t) { return enclose(sign, t); }, from, until, search, 1.0);
+        CAPTURE(n);
+        CAPTURE(order);
+        CAPTURE(i);
+        CHECK(found.has_value() == expected.has_value());
+        if (!found || !expected) break;
+        ++found_both;
+        const double slope = std::abs(enclose(sign, *expected).whole.g1);
+        // The phase of the force is rounded where the motion begins, and where the search looks.
+        const double phase = scene.force_frequency * (begin + until), damped = 1 + 2 * scene.damping_ratio;
+        const double size = std::abs(x0) + std::abs(v0) + scene.force_amplitude * (4 + phase);
+        CHECK(std::abs(*found - *expected) * slope <=
+              16 * epsilon * (damped * damped * size + slope * *expected));
+        from = *found;
+        sign = -sign;
+      }
+    }
+  }
+  CHECK(found_both > 20000);
 }
 
 TEST_CASE("a contact with a wall softer than the spring ends when the mass first comes back") {
@@ -289,7 +343,7 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
-    short_contacts += walls.short_contact && walls.short_contact(start.x, start.v, start.w);
+    short_contacts += walls.short_contact && walls.short_contact({start.x, start.v, start.w});
     const auto found = contact.leave(1000, search), expected = contact.search_leave(1000, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());
@@ -405,8 +459,8 @@ TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
-    const double second = walls.short_contact.second_of_x(start.x, start.v, start.w);
-    const double third = walls.short_contact.third_of_x(start.x, start.v, start.w);
+    const double second = walls.short_contact.second_of_x({start.x, start.v, start.w});
+    const double third = walls.short_contact.third_of_x({start.x, start.v, start.w});
     for (int i = 0; i <= 64; ++i) {
       const auto now = contact.derivative_of_x(1, 1, i / 32.0 * walls.fast.half_period(), infinite).whole;
       second_reached = std::max(second_reached, std::abs(now.g1) / second);

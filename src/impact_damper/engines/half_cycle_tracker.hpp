@@ -73,7 +73,7 @@ void find_peaks(const Motion& motion, Real from, const Real& until, bool rising,
     const auto turn = motion.falls(1, rising ? side : Real(-side), from, until, search);
     if (!turn) return;
     if (rising) half_cycles.peak(motion.height(*turn), now + *turn);
-    no_turn_before = *turn + motion.one_zero_within(*turn);
+    no_turn_before = *turn + motion.one_turn_within(*turn);
     if (until < no_turn_before) return;
     rising = !rising;
     from = *turn;

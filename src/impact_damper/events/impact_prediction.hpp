@@ -49,6 +49,8 @@ template <class Real>
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
 
+inline constexpr double two_to_the_25 = 33554432;
+
 // Where the prediction begins: by the parabola through the beginning of u, which may begin with its third
 // derivative alone.
 template <class Real>
@@ -56,8 +58,8 @@ struct FirstGuess {
   Real time;
   bool across;  // at the other wall
 };
-template <class Real>
-[[gnu::always_inline]] inline FirstGuess<Real> guess_by_parabola(const Derivatives<Real, 10>& u,
+template <class Real, std::size_t N>
+[[gnu::always_inline]] inline FirstGuess<Real> guess_by_parabola(const Derivatives<Real, N>& u,
                                                                  const Real& most) {
   const bool from_rest = u[1] == 0 && u[2] == 0;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
@@ -71,9 +73,10 @@ template <class Real>
   return {t < most ? t : from_rest ? Real(most * Real(0.75)) : most, arrives == rising};
 }
 
-// Whether the terms left out of the series are below rounding at t, where u' is u1: in the time, for which
-// |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion of x,
-// which may be far smaller.
+// Whether the terms left out of a series of ten are below rounding at t, where u' is u1: in the time, for
+// which |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion
+// of x, which may be far smaller. `fourth`: bound on |u''''|; each further derivative is at most `rate` times
+// the one before.
 template <class Real>
 [[gnu::always_inline]] inline bool omits_nothing(const Real& u1, const Real& fourth, const Real& rate,
                                                  const Real& t) {
@@ -85,9 +88,10 @@ template <class Real>
 
 // Predicts when a mass that has left one wall of a gap of 1 meets either, and `most` at the latest: by the
 // parabola, then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall it
-// left. `fourth`: bound on |u''''|; each further derivative is at most `rate` times the one before. `exact`:
-// the terms left out of the series are below rounding, and `gained` is then by how much u and u' differ from
-// the straight line u + u' t, with digits that a fast mass's own u and u' do not have.
+// left, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t): whether that
+// series is enough at t; `exact` then, and `gained` is by how much u and u' differ from the straight line u +
+// u' t, with digits that a fast mass's own u and u' do not have. go_on(t, step): whether to go on after a
+// step that is still too long.
 template <class Real>
 struct Prediction {
   Real time;
@@ -95,37 +99,38 @@ struct Prediction {
   bool exact;
   Shifted<Real> gained;
 };
-template <class Real>
-[[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, 10>& u,
-                                                              const Real& fourth, const Real& rate,
-                                                              const Real& most) {
+template <class Real, std::size_t N, std::size_t pairs, class Enough, class GoOn>
+[[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
+                                                              const PairedSeries<Real, pairs>& departure,
+                                                              const Real& most, Enough&& enough,
+                                                              GoOn&& go_on) {
   SearchCounter<Real>::prediction();
   const FirstGuess<Real> guess = guess_by_parabola(u, most);
   const bool across = guess.across;
   Real t = guess.time;
   const Real gap = (across ? Real(1) : Real(0)) - u[0];
-  const auto departure = departure_of(u);
   // First by few terms, as a parabola may be far off.
   const SeriesAt<Real> rough = sum_of_first<Real, 3>(departure, t);
   const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
+  bool near = pairs <= 5;
   for (int i = 0;; ++i) {
-    const SeriesAt<Real> at = sum<Real>(departure, t);
+    const SeriesAt<Real> at = near ? sum<Real>(departure, t) : sum_of_first<Real, 5>(departure, t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
-    constexpr double two_to_the_25 = 33554432;
-    if (size * two_to_the_25 < t && t < most) {
-      if (!omits_nothing(u1, fourth, rate, t)) return {t, across, false, {}};
+    if (near && size * two_to_the_25 < t && t < most) {
+      if (!enough(u1, t)) return {t, across, false, {}};
       // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and
       // below it in that of u', ~ u'' t.
       return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
     }
     if (i == 4 || !(size < t / 2)) break;
     t += step;
-    if (rate * t > Real(0.05) && size * 32 < t) break;
+    near = near || size * 1024 < t;
+    if (!go_on(t, size)) break;
   }
   return {t < most ? t : most, across, false, {}};
 }

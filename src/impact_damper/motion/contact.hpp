@@ -32,8 +32,8 @@ class Contact {
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
   std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     if (start_.y == wall_) {
-      std::optional<typename ShortContactMap<Real>::End> end;
-      if (system_.short_contact) end = system_.short_contact(start_.x, start_.v, start_.w);
+      std::optional<End> end;
+      if (system_.short_contact) end = system_.short_contact(start_of_map());
       if (end) SearchCounter<Real>::found(FoundBy::short_contact_map);
       if (!end) {
         end = end_of_sustained_contact();
@@ -105,9 +105,9 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  // From `from` on, the time within which x has one zero at most: once the ringing is below rounding (Lemma
-  // L5).
-  Real one_zero_within(const Real& from) const {
+  // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below
+  // rounding (Lemma L5).
+  Real one_turn_within(const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
@@ -116,7 +116,7 @@ class Contact {
   }
   // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
   bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
-    return t < from + one_zero_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
+    return t < from + one_turn_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
   }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
@@ -163,8 +163,8 @@ class Contact {
     return system_.damping * x[2] - x[3];
   }
   Real fourth_of_q(const Real& span) const {
-    return instant_of_q(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(4, span) +
-           instant_of_q(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(4, span);
+    return instant_of_q(slow_at(Real(0)), system_.slow, system_.drive_slow, Real(0)).bound(4, span) +
+           instant_of_q(fast_at(Real(0)), system_.fast, system_.drive_fast, Real(0)).bound(4, span);
   }
 
   Real panel(const Real& t) const {
@@ -178,14 +178,25 @@ class Contact {
   Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
 
   // Bounds for a time t.
-  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &ShortContactMap<Real>::second_of_x); }
-  Real third_of_x(const Real& t) const { return bound_of_x(3, t, &ShortContactMap<Real>::third_of_x); }
+  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Map::second_of_x); }
+  Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Map::third_of_x); }
   template <class OfMap>
   [[gnu::always_inline]] Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {
-    if (system_.short_contact && start_.y == wall_)
-      return (system_.short_contact.*of_map)(start_.x, start_.v, start_.w);
-    return instant_of_x(parts().slow, system_.slow, system_.drive_slow, Real(0)).bound(order, t) +
-           instant_of_x(parts().fast, system_.fast, system_.drive_fast, Real(0)).bound(order, t);
+    if (system_.short_contact && start_.y == wall_ &&
+        (!system_.forcing || t <= system_.short_contact.latest()))
+      return (system_.short_contact.*of_map)(start_of_map());
+    return instant_of_x(slow_at(Real(0)), system_.slow, system_.drive_slow, Real(0)).bound(order, t) +
+           instant_of_x(fast_at(Real(0)), system_.fast, system_.drive_fast, Real(0)).bound(order, t);
+  }
+  using Map = ShortContactMap<Real, ContactModes<Real, Force>::columns>;
+  using End = typename Map::End;
+  [[gnu::always_inline]] typename Map::Start start_of_map() const {
+    if constexpr (ContactModes<Real, Force>::columns == 3)
+      return {start_.x, start_.v, start_.w};
+    else {
+      const Real& f0 = system_.forcing.amplitude;
+      return {start_.x, start_.v, start_.w, f0 * phase_.sin, f0 * phase_.cos};
+    }
   }
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, if it is near
@@ -234,7 +245,7 @@ class Contact {
   // through zero. The three steps are those of docs/mathematics.md, 7.7: (1) Lemma L2 in pieces, until the
   // ringing that is left can never reach the chord of Lemma L4; (2) if it is below rounding by then, h is the
   // end; (3) else h is corrected (M7.7), and the last quarter proved by L2.
-  std::optional<typename ShortContactMap<Real>::End> end_of_sustained_contact() const {
+  std::optional<End> end_of_sustained_contact() const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const ContactState<Real>& slow = parts().slow;
@@ -248,7 +259,7 @@ class Contact {
     const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
     if (*ringing * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
       const ContactState<Real> end = slow_at(h);
-      return typename ShortContactMap<Real>::End{h, end.x, end.v, end.w};
+      return End{h, end.x, end.v, end.w};
     }
     return corrected_end(late, h, slow_fourth);
   }
@@ -277,8 +288,7 @@ class Contact {
         return left;
     }
   }
-  std::optional<typename ShortContactMap<Real>::End> corrected_end(const Real& late, Real h,
-                                                                   const Real& slow_fourth) const {
+  std::optional<End> corrected_end(const Real& late, Real h, const Real& slow_fourth) const {
     const ContactModes<Real, Force>& c = system_;
     const Moment begin = moment(late, slow_fourth);
     const Real last = h;
@@ -295,7 +305,7 @@ class Contact {
       const auto [end_x, end_v] = shifted(x[0], x[1], x, shift);
       const Real end_w = shifted(q[0], q[1], q, shift).u1;
       if (!stays_in_wall(begin, {h, {0, inward_ * end_w}, 0}, slow_fourth, 4)) return {};
-      return typename ShortContactMap<Real>::End{h, end_x, end_v, end_w};
+      return End{h, end_x, end_v, end_w};
     }
     return {};
   }

@@ -9,6 +9,8 @@
 // (contact_without_modes.hpp).
 #pragma once
 
+#include <type_traits>
+
 #include "impact_damper/motion/contact_exponential.hpp"
 #include "impact_damper/motion/contact_factors.hpp"
 #include "impact_damper/motion/forced_motion.hpp"
@@ -37,9 +39,10 @@ class ContactModes {
     fast_ = (beta - alpha * p2) / resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
     // slow part of x follows with all its digits. As 1 less the fast part it would lose those of 1 + nu.
-    const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast);
-    drive_slow.x = -driven_centre.x - share_ * drive_slow.q;
-    drive_slow.v = (joined_ - driven_centre.v) - share_ * drive_slow.w;
+    const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast),
+                       driven_slow_centre{-driven_centre.x, joined_ - driven_centre.v};
+    drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
+    drive_slow.v = driven_slow_centre.v - share_ * drive_slow.w;
     std::array<Touch<Real>, 3> touch;
     touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
     touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
@@ -51,10 +54,17 @@ class ContactModes {
     if (!stiff && !(zeta <= 4 && norm_of_split() <= 3)) {
       coupled.emplace(
           ContactEquations<Real>{nu, zeta, stiffness, damping, {forcing.amplitude, forcing.frequency}});
-    } else if (!forcing)
-      short_contact = ShortContactMap<Real>(
+    } else if (!(forcing && forcing.frequency > fast.rate())) {
+      short_contact = ShortContactMap<Real, columns>(
           slow, fast, share_, zeta, touch,
-          [&](const ContactState<Real>& state, auto& x, auto& q) { derive(state, x, q); });
+          [&](std::size_t column, const ContactState<Real>& state, auto& x, auto& q, auto& f) {
+            f = forces(column, fast.half_period());
+            derive(state, x, q, f);
+          },
+          [&](std::size_t column, const Real& t, const Real& latest) {
+            return driven_contact(column, t, latest, driven_slow_centre, driven_centre);
+          });
+    }
   }
 
   // u = slow + fast. Returns what the fast part moves the centre X by.
@@ -84,16 +94,17 @@ class ContactModes {
     return centre;
   }
 
-  // Derivatives of x and q without forcing, from the equations themselves.
+  // Derivatives of x and q, from the equations themselves, given those of the force.
   template <std::size_t N>
-  void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q) const {
+  void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q,
+              const Derivatives<Real, N>& f = {}) const {
     x[0] = state.x;
     x[1] = state.v;
     q[0] = state.q;
     q[1] = state.w;
     for (std::size_t n = 2; n < N; ++n) {
       const Real force = damping * q[n - 1] + stiffness * q[n - 2];
-      x[n] = nu * force - 2 * zeta * x[n - 1] - x[n - 2];
+      x[n] = nu * force - 2 * zeta * x[n - 1] - x[n - 2] + f[n - 2];
       q[n] = -force - x[n];
     }
   }
@@ -104,12 +115,62 @@ class ContactModes {
   ContactState<Real> drive_slow, drive_fast;
 
   std::optional<ContactExponential<Real>> coupled;  // instead of all that follows
-  ShortContactMap<Real> short_contact;
+  static constexpr std::size_t columns = std::is_same_v<Force, NoForcing<Real>> ? 3 : 5;
+  ShortContactMap<Real, columns> short_contact;
   // Both parts' motion for a time in which the fast one moves little: a quarter of its period.
   Real piece;
   Propagator<Real> slow_piece, fast_piece;
 
  private:
+  // What the columns of the short-contact map stand for: a force of one unit, whose phase at the touch has
+  // the sine 1 in column 3, the cosine 1 in column 4; none before.
+  Force unit_force(std::size_t column) const { return {column < 3 ? Real(0) : Real(1), forcing.frequency}; }
+  static SinCos<Real> phase_of(std::size_t column) {
+    return column == 3 ? SinCos<Real>{Real(1), Real(0)} : SinCos<Real>{Real(0), Real(1)};
+  }
+  // Its derivatives a time t later.
+  Derivatives<Real, ShortContactMap<Real, columns>::terms> forces(std::size_t column, const Real& t) const {
+    if (column < 3) return {};
+    const SinCos<Real> by = sin_cos(forcing.frequency * t);
+    return unit_force(column).template derivatives<ShortContactMap<Real, columns>::terms>(
+        column == 3 ? SinCos<Real>{by.cos, -by.sin} : by);
+  }
+  DrivenContact<Real> driven_contact(std::size_t column, const Real& t, const Real& latest,
+                                     const Centre<Real>& slow_centre, const Centre<Real>& fast_centre) const {
+    const Force force = unit_force(column);
+    const SinCos<Real> phase = phase_of(column);
+    const Real f = forces(column, t)[0];
+    DrivenContact<Real> all{};
+    const auto add = [&](const Oscillator<Real>& mode, const ContactState<Real>& drive,
+                         const Centre<Real>& centre) {
+      const DrivenResponse<Real> by = mode.respond(force, phase, t, mode.propagate(t));
+      // To a unit of velocity; to one of displacement; and the derivative of this.
+      const Real on_displacement = by.d1 + 2 * mode.a() * by.d, on_velocity = f - mode.b() * by.d;
+      all.after.q += drive.w * by.d + drive.q * on_displacement;
+      all.after.w += drive.w * by.d1 + drive.q * on_velocity;
+      all.after.change.x += centre.v * by.d + centre.x * on_displacement;
+      all.after.change.v += centre.v * by.d1 + centre.x * on_velocity;
+      const auto instant = [&](const Real& displacement, const Real& velocity) {
+        return Instant<Real, 6, Force>(mode, Real(0), displacement * (column == 3 ? 1 : 0),
+                                       velocity + 2 * mode.a() * displacement, displacement, force, phase);
+      };
+      const auto q = instant(drive.q, drive.w), x = instant(drive.x, drive.v);
+      const Real a = fast.a();  // exp(a t) q has (a + d/dt)^4 q for its fourth derivative
+      Real weight{1};
+      for (std::size_t n = 4;; --n) {
+        constexpr std::array<int, 5> binomial{1, 4, 6, 4, 1};
+        all.fourth_of_q += weight * binomial[n] * q.bound(n, latest);
+        if (n == 0) break;
+        weight *= a;
+      }
+      all.second_of_x += x.bound(2, latest);
+      all.third_of_x += x.bound(3, latest);
+    };
+    add(slow, drive_slow, slow_centre);
+    add(fast, drive_fast, fast_centre);
+    return all;
+  }
+
   // How much larger than a motion its fast part can be, both masses counted alike: the square root of the sum
   // of squares over four orthogonal states of norm 1.
   Real norm_of_split() const {

@@ -60,7 +60,7 @@ class ContactWithoutModes {
     const Real off = bound_of_x(2, t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  Real one_zero_within(const Real&) const { return 0; }
+  Real one_turn_within(const Real&) const { return 0; }
   bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
     return absolute(end.v) > bound_of_x(2, t) * (t - from);
   }

@@ -74,10 +74,10 @@ class Flight {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return primary_.keeps_course(end.v, t);
   }
-  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
-    return primary_.leaves_zero(from, t);
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return primary_.leaves_zero(from, end.v, t);
   }
-  Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
+  Real one_turn_within(const Real& t) const { return primary_.one_turn_within(t); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
     return primary_.falls(order, sign, from, until, search);
@@ -155,10 +155,33 @@ class Flight {
            stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
                                fourth, halvings - 1);
   }
+  // By the series of a motion under a force, which is as good as the closed form as long as it holds (M4.4).
+  std::optional<WallEvent<Real>> predicted_by_series(const Real& span) const {
+    const Real reach = primary_.reach() < span ? primary_.reach() : span;
+    const auto u =
+        primary_.series().template derivatives<4>(away_ * (start_.y - wall_), away_ * start_.w, -away_);
+    const Prediction<Real> predicted = predict_impact(
+        u, primary_.series().departure_times(-away_), reach, [](const Real&, const Real&) { return true; },
+        [](const Real&, const Real&) { return true; });
+    const Real& h = predicted.time;
+    if (!(predicted.exact && h > 0 && h < reach)) return {};
+    const auto& [by_u, by_u1] = predicted.gained;
+    const Real level = predicted.across ? 1 : 0, u1 = u[1] + by_u1;
+    if (!stays_between_walls(u, Real(0), {level, u1}, h, primary_.bound(4, reach), 2)) return {};
+    SearchCounter<Real>::found(FoundBy::series);
+    return met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u), start_.v - away_ * by_u1, u1);
+  }
+  WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1) const {
+    const bool left = across == (wall_ == 1);
+    return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : Real(1), away_ * u1}};
+  }
   // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
   // not succeed.
   std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
     const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
+    if constexpr (ForcedMotion<Real, Force>::forced)
+      if (from == 0)
+        if (const auto by_series = predicted_by_series(span)) return by_series;
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
@@ -170,12 +193,13 @@ class Flight {
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         SearchCounter<Real>::found(way);
-        const bool left = across == (wall_ == 1);
-        return WallEvent<Real>{
-            begin + h, left ? Wall::left : Wall::right, {x1, v1, left ? Real(0) : Real(1), away_ * u1}};
+        return met(across, begin + h, x1, v1, u1);
       };
 
-      const Prediction<Real> predicted = predict_impact(u, fourth, rate, most);
+      const Prediction<Real> predicted = predict_impact(
+          u, departure_of(u), most,
+          [&](const Real& u1, const Real& t) { return omits_nothing(u1, fourth, rate, t); },
+          [&](const Real& t, const Real& size) { return !(rate * t > Real(0.05) && size * 32 < t); });
       Real h = predicted.time;
       if (!(h > 0)) return {};
       if (predicted.exact) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 #include "impact_damper/motion/system.hpp"
@@ -17,6 +18,79 @@ template <class Real, class Force>
 Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
 }
+
+// The Taylor series of x about its beginning under a force, for a time in which all that it leaves out is
+// below rounding (M4.4). No sine, and no cancellation near resonance.
+template <class Real>
+class DrivenSeries {
+ public:
+  static constexpr std::size_t terms = 24;
+  template <class Force>
+  DrivenSeries(const Oscillator<Real>& oscillator, const Force& forcing, const SinCos<Real>& phase,
+               const Real& x, const Real& v) {
+    // c_n = x^(n)/n!, and likewise of the force.
+    const auto& over = reciprocals<Real>;
+    const auto start = forcing.template derivatives<2>(phase);
+    const Real square = forcing.frequency * forcing.frequency;
+    Real f_now = start[0], f_next = start[1];
+    c_[0] = x;
+    c_[1] = v;
+    for (std::size_t n = 2; n < terms; ++n) {
+      c_[n] = (f_now - oscillator.b() * c_[n - 2]) * (over[n - 1] * over[n]) -
+              2 * oscillator.a() * over[n] * c_[n - 1];
+      const Real f_after = -square * f_now * (over[n - 1] * over[n]);
+      f_now = f_next;
+      f_next = f_after;
+    }
+    for (std::size_t n = 1; n < terms / 2; ++n) departure_[n] = SimdPair<Real>{c_[2 * n], c_[2 * n + 1]};
+    departure_[0] = SimdPair<Real>{Real(0), Real(0)};
+  }
+
+  // How long it holds for a motion of that rate, and so long do the series of its first two derivatives.
+  static Real reach(const Real& rate) { return radians / rate; }
+  // What x and v depart from the straight line by.
+  SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
+  // `times` that series.
+  PairedSeries<Real, terms / 2> departure_times(const Real& times) const {
+    PairedSeries<Real, terms / 2> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = departure_[n] * times;
+    return all;
+  }
+  // u, u' and then `times` the derivatives of x at the beginning, up to the fourth.
+  template <std::size_t N>
+  Derivatives<Real, N> derivatives(const Real& u, const Real& u1, const Real& times) const {
+    static_assert(N == 4);
+    return {u, u1, times * 2 * c_[2], times * 6 * c_[3]};
+  }
+  // The n-th derivative of x at the beginning.
+  Real derivative(std::size_t n) const {
+    constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
+    return c_[n] * Real(factorial[n]);
+  }
+  // The series of sign times the `order`-th derivative of x, 0 to 2.
+  PairedSeries<Real, terms / 2> derivative(std::size_t order, const Real& sign) const {
+    PairedSeries<Real, terms / 2> all;
+    const auto term = [&](std::size_t n) {
+      if (n + order >= terms) return Real(0);
+      const Real factor = order == 0   ? Real(1)
+                          : order == 1 ? Real(double(n + 1))
+                                       : Real(double((n + 1) * (n + 2)));
+      return Real(sign * factor * c_[n + order]);
+    };
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = SimdPair<Real>{term(2 * n), term(2 * n + 1)};
+    return all;
+  }
+
+ private:
+  // The term left out of x'' is at most radians^(terms - 2) / (terms - 2)! of the motion.
+  inline static const Real radians = [] {
+    Real enough = std::numeric_limits<Real>::epsilon() / 64;
+    for (std::size_t n = 2; n < terms - 1; ++n) enough *= Real(double(n));
+    return exponential(Real(logarithm(enough) / Real(double(terms - 2))));
+  }();
+  std::array<Real, terms> c_;
+  PairedSeries<Real, terms / 2> departure_;
+};
 
 // x of a single oscillator under the forcing, with what bounds it.
 template <class Real, class Force = Forcing<Real>>
@@ -36,6 +110,12 @@ class ForcedMotion {
     Real dx, dv;  // x - x0 - v0 t and v - v0, without cancellation
   };
   Change at(const Real& t) const {
+    if constexpr (forced) {
+      if (t < reach()) {
+        const SeriesAt<Real> by = series().departure(t);
+        return {x0_ + (v0_ * t + by.u), v0_ + by.u1, by.u, by.u1};
+      }
+    }
     const Propagator<Real> p = oscillator_.propagate(t);
     Change now;
     now.x = x0_ * p.c + v0_ * p.s;
@@ -71,8 +151,31 @@ class ForcedMotion {
     if (!forcing_) return oscillator_.bound(d[4], d[5]);
     return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, phase_at(t)}.bound(4, span);
   }
-  using Beginning = Instant<Real, 6, Force>;
-  Beginning beginning() const { return instant<6>(x0_, v0_, Real(0)); }
+  // The derivatives at the beginning: enough of them for a bound on the fourth derivative of x''.
+  static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
+  using Beginning = Instant<Real, forced ? 8 : 6, Force>;
+  // A bound on |x^(n)| for a time `span` from the beginning on, n <= 6.
+  Real bound(std::size_t n, const Real& span) const {
+    if constexpr (forced) {
+      // Where the force is fast its steady state is small beside what it could add without turning; else not.
+      if (forcing_.frequency * forcing_.frequency > 4 * oscillator_.b()) return beginning().bound(n, span);
+      Real power = absolute(forcing_.amplitude);
+      for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
+      return oscillator_.bound(series().derivative(n), series().derivative(n + 1)) +
+             power * span / oscillator_.root_b();
+    } else {
+      return beginning().bound(n, span);
+    }
+  }
+  decltype(auto) beginning() const {
+    if constexpr (forced) {
+      if (!cached_.beginning)
+        cached_.beginning.emplace(oscillator_, x0_, v0_, Real(1), Real(0), forcing_, phase_);
+      return static_cast<const Beginning&>(*cached_.beginning);
+    } else {
+      return instant<6>(x0_, v0_, Real(0));
+    }
+  }
 
   // What rounding may leave of x'' at the beginning where its terms cancel: below it x'' is taken for zero
   // (before M7.4).
@@ -85,19 +188,32 @@ class ForcedMotion {
   // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
   bool keeps_side(const Real& side, const Real& x, const Real& t) const {
     if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
-    return forcing_ ? keeps_sign(x0_, x, beginning().bound(2, t), t) : t < one_zero_within();
+    return forcing_ ? keeps_sign(x0_, x, bound(2, t), t) : t < oscillator_.half_period();
   }
   bool keeps_course(const Real& v, const Real& t) const {
     if (!(v0_ * v > 0)) return false;
-    return forcing_ ? keeps_sign(v0_, v, beginning().bound(3, t), t) : t < one_zero_within();
+    return forcing_ ? keeps_sign(v0_, v, bound(3, t), t) : t < oscillator_.half_period();
   }
-  // From any time on, a time in which x has one zero at most, and so has each of its derivatives.
-  Real one_zero_within() const { return forcing_ ? Real(0) : oscillator_.half_period(); }
-  // Whether x, zero at `from`, is proved to have no other zero until t.
-  bool leaves_zero(const Real& from, const Real& t) const { return t < from + one_zero_within(); }
+  // From t on, a time in which x' has one zero at most: without a force x and all its derivatives.
+  Real one_turn_within(const Real& t) const {
+    if constexpr (forced) {
+      if (!(t < reach())) return 0;
+      // As long as x'' keeps its sign, and the bound on x''' holds.
+      const Real rest = reach() - t, within = absolute(series().departure(t).u2) / bound(3, reach());
+      return within < rest ? within : rest;
+    } else {
+      return oscillator_.half_period();
+    }
+  }
+  // Whether x, zero at `from`, is proved to have no other zero until t, when its velocity is v.
+  bool leaves_zero(const Real& from, const Real& v, const Real& t) const {
+    return forcing_ ? absolute(v) > bound(2, t) * (t - from) : t < from + oscillator_.half_period();
+  }
   // The first time in [from, until) at which sign times the `order`-th derivative of x falls through zero.
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
+    if constexpr (forced)
+      if (const auto predicted = predicted_fall(order, sign, from, until)) return predicted->time;
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return isolate_fall<Real>([&](const Real& t) { return enclosure_at(order, sign, t, search.span); },
                                 from, until, search, Real(1));
@@ -143,14 +259,78 @@ class ForcedMotion {
   }
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
+  // The series about the beginning under a force, and how long it holds.
+  const DrivenSeries<Real>& series() const {
+    if (!cached_.series) cached_.series.emplace(oscillator_, forcing_, phase_, x0_, v0_);
+    return *cached_.series;
+  }
+  Real reach() const { return DrivenSeries<Real>::reach(rate()); }
+
  private:
   SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
+  // What falls() finds, by Halley's method on the series, if L2 proves it or proves that there is nothing;
+  // nothing where neither is proved. That it does not depend on `until` keeps a shorter run the beginning of
+  // a longer one.
+  struct PredictedFall {
+    std::optional<Real> time;
+  };
+  std::optional<PredictedFall> predicted_fall(std::size_t order, const Real& sign, const Real& from,
+                                              const Real& until) const {
+    if (!(from < reach())) return {};
+    const auto g = series().derivative(order, sign);
+    SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
+    // At `from` > 0 a zero has just been left, and the sign of what rounding made of it means nothing.
+    if (begin.u < 0 && from > 0) begin.u = 0;
+    if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
+    const Real fourth = bound(order + 4, reach());
+    if (const auto root = root_of_series(g, begin, from)) {
+      if (root->slope < 0 &&
+          stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth))
+        return PredictedFall{root->time < until ? std::optional(root->time) : std::nullopt};
+    }
+    if (!(until < reach())) return {};
+    const SeriesAt<Real> end = sum<Real>(g, until);
+    if (stays_open(begin.u, begin.u1, end.u, end.u1, Real(until - from), fourth)) return PredictedFall{};
+    return {};
+  }
+  // By Halley's method from the parabola's root on, first with few terms; nothing where that leads nowhere.
+  struct SeriesRoot {
+    Real time, slope;
+  };
+  using WholeSeries = PairedSeries<Real, DrivenSeries<Real>::terms / 2>;
+  std::optional<SeriesRoot> root_of_series(const WholeSeries& g, const SeriesAt<Real>& begin,
+                                           const Real& from) const {
+    const Real slope_2 = begin.u1 * begin.u1 - 2 * begin.u2 * begin.u;
+    if (!(slope_2 > 0) || (begin.u2 >= 0 && begin.u1 >= 0)) return {};
+    const Real room = reach() - from, root = square_root(slope_2);
+    Real t = begin.u1 > 0 ? Real((begin.u1 + root) / -begin.u2) : Real(2 * begin.u / (root - begin.u1));
+    if (!(t < room)) t = room;
+    bool near = false;
+    for (int i = 0; i < 8; ++i) {
+      const SeriesAt<Real> at =
+          near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
+      const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
+      const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+      t += step;
+      if (!(t > 0 && t < room)) return {};
+      if (near && absolute(step) * two_to_the_25 < t) return SeriesRoot{from + t, at.u1 + step * at.u2};
+      near = near || absolute(step) * 64 < t;
+    }
+    return {};
+  }
 
   const Oscillator<Real>& oscillator_;
   Force forcing_;
   Real begin_;
   SinCos<Real> phase_;  // of the forcing at the beginning
   Real x0_, v0_;
+  // Made when first asked for; without a force never.
+  struct Nothing {};
+  struct Cached {
+    std::optional<DrivenSeries<Real>> series;
+    std::optional<Beginning> beginning;
+  };
+  [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;
 };
 
 }  // namespace impact_damper

@@ -24,8 +24,8 @@ concept MotionOf = requires(const T motion, const Real& t, const State<Real>& en
   { motion.keeps_side(t, end, t) } -> std::same_as<bool>;
   { motion.keeps_course(t, end, t) } -> std::same_as<bool>;
   { motion.leaves_zero(t, end, t) } -> std::same_as<bool>;
-  // From t on, a time in which x has one zero at most, and so has x'; 0 where none is known.
-  { motion.one_zero_within(t) } -> std::convertible_to<Real>;
+  // From t on, a time in which x' has one zero at most; 0 where none is known.
+  { motion.one_turn_within(t) } -> std::convertible_to<Real>;
   // |x| at a peak at t.
   { motion.height(t) } -> std::convertible_to<Real>;
   // x and its first three derivatives at the beginning; derivative_of_x(order, sign, t, span) encloses one

@@ -1,5 +1,6 @@
 // The short-contact map (M7.8): a contact that begins on the wall and lasts about T, half a period of the
-// fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene.
+// fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene:
+// of x, v and w at the touch, and where there is a force, of the sine and cosine of its phase.
 //
 // The series in s, the time since T, is as long as its first term left out needs to be below rounding. A
 // rounding error that is the same in every impact adds up; so what is tabulated for x is the change of the
@@ -41,15 +42,36 @@ struct Touch {
   Centre<Real> fast_centre;
 };
 
+// What q, q' and the centre have become a time T after the touch; of the column of w, q' but for -E w.
 template <class Real>
+struct AfterContact {
+  Real q, w;
+  Centre<Real> change;
+};
+
+// The same of one unit of a force, from rest, with bounds on what it adds until `latest`: to the fourth
+// derivative of exp(a t) q and to x'' and x'''.
+template <class Real>
+struct DrivenContact {
+  AfterContact<Real> after;
+  Real fourth_of_q, second_of_x, third_of_x;
+};
+
+// columns: what a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude times the
+// sine and the cosine of its phase then.
+template <class Real, std::size_t columns>
 class ShortContactMap {
  public:
+  using Start = std::array<Real, columns>;
+  static constexpr std::size_t terms = 24;
+
   ShortContactMap() = default;
   // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: what x, v and w at the touch, one each, are
-  // split into. `derive` extends (x, v, q, w) by the higher derivatives.
-  template <class Derive>
+  // split into. derive(column, state, x, q, f) extends the state (x, v, q, w) a time T after the touch by the
+  // higher derivatives, and tells those of the force. driven(column, T, latest) gives the last two columns.
+  template <class Derive, class Driven>
   ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
-                  const Real& zeta, const std::array<Touch<Real>, 3>& start, Derive&& derive)
+                  const Real& zeta, const std::array<Touch<Real>, 3>& start, Derive&& derive, Driven&& driven)
       : share_(share), zeta_(zeta) {
     half_period_ = fast.half_period();
     if (!(half_period_ < std::numeric_limits<Real>::infinity())) return;
@@ -62,21 +84,34 @@ class ShortContactMap {
     accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
+    latest_ = half_period_ + most_.s;
     for (std::size_t i = 0; i < 3; ++i) {
-      tabulate_series(i, slow, start[i], derive);
+      const Real x = i == 0 ? 1 : 0, v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
+      tabulate_series(i, {x, v}, after_contact(i, {x, v}, slow, start[i]), derive);
       tabulate_bounds(i, slow, fast, start[i]);
+    }
+    if constexpr (columns == 5) {
+      for (std::size_t i = 3; i < 5; ++i) {
+        const DrivenContact<Real> by_force = driven(i, half_period_, latest_);
+        tabulate_series(i, {Real(0), Real(0)}, by_force.after, derive);
+        fast_fourth_[i] = 0;
+        slow_fourth_[i] = growth_ * by_force.fourth_of_q;
+        second_of_x_[i] = by_force.second_of_x;
+        third_of_x_[i] = by_force.third_of_x;
+      }
     }
   }
 
   explicit operator bool() const { return accurate_ > 0; }
 
-  // The end of a contact that begins with x, v and w, inwards; nothing if it is too long for the series, or
-  // not proved.
+  // No contact of the map is longer, and the bounds on x hold until then; without a force for ever.
+  const Real& latest() const { return latest_; }
+
+  // The end of a contact; nothing if it is too long for the series, or not proved.
   struct End {
     Real time, x, v, w;
   };
-  [[gnu::always_inline]] std::optional<End> operator()(const Real& x, const Real& v, const Real& w) const {
-    const Start start{x, v, w};
+  [[gnu::always_inline]] std::optional<End> operator()(const Start& start) const {
     const auto q = overlap_after<few>(start);
     const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
                b = t * t * (q[1][1] * over);
@@ -94,52 +129,50 @@ class ShortContactMap {
     return end_within(start, overlap_after<most>(start), s, most_);
   }
   // Bounds on the second and third derivative of x in it.
-  Real second_of_x(const Real& x, const Real& v, const Real& w) const {
-    return bound(second_of_x_, {x, v, w});
-  }
-  Real third_of_x(const Real& x, const Real& v, const Real& w) const { return bound(third_of_x_, {x, v, w}); }
+  Real second_of_x(const Start& start) const { return bound(second_of_x_, start); }
+  Real third_of_x(const Start& start) const { return bound(third_of_x_, start); }
 
  private:
-  static constexpr std::size_t few = 5, more = 7, many = 9, most = 12;  // pairs of terms
-  using Start = std::array<Real, 3>;                                    // by x, v and w at the touch
-  using Table = std::array<PairedSeries<Real, most>, 3>;
+  static constexpr std::size_t few = 5, more = 7, many = 9, most = terms / 2;  // pairs of terms
+  using Table = std::array<PairedSeries<Real, most>, columns>;
   template <std::size_t pairs>
   static PairedSeries<Real, pairs> combine(const Table& by, const Start& start) {
     PairedSeries<Real, pairs> all;
     for (std::size_t n = 0; n < pairs; ++n)
       all[n] = by[0][n] * start[0] + by[1][n] * start[1] + by[2][n] * start[2];
+    for (std::size_t i = 3; i < columns; ++i)
+      for (std::size_t n = 0; n < pairs; ++n) all[n] = all[n] + by[i][n] * start[i];
     return all;
   }
 
-  // The terms of q and of the centre's change after T, for one of x, v and w at the touch.
-  template <class Derive>
-  void tabulate_series(std::size_t i, const Oscillator<Real>& slow, const Touch<Real>& touch,
-                       Derive&& derive) {
+  AfterContact<Real> after_contact(std::size_t i, const Centre<Real>& centre, const Oscillator<Real>& slow,
+                                   const Touch<Real>& touch) const {
     const Propagator<Real> p = slow.propagate(half_period_);
     const auto& [s, f, fast_centre] = touch;
     const Real b = slow.b(), gone = 1 + decay_factor_;
-    const Real centre_x = i == 0 ? 1 : 0, centre_v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
-    const Centre<Real> slow_centre{centre_x - fast_centre.x, centre_v - fast_centre.v};
-    const Centre<Real> change{
-        p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
-        (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v};
+    const Centre<Real> slow_centre{centre.x - fast_centre.x, centre.v - fast_centre.v};
     const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
-    const Real q_then = slow_q - decay_factor_ * f.q;
-    const Real w_then =
-        i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w);  // but for -E w
-    const Real w_whole = i == 2 ? Real(w_then - decay_factor_) : w_then;
-    constexpr std::size_t terms = 2 * most;
-    std::array<Real, terms> x, q, centre;
-    derive({centre_x + change.x - share_ * q_then, centre_v + change.v - share_ * w_whole, q_then, w_whole},
-           x, q);
-    q[1] = w_then;
+    return {slow_q - decay_factor_ * f.q,
+            i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w),
+            {p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
+             (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v}};
+  }
+  // The terms of q and of the centre's change after T, for one column, which begins with that centre.
+  template <class Derive>
+  void tabulate_series(std::size_t i, const Centre<Real>& begin, const AfterContact<Real>& after,
+                       Derive&& derive) {
+    const Centre<Real>& change = after.change;
+    const Real w = i == 2 ? Real(after.w - decay_factor_) : after.w;
+    std::array<Real, terms> x, q, f, centre;
+    derive(i, {begin.x + change.x - share_ * after.q, begin.v + change.v - share_ * w, after.q, w}, x, q, f);
+    q[1] = after.w;
     Real factorial{1};
     for (std::size_t n = 0; n < terms; ++n) {
       if (n > 1) factorial *= Real(double(n));
       q[n] /= factorial;
       centre[n] = n == 0   ? change.x
                   : n == 1 ? change.v
-                           : Real(-(1 - share_) * (2 * zeta_ * x[n - 1] + x[n - 2]) / factorial);
+                           : Real((1 - share_) * (f[n - 2] - 2 * zeta_ * x[n - 1] - x[n - 2]) / factorial);
     }
     for (std::size_t n = 0; n < most; ++n) {
       q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
@@ -202,7 +235,7 @@ class ShortContactMap {
   template <std::size_t pairs>
   std::optional<End> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
                                 const Reach& reach) const {
-    const auto& [x, v, w] = start;
+    const Real &x = start[0], &v = start[1], &w = start[2];
     Step step;
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
@@ -232,10 +265,13 @@ class ShortContactMap {
     const Real centre_v = v + share_ * w;
     const Real end_x = x + (centre_v * whole + (change.u + rest * change.u1));
     const Real v_before = v + (share_ * (w - end_w) + change.u1);
+    if constexpr (columns == 5) return End{time, end_x, v_before + rest * change.u2, end_w};
     return End{time, end_x, v_before - rest * ((1 - share_) * (2 * zeta_ * v_before + end_x)), end_w};
   }
   static Real bound(const Start& row, const Start& start) {
-    return row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
+    Real sum = row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
+    for (std::size_t i = 3; i < columns; ++i) sum += row[i] * absolute(start[i]);
+    return sum;
   }
 
   Real half_period_{0}, decay_factor_{0};  // T and E = exp(-a T)
@@ -243,6 +279,7 @@ class ShortContactMap {
   Real unweighted_{0};                     // (b / omega^2)^2
   Real accurate_{0};                       // the largest correction of s whose third power is below rounding
   Reach few_, more_, many_, most_;
+  Real latest_{0};
   Real share_{0}, zeta_{0};
   Table centre_{}, q_{};
   Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};

@@ -44,10 +44,10 @@ class Stuck {
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return primary_.keeps_course(end.v, t);
   }
-  bool leaves_zero(const Real& from, const State<Real>&, const Real& t) const {
-    return primary_.leaves_zero(from, t);
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return primary_.leaves_zero(from, end.v, t);
   }
-  Real one_zero_within(const Real&) const { return primary_.one_zero_within(); }
+  Real one_turn_within(const Real& t) const { return primary_.one_turn_within(t); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
     // Until then x'' keeps its sign, and so x' rises, the way the wall pushes, through one zero at most.

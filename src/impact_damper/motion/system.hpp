@@ -35,7 +35,7 @@ auto with_system(const Scene& scene, Then&& then) {
 // How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
 template <class Real, class Force>
 Real bounded_span(const System<Real, Force>& system) {
-  return system.forcing ? Real(1) : std::numeric_limits<Real>::infinity();
+  return system.forcing ? Real(2) : std::numeric_limits<Real>::infinity();
 }
 
 }  // namespace impact_damper
