@@ -47,7 +47,7 @@ class DrivenSeries {
   }
 
   // How long it holds for a motion of that rate, and so long do the series of its first two derivatives.
-  static Real reach(const Real& rate) { return radians / rate; }
+  static Real reach(const Real& rate) { return Real(radians) / rate; }
   // What x and v depart from the straight line by.
   SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
   // `times` that series.
@@ -82,12 +82,10 @@ class DrivenSeries {
   }
 
  private:
-  // The term left out of x'' is at most radians^(terms - 2) / (terms - 2)! of the motion.
-  inline static const Real radians = [] {
-    Real enough = std::numeric_limits<Real>::epsilon() / 64;
-    for (std::size_t n = 2; n < terms - 1; ++n) enough *= Real(double(n));
-    return exponential(Real(logarithm(enough) / Real(double(terms - 2))));
-  }();
+  // The term left out of x'', at most radians^22 / 22! of the motion, is below epsilon/64.
+  static constexpr double radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
+                                    : std::numeric_limits<Real>::digits10 < 20 ? 1.029
+                                                                               : 0.22;
   std::array<Real, terms> c_;
   PairedSeries<Real, terms / 2> departure_;
 };
