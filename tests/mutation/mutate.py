@@ -116,7 +116,7 @@ class Tree:
         if self.sound.exists():
             self.restore_build()
         if not (self.build / "build.ninja").exists():
-            code, out = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=ON",
+            code, out = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=ON", "-DPYTHON_MODULE=OFF",
                              f"-DCMAKE_CXX_FLAGS={FLAGS}"], self.sources)
             if code != 0:
                 sys.exit(out)
