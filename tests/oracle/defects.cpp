@@ -163,6 +163,18 @@ TEST_CASE("a peak within a complete chattering after a release from rest is wher
   agrees(scene, Restitution{});
 }
 
+TEST_CASE("a turn is not taken for a zero, nor a nearest approach for an impact") {
+  // x' = sin t (t f0/2 - 1): the root of x's parabola, sqrt(2), is next to the turn at 2/f0, where Halley's
+  // step vanishes, too.
+  Scene scene = scene_until(6);
+  scene.x0 = 1, scene.y0 = 0.5, scene.force_amplitude = 1.41421356;
+  agrees(scene, Exact{});
+  agrees(scene, Restitution{});
+  scene.y0 = 0, scene.force_amplitude = 1.414213562;
+  agrees(scene, Exact{});
+  agrees(scene, Restitution{});
+}
+
 TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
   Scene scene = scene_until(5);
   scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;

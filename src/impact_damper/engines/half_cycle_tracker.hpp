@@ -47,8 +47,8 @@ class HalfCycleTracker {
   std::int64_t complete_ = 0;
 };
 
-// Which way x goes that has not moved until now: its first derivative that is not zero tells. Returns from
-// when on the events of x are to be looked for; nothing where x does not move.
+// On which side of zero x is from a release on: the first of x, x', x'' and x''' that is not zero tells.
+// Returns the time from which on events of x are looked for; nothing where x does not move.
 template <class Real, MotionOf<Real> Motion>
 std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
                                HalfCycleTracker<Real>& half_cycles, const Search<Real>& search) {
@@ -63,8 +63,8 @@ std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
   return leap < duration ? leap : duration;
 }
 
-// Peaks of the half cycle under way in [from, until): where x' changes its sign. `no_turn_before`: from when
-// on another turn is possible.
+// Peaks of the half cycle under way in [from, until): where x' changes its sign. Sets `no_turn_before`, the
+// time before which no further turn is possible.
 template <class Real, MotionOf<Real> Motion>
 void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, const Real& now,
                 HalfCycleTracker<Real>& half_cycles, Search<Real>& search, Real& no_turn_before) {
@@ -81,9 +81,9 @@ void find_peaks(const Motion& motion, Real from, const Real& until, bool rising,
 }
 
 // Feeds the tracker with the events of x, in their order, in [0, duration] of a motion that begins at the
-// time `now` and is in the state `end` at last. goes_on(t) is told that x has crossed zero at t, by which the
-// tracker's half cycle is complete, and says whether the scene goes on. Returns how much of the motion has
-// been followed: less than `duration` where it does not, or where the search has no steps left.
+// time `now` and is in the state `end` at last. At each zero crossing goes_on(t) is called, which completes
+// the tracker's half cycle at t and says whether the scene goes on. Returns how much of the motion has been
+// followed: less than `duration` where the scene ends, or where the search has no steps left.
 template <class Real, MotionOf<Real> Motion, class GoesOn>
 [[gnu::always_inline]] inline Real follow_x(const Motion& motion, const Real& duration,
                                             const State<Real>& end, const Real& now,
@@ -95,7 +95,7 @@ template <class Real, MotionOf<Real> Motion, class GoesOn>
     if (!begins) return duration;
     from = *begins;
   }
-  // Where two motions meet.
+  // |x| may be largest where two motions meet.
   half_cycles.peak(half_cycles.side() * motion.at(from).x, now + from);
   const Real v = half_cycles.side() * motion.at(from).v;
   bool rising =
@@ -120,7 +120,7 @@ template <class Real, MotionOf<Real> Motion, class GoesOn>
     from = *crossing;
     if (!goes_on(from)) return from;
     rising = true;
-    // That x stays below the best of a half cycle holds for the one that has ended, not for this one.
+    // A proof that |x| stays below the largest of its half cycle held for the one that has ended only.
     may_turn = may_turn || !motion.keeps_course(half_cycles.amplitude(), end, duration);
     may_cross = !motion.leaves_zero(from, end, duration);
   }

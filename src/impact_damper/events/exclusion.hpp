@@ -8,7 +8,8 @@
 namespace impact_damper {
 
 // Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
-// (Lemma L2). slope0, slope1: its derivatives there; fourth: bound on its fourth derivative.
+// (Lemma L2). from: u0 and its first three derivatives; slope1: its derivative at the other end; fourth: a
+// bound on its fourth derivative in between.
 template <class Real>
 [[gnu::always_inline]] inline bool stays_between(const Derivatives<Real, 4>& from, const Real& u1,
                                                  const Real& slope1, const Real& h, const Real& fourth) {
@@ -21,7 +22,8 @@ template <class Real>
   if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
     return false;
   if (after >= 0 && before >= 0 && middle > off) return true;
-  // It leaves by its second and third derivative: third t^3/6 outweighs |fourth| t^4/24.
+  // Else it stays above 0 if neither slope nor second derivative pulls it back and its third derivative
+  // outweighs the fourth: third t^3/6 > fourth t^4/24.
   return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;
 }
 

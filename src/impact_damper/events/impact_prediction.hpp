@@ -75,8 +75,9 @@ template <class Real, std::size_t N>
 
 // Whether the terms left out of a series of ten are below rounding at t, where u' is u1: in the time, for
 // which |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion
-// of x, which may be far smaller. `fourth`: bound on |u''''|; each further derivative is at most `rate` times
-// the one before.
+// of x, which may be far smaller. `fourth`: bound on |u''''|; each further derivative is taken to be
+// `rate` times the one before. Near critical damping u^(10) may be a few times that, and is still below
+// rounding.
 template <class Real>
 [[gnu::always_inline]] inline bool omits_nothing(const Real& u1, const Real& fourth, const Real& rate,
                                                  const Real& t) {
@@ -86,12 +87,12 @@ template <class Real>
   return omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate);
 }
 
-// Predicts when a mass that has left one wall of a gap of 1 meets either, and `most` at the latest: by the
-// parabola, then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall it
-// left, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t): whether that
-// series is enough at t; `exact` then, and `gained` is by how much u and u' differ from the straight line u +
-// u' t, with digits that a fast mass's own u and u' do not have. go_on(t, step): whether to go on after a
-// step that is still too long.
+// Predicts when a mass that has left one wall of a gap of 1 meets this wall or the other, and `most` at the
+// latest: by the parabola, then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from
+// the wall it left, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
+// whether that series has enough terms at t. If so the prediction is `exact`, and `gained` is by how much u
+// and u' then differ from the straight line, with digits that u and u' of a fast mass do not have themselves.
+// go_on(t, step): whether to go on after a step that is still too long.
 template <class Real>
 struct Prediction {
   Real time;
@@ -119,9 +120,11 @@ template <class Real, std::size_t N, std::size_t pairs, class Enough, class GoOn
     const SeriesAt<Real> at = near ? sum<Real>(departure, t) : sum_of_first<Real, 5>(departure, t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
-    const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const bool bends_little = absolute(bend) < Real(0.0625);
+    const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
-    if (near && size * two_to_the_25 < t && t < most) {
+    // Halley's step alone vanishes at a turn of u, too, where u is not at the wall.
+    if (near && bends_little && size * two_to_the_25 < t && t < most) {
       if (!enough(u1, t)) return {t, across, false, {}};
       // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and
       // below it in that of u', ~ u'' t.

@@ -44,7 +44,7 @@ struct LowerCubic {
         half_third(third / 2) {}
   Real at(const Real& s) const { return g + s * (g1 + s * (half - s * sixth)); }
   Real slope(const Real& s) const { return g1 + s * (g2 - s * half_third); }
-  // From here on the cube outdoes each other term three times, and p is negative.
+  // From here on the cubic term is at least three times each other term, and p is negative.
   Real negative_from() const {
     const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
     Real far = by_g > 1 ? square_root(by_g) : Real(1);
@@ -128,9 +128,9 @@ Real step_without_root(const Jet<Real>& jet, Real most) {
   return root_of_concave_part(p, low, most);
 }
 
-// The root, if the third derivative cannot move that of the parabola by more than a rounding error of `time`
-// plus it: where the parabola has one, that is met at no less than half the slope here, and up to it none is
-// nearer than `proven`.
+// The root of the parabola, if it is the function's own but for a rounding error of `time` plus root: the
+// parabola falls there with at least half its slope here, the third derivative is too small to move the root
+// further, and no root can lie before it, as there is none up to `proven`.
 template <class Real>
 std::optional<Real> root_of_parabola(const Jet<Real>& jet, const Real& proven, const Real& time) {
   const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
@@ -152,9 +152,9 @@ struct Root {
 // enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
 // time search.span. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the
 // root. Nothing also where the search has no steps left.
-// A function that is not positive but rising is one that has just been left. While it does not rise by more
-// than rounding, steps double: what it does meanwhile is lost in rounding errors. No step is chosen by the
-// horizon: a search that ends earlier is the beginning of one that ends later, to the bit.
+// A function that is not positive but rises has just left its zero. Until it has risen by more than rounding
+// steps double: what it does meanwhile is lost in rounding errors. No step depends on the horizon: a search
+// that ends earlier is the beginning of one that ends later, to the bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,
                                      Search<Real>& search, const Real& resolution) {

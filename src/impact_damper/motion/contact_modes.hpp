@@ -67,13 +67,13 @@ class ContactModes {
     }
   }
 
-  // u = slow + fast. Returns what the fast part moves the centre X by.
+  // Splits u into a slow and a fast part, whose sum it is. Returns the centre X of the fast part.
   Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
                      ContactState<Real>& fast_part) const {
     const auto& [p, b, p2, b2, dp, db, db2] = factors_;
     const Real dx = 2 * zeta * u.v + u.x;  // D x
     const Real q2 = dx - (1 + nu) * (damping * u.w + stiffness * u.q);
-    // So that rounding does not show where the secondary mass stands still, however heavy it is.
+    // In this form a secondary mass that stands still leaves no rounding error, however heavy it is.
     const Real X = joined_ * (u.x + nu * (u.x + u.q)), X1 = joined_ * (u.v + nu * (u.v + u.w));
     const Real X2 = -joined_ * dx;
 
@@ -122,19 +122,22 @@ class ContactModes {
   Propagator<Real> slow_piece, fast_piece;
 
  private:
-  // What the columns of the short-contact map stand for: a force of one unit, whose phase at the touch has
-  // the sine 1 in column 3, the cosine 1 in column 4; none before.
+  // The force that a column of the short-contact map stands for, of amplitude 1: cos(omega_f t) in column 3
+  // and sin(omega_f t) in column 4, t being the time since the touch; none in the first three.
   Force unit_force(std::size_t column) const { return {column < 3 ? Real(0) : Real(1), forcing.frequency}; }
   static SinCos<Real> phase_of(std::size_t column) {
     return column == 3 ? SinCos<Real>{Real(1), Real(0)} : SinCos<Real>{Real(0), Real(1)};
   }
-  // Its derivatives a time t later.
+  // Derivatives of that force at t.
   Derivatives<Real, ShortContactMap<Real, columns>::terms> forces(std::size_t column, const Real& t) const {
     if (column < 3) return {};
     const SinCos<Real> by = sin_cos(forcing.frequency * t);
     return unit_force(column).template derivatives<ShortContactMap<Real, columns>::terms>(
         column == 3 ? SinCos<Real>{by.cos, -by.sin} : by);
   }
+  // A column of the map for such a force: what the slow and the fast mode do from rest until t (M5.10), and
+  // bounds on it until `latest`. slow_centre, fast_centre: by how much one unit of the force changes X and X'
+  // of either part per unit of time, as drive_slow and drive_fast tell for x, v, q and w.
   DrivenContact<Real> driven_contact(std::size_t column, const Real& t, const Real& latest,
                                      const Centre<Real>& slow_centre, const Centre<Real>& fast_centre) const {
     const Force force = unit_force(column);
@@ -144,18 +147,21 @@ class ContactModes {
     const auto add = [&](const Oscillator<Real>& mode, const ContactState<Real>& drive,
                          const Centre<Real>& centre) {
       const DrivenResponse<Real> by = mode.respond(force, phase, t, mode.propagate(t));
-      // To a unit of velocity; to one of displacement; and the derivative of this.
+      // by.d is what the force makes of the mode where it drives the velocity; these two are what it makes
+      // where it drives the displacement, and the derivative of that.
       const Real on_displacement = by.d1 + 2 * mode.a() * by.d, on_velocity = f - mode.b() * by.d;
       all.after.q += drive.w * by.d + drive.q * on_displacement;
       all.after.w += drive.w * by.d1 + drive.q * on_velocity;
       all.after.change.x += centre.v * by.d + centre.x * on_displacement;
       all.after.change.v += centre.v * by.d1 + centre.x * on_velocity;
+      // Such a part p begins with p = 0, p' = displacement f, and obeys
+      // p'' + 2 a p' + b p = (velocity + 2 a displacement) f + displacement f'.
       const auto instant = [&](const Real& displacement, const Real& velocity) {
         return Instant<Real, 6, Force>(mode, Real(0), displacement * (column == 3 ? 1 : 0),
                                        velocity + 2 * mode.a() * displacement, displacement, force, phase);
       };
       const auto q = instant(drive.q, drive.w), x = instant(drive.x, drive.v);
-      const Real a = fast.a();  // exp(a t) q has (a + d/dt)^4 q for its fourth derivative
+      const Real a = fast.a();  // the fourth derivative of exp(a t) q is exp(a t) (a + d/dt)^4 q
       Real weight{1};
       for (std::size_t n = 4;; --n) {
         constexpr std::array<int, 5> binomial{1, 4, 6, 4, 1};

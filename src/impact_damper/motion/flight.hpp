@@ -28,10 +28,10 @@ class Flight {
   // The same of a mass that begins at rest on a wall, and leaves it.
   std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
     const Real leap = begin_by_jerk(search.span);
-    // Where y'' is zero to the last bit there is no sign to pass over.
+    // If y'' differs from zero by rounding alone, its sign may be wrong; an exact zero has none.
     return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, search);
   }
-  // The same, certified step by step.
+  // The same by Lemma L1, step by step.
   std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
                                              Search<Real>& search) const {
     const auto met = first_root<Real>([&](const Real& t) { return gaps(t, search.span); }, from, horizon,
@@ -42,7 +42,7 @@ class Flight {
     state.y = wall == Wall::left ? 0 : 1;
     return WallEvent<Real>{met->time, wall, state};
   }
-  // Towards zero: the gap to the left wall, y, and the gap to the right one, 1 - y.
+  // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one, 1 - y.
   std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
     const Place now = from_wall(t);
     const Real near = now.u, far = 1 - now.u, y1 = away_ * now.u1;
@@ -54,7 +54,7 @@ class Flight {
         LocalEnclosure<Real>{{right, -y1, x[2], third}, {right - now.x, -z1, Real(0), Real(0)}, amplitude}};
   }
 
-  // y and its first three derivatives at the beginning, and a bound on the fourth from there on.
+  // y and its first three derivatives at the beginning.
   Derivatives<Real, 4> lead_of_y() const {
     const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
@@ -66,6 +66,7 @@ class Flight {
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
     return absolute(acceleration) > primary_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;
   }
+  // A bound on |y''''| for a time `span` from the beginning on.
   Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
 
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
@@ -92,7 +93,8 @@ class Flight {
   Real resolution() const { return 1; }
 
  private:
-  // y as the distance u from the wall nearest to the start: what a small bounce is measured by.
+  // The place of the secondary mass as its distance u from the wall nearest to the start: a small bounce
+  // keeps its relative accuracy.
   struct Place {
     Real x, v, u, u1;
   };
@@ -105,7 +107,7 @@ class Flight {
   State<Real> state_of(const Place& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
   }
-  // Derivatives of u: but for the first two they are those of -away x.
+  // u and its derivatives, which from the second on are those of -away x.
   template <std::size_t N>
   Derivatives<Real, N> derivatives_of_u(const Place& place, const Real& t) const {
     auto u = primary_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
@@ -136,13 +138,14 @@ class Flight {
     const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk));
     return near < far ? near : far;
   }
-  // Whether the fourth power of a correction is nothing beside x and x', too, which may be far smaller than
-  // the secondary mass's motion.
+  // Whether the terms that a correction leaves out, of fourth order, are below rounding for x and x', too,
+  // which may be far smaller than the secondary mass's motion.
   static bool moves_x_by_series(const Derivatives<Real, 6>& u, const Real& shift, const Real& fourth) {
     const Real shift_2 = shift * shift, second = absolute(u[2]), third = absolute(u[3]);
     return fourth * (shift_2 * shift_2) <= 4 * std::numeric_limits<Real>::epsilon() * (second + third);
   }
-  // By both ends of a time h, or by those of its halves, and so on.
+  // Whether Lemma L2 proves it, by both ends of a time h from `begin` on, else by those of its halves, and so
+  // on for as often as `halvings` tells.
   template <std::size_t N>
   bool stays_between_walls(const Derivatives<Real, N>& from, const Real& begin,
                            const Derivatives<Real, 2>& to, const Real& h, const Real& fourth,
@@ -155,7 +158,7 @@ class Flight {
            stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
                                fourth, halvings - 1);
   }
-  // By the series of a motion under a force, which is as good as the closed form as long as it holds (M4.4).
+  // By the series of a motion under a force (M4.4), which is as good as the closed form while it holds.
   std::optional<WallEvent<Real>> predicted_by_series(const Real& span) const {
     const Real reach = primary_.reach() < span ? primary_.reach() : span;
     const auto u =
@@ -203,7 +206,7 @@ class Flight {
       Real h = predicted.time;
       if (!(h > 0)) return {};
       if (predicted.exact) {
-        // x has departed from its own straight line by as much, the other way.
+        // x has departed from its own straight line by -away times as much.
         const auto& [by_u, by_u1] = predicted.gained;
         return reached(predicted.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
                        here.u1 + by_u1, FoundBy::series);
@@ -221,7 +224,7 @@ class Flight {
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
         if (correction == 5 || !(near || beyond)) break;
-        // Far beyond a wall, and so it was met: not further back than halfway at a time.
+        // A place far beyond a wall: the wall was met before. Back, by half of h at most.
         h += near ? shift : newton < 0 && newton > -h / 2 ? newton : Real(-h / 2);
       }
       if (!(h <= span) || !stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};

@@ -1,5 +1,6 @@
-// x of one oscillator under the force, in closed form from its beginning (M3.2): in flight (flight.hpp), and
-// where both masses move as one (sticking.hpp).
+// x of one oscillator, with or without a force: in flight (flight.hpp), and where both masses move as one
+// (sticking.hpp). From its beginning it follows in closed form (M3.2), and under a force by its Taylor series
+// (M4.4) while that holds.
 //
 // Every motion answers, for a time t since its beginning: the state, which wall it meets and when, and where
 // a derivative of x falls through zero.
@@ -19,8 +20,8 @@ Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
 }
 
-// The Taylor series of x about its beginning under a force, for a time in which all that it leaves out is
-// below rounding (M4.4). No sine, and no cancellation near resonance.
+// The Taylor series of x about the beginning of a motion under a force (M4.4). It holds as long as what it
+// leaves out is below rounding. Its sum needs no sine, and nothing cancels near resonance.
 template <class Real>
 class DrivenSeries {
  public:
@@ -46,17 +47,17 @@ class DrivenSeries {
     departure_[0] = SimdPair<Real>{Real(0), Real(0)};
   }
 
-  // How long it holds for a motion of that rate, and so long do the series of its first two derivatives.
+  // How long the series and its first two derivatives hold. `rate`: that of the motion, ForcedMotion::rate().
   static Real reach(const Real& rate) { return Real(radians) / rate; }
-  // What x and v depart from the straight line by.
+  // By how much x and v differ from x0 + v0 t and v0, and x''.
   SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
-  // `times` that series.
+  // The series of x - x0 - v0 t, multiplied by `times`.
   PairedSeries<Real, terms / 2> departure_times(const Real& times) const {
     PairedSeries<Real, terms / 2> all;
     for (std::size_t n = 0; n < all.size(); ++n) all[n] = departure_[n] * times;
     return all;
   }
-  // u, u' and then `times` the derivatives of x at the beginning, up to the fourth.
+  // u, u' and then `times` the second and the third derivative of x at the beginning.
   template <std::size_t N>
   Derivatives<Real, N> derivatives(const Real& u, const Real& u1, const Real& times) const {
     static_assert(N == 4);
@@ -67,7 +68,7 @@ class DrivenSeries {
     constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
     return c_[n] * Real(factorial[n]);
   }
-  // The series of sign times the `order`-th derivative of x, 0 to 2.
+  // The series of sign times the `order`-th derivative of x; order: 0, 1 or 2.
   PairedSeries<Real, terms / 2> derivative(std::size_t order, const Real& sign) const {
     PairedSeries<Real, terms / 2> all;
     const auto term = [&](std::size_t n) {
@@ -82,7 +83,8 @@ class DrivenSeries {
   }
 
  private:
-  // The term left out of x'', at most radians^22 / 22! of the motion, is below epsilon/64.
+  // The first term left out of x'' is radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or near
+  // critical damping and in resonance up to `terms` times that, which is still below rounding.
   static constexpr double radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
                                     : std::numeric_limits<Real>::digits10 < 20 ? 1.029
                                                                                : 0.22;
@@ -90,7 +92,7 @@ class DrivenSeries {
   PairedSeries<Real, terms / 2> departure_;
 };
 
-// x of a single oscillator under the forcing, with what bounds it.
+// x of a single oscillator, with or without a force, and bounds on its derivatives.
 template <class Real, class Force = Forcing<Real>>
 class ForcedMotion {
  public:
@@ -135,27 +137,28 @@ class ForcedMotion {
   Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, phase_at(t)};
   }
-  // The same of `times` x; x and v are already that many times what they are.
+  // The same of `times` x. The arguments x and v have been multiplied by `times` already.
   template <std::size_t N>
   Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t, const Real& times) const {
     if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
     return impact_damper::derivatives<N>(oscillator_, x, v, times, Real(0),
                                          forcing_.template derivatives<N + 1>(phase_at(t)));
   }
-  // A bound on the fourth of these, d, for a time `span` from t on.
+  // A bound on the fourth derivative of `times` x for a time `span` from t on. d: its derivatives at t.
   template <std::size_t N>
   Real fourth(const Derivatives<Real, N>& d, const Real& x, const Real& v, const Real& t, const Real& times,
               const Real& span) const {
     if (!forcing_) return oscillator_.bound(d[4], d[5]);
     return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, phase_at(t)}.bound(4, span);
   }
-  // The derivatives at the beginning: enough of them for a bound on the fourth derivative of x''.
+  // The derivatives at the beginning. Under a force there are enough for a bound on the fourth of x''.
   static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
   using Beginning = Instant<Real, forced ? 8 : 6, Force>;
-  // A bound on |x^(n)| for a time `span` from the beginning on, n <= 6.
+  // A bound on |x^(n)| for a time `span` from the beginning on; n <= 6, without a force n <= 4.
   Real bound(std::size_t n, const Real& span) const {
     if constexpr (forced) {
-      // Where the force is fast its steady state is small beside what it could add without turning; else not.
+      // Under a fast force the steady state may give the smaller of the two bounds (M3.4). Else only the
+      // bound that grows with `span` is computed, from the series, which is there already.
       if (forcing_.frequency * forcing_.frequency > 4 * oscillator_.b()) return beginning().bound(n, span);
       Real power = absolute(forcing_.amplitude);
       for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
@@ -192,11 +195,11 @@ class ForcedMotion {
     if (!(v0_ * v > 0)) return false;
     return forcing_ ? keeps_sign(v0_, v, bound(3, t), t) : t < oscillator_.half_period();
   }
-  // From t on, a time in which x' has one zero at most: without a force x and all its derivatives.
+  // A time from t on in which x' has one zero at most; without a force x and every derivative, too.
   Real one_turn_within(const Real& t) const {
     if constexpr (forced) {
       if (!(t < reach())) return 0;
-      // As long as x'' keeps its sign, and the bound on x''' holds.
+      // While x'' keeps its sign x' has one zero at most, and |x'''| <= m proves that for a time |x''(t)|/m.
       const Real rest = reach() - t, within = absolute(series().departure(t).u2) / bound(3, reach());
       return within < rest ? within : rest;
     } else {
@@ -222,26 +225,26 @@ class ForcedMotion {
     const Real time = oscillator_.fall(u, u1, from);
     return time < until ? std::optional(time) : std::nullopt;
   }
-  // |x| where it turns.
+  // |x| at the time t of a turn.
   Real height(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return absolute(at(t).x);
     return oscillator_.height(x0_, v0_, t);
   }
-  // When x had its last turn before x'' vanished at t, for the first time; if in closed form.
+  // The last turn of x before t, the first zero of x''; nothing where it has no closed form.
   std::optional<Real> turn_before(const Real& t) const {
     const Real& half_period = oscillator_.half_period();
     if (forcing_ || !(half_period < std::numeric_limits<Real>::infinity()) || !(t < half_period)) return {};
     return t - oscillator_.turn_before();
   }
-  // |x'| where that turns, if in closed form; x there is -2a/b times x'.
+  // |x'| at a zero of x'' at t, where x is -2a/b times x'; nothing where it has no closed form.
   std::optional<Real> speed_at_turn(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     return oscillator_.height(x[1], x[2], t);
   }
   Real per_speed() const { return 2 * oscillator_.a() / oscillator_.b(); }
-  // The `order`-th derivative of x, looked ahead from t.
+  // Encloses sign times the `order`-th derivative of x for a time `span` from t on.
   LocalEnclosure<Real> enclosure_at(std::size_t order, const Real& sign, const Real& t,
                                     const Real& span) const {
     const Change now = at(t);
@@ -251,7 +254,7 @@ class ForcedMotion {
             std::numeric_limits<Real>::infinity()};
   }
 
-  // The fastest that anything happens in it.
+  // The largest modulus of an eigenvalue, or omega_f if that is larger.
   Real rate() const {
     return forcing_ && forcing_.frequency > oscillator_.rate() ? forcing_.frequency : oscillator_.rate();
   }
@@ -266,9 +269,9 @@ class ForcedMotion {
 
  private:
   SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
-  // What falls() finds, by Halley's method on the series, if L2 proves it or proves that there is nothing;
-  // nothing where neither is proved. That it does not depend on `until` keeps a shorter run the beginning of
-  // a longer one.
+  // What falls() returns, if Lemma L2 proves it: the fall that Halley's method finds on the series is the
+  // first; or, `time` empty, there is none before `until`. Nothing where neither is proved. The time of a
+  // fall does not depend on `until`, so a shorter run is the beginning of a longer one.
   struct PredictedFall {
     std::optional<Real> time;
   };
@@ -277,7 +280,8 @@ class ForcedMotion {
     if (!(from < reach())) return {};
     const auto g = series().derivative(order, sign);
     SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
-    // At `from` > 0 a zero has just been left, and the sign of what rounding made of it means nothing.
+    // Later than the beginning a search starts where g is positive, or at a zero of g that has just been
+    // left: if g is negative there, then by rounding.
     if (begin.u < 0 && from > 0) begin.u = 0;
     if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
     const Real fourth = bound(order + 4, reach());
@@ -291,7 +295,8 @@ class ForcedMotion {
     if (stays_open(begin.u, begin.u1, end.u, end.u1, Real(until - from), fourth)) return PredictedFall{};
     return {};
   }
-  // By Halley's method from the parabola's root on, first with few terms; nothing where that leads nowhere.
+  // A root of the series g after `from`, and the slope there: by Halley's method, which starts at the root of
+  // the parabola through `begin`, first with few terms. Nothing where it does not converge.
   struct SeriesRoot {
     Real time, slope;
   };
@@ -308,10 +313,13 @@ class ForcedMotion {
       const SeriesAt<Real> at =
           near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
       const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
-      const Real step = absolute(bend) < Real(0.0625) ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+      const bool bends_little = absolute(bend) < Real(0.0625);
+      const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
       t += step;
       if (!(t > 0 && t < room)) return {};
-      if (near && absolute(step) * two_to_the_25 < t) return SeriesRoot{from + t, at.u1 + step * at.u2};
+      // Halley's step alone vanishes at a turn, too, where the function is not zero.
+      if (near && bends_little && absolute(step) * two_to_the_25 < t)
+        return SeriesRoot{from + t, at.u1 + step * at.u2};
       near = near || absolute(step) * 64 < t;
     }
     return {};

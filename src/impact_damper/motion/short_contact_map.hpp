@@ -1,10 +1,12 @@
 // The short-contact map (M7.8): a contact that begins on the wall and lasts about T, half a period of the
 // fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene:
-// of x, v and w at the touch, and where there is a force, of the sine and cosine of its phase.
+// of x, v and w at the touch, and under a force also of its amplitude times the sine and times the cosine of
+// its phase then.
 //
-// The series in s, the time since T, is as long as its first term left out needs to be below rounding. A
-// rounding error that is the same in every impact adds up; so what is tabulated for x is the change of the
-// centre of both masses, which is small, and for y' what differs from -E y', E = exp(-a T).
+// The series in s, the time since T, has as many terms as it takes for the first one left out to be below
+// rounding. A rounding error that is the same in every impact adds up. So the table has, in place of x, the
+// change of the centre of both masses, which is small, and in place of w its difference from -E times the w
+// at the touch, E = exp(-a T).
 //
 // That q has not been back at zero before is proved by Lemma L2 for exp(a t) q, a the decay rate of the fast
 // mode (docs/mathematics.md, 7.6).
@@ -36,29 +38,31 @@ struct Centre {
   Real x, v;
 };
 
+// One unit of x, of v or of w at the touch: its slow and its fast part, and the fast part's centre.
 template <class Real>
 struct Touch {
   ContactState<Real> slow, fast;
   Centre<Real> fast_centre;
 };
 
-// What q, q' and the centre have become a time T after the touch; of the column of w, q' but for -E w.
+// What one column of the map gives a time T after the touch: q, q' and the change of the centre; in the
+// column of w, q' without its largest part, -E.
 template <class Real>
 struct AfterContact {
   Real q, w;
   Centre<Real> change;
 };
 
-// The same of one unit of a force, from rest, with bounds on what it adds until `latest`: to the fourth
-// derivative of exp(a t) q and to x'' and x'''.
+// The same of a force of amplitude 1, from rest, and bounds until `latest` on what it adds to x'', to x'''
+// and to (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
 template <class Real>
 struct DrivenContact {
   AfterContact<Real> after;
   Real fourth_of_q, second_of_x, third_of_x;
 };
 
-// columns: what a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude times the
-// sine and the cosine of its phase then.
+// columns: how many numbers a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude
+// times the sine and times the cosine of its phase then.
 template <class Real, std::size_t columns>
 class ShortContactMap {
  public:
@@ -66,9 +70,9 @@ class ShortContactMap {
   static constexpr std::size_t terms = 24;
 
   ShortContactMap() = default;
-  // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: what x, v and w at the touch, one each, are
-  // split into. derive(column, state, x, q, f) extends the state (x, v, q, w) a time T after the touch by the
-  // higher derivatives, and tells those of the force. driven(column, T, latest) gives the last two columns.
+  // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: the parts of one unit of x, of v and of w at
+  // the touch. derive(column, state, x, q, f) computes the derivatives of x, q and the force from the state
+  // (x, v, q, w) a time T after the touch. driven(column, T, latest) gives the last two columns.
   template <class Derive, class Driven>
   ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
                   const Real& zeta, const std::array<Touch<Real>, 3>& start, Derive&& derive, Driven&& driven)
@@ -104,7 +108,8 @@ class ShortContactMap {
 
   explicit operator bool() const { return accurate_ > 0; }
 
-  // No contact of the map is longer, and the bounds on x hold until then; without a force for ever.
+  // No contact of the map is longer, but for its last correction of s. Under a force the bounds on x hold
+  // until then, without one for ever.
   const Real& latest() const { return latest_; }
 
   // The end of a contact; nothing if it is too long for the series, or not proved.
@@ -119,7 +124,7 @@ class ShortContactMap {
     if (absolute(s) < few_.s)
       if (const auto end = end_within(start, q, s, few_)) return end;
     if (!(absolute(s) < most_.s)) return {};
-    // Nearer by few terms, before all that it takes are summed.
+    // A few terms bring s near enough to tell how many it takes.
     for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
     if (absolute(s) < more_.s)
       if (const auto end = end_within(start, overlap_after<more>(start), s, more_)) return end;
@@ -128,7 +133,7 @@ class ShortContactMap {
     if (!(absolute(s) < most_.s)) return {};
     return end_within(start, overlap_after<most>(start), s, most_);
   }
-  // Bounds on the second and third derivative of x in it.
+  // Bounds on |x''| and |x'''| during the contact.
   Real second_of_x(const Start& start) const { return bound(second_of_x_, start); }
   Real third_of_x(const Start& start) const { return bound(third_of_x_, start); }
 
@@ -157,7 +162,8 @@ class ShortContactMap {
             {p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
              (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v}};
   }
-  // The terms of q and of the centre's change after T, for one column, which begins with that centre.
+  // The series of q and of the centre's change about the time T, for one column. `begin`: the centre at the
+  // touch.
   template <class Derive>
   void tabulate_series(std::size_t i, const Centre<Real>& begin, const AfterContact<Real>& after,
                        Derive&& derive) {
@@ -179,13 +185,13 @@ class ShortContactMap {
       centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
     }
   }
-  // What it contributes to the bounds on the fourth derivative of exp(a t) q, and on x'' and x'''.
+  // What a column contributes to the bounds on the fourth derivative of exp(a t) q, on x'' and on x'''.
   void tabulate_bounds(std::size_t i, const Oscillator<Real>& slow, const Oscillator<Real>& fast,
                        const Touch<Real>& touch) {
     const ContactState<Real>&s = touch.slow, &f = touch.fast;
     const Real omega = half_turn<Real>() / half_period_;
     unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
-    // A derivative of a free oscillator is at most z + sqrt(1 + z^2) times sqrt(b) the size of its motion.
+    // A derivative increases the size of a free motion at most by this factor (mathematics.md, 7.6).
     const auto fastest = [](const Oscillator<Real>& o) {
       const Real root_b = square_root(o.b()), z = o.a() / root_b;
       return Real(root_b * (z + square_root(Real(1 + z * z))));
@@ -200,16 +206,16 @@ class ShortContactMap {
     third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
   }
 
-  // What a number of terms is good for.
+  // How far from T a series of so many terms is used.
   struct Reach {
     Real s{0};       // the longest |s|
-    Real growth{0};  // of exp(a t) in it, from T on
+    Real growth{0};  // exp(a s), by which exp(a t) grows from T on
   };
   static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
     const std::size_t terms = 2 * pairs;
     Real factorial{1};
     for (std::size_t n = 2; n < terms; ++n) factorial *= Real(double(n));
-    // The term left out, (omega s)^(terms - 1) / (terms - 1)! in the velocity.
+    // The first term left out of the velocity: (rate s)^(terms - 1) / (terms - 1)! of it.
     const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
     const Real s = exponential(Real(logarithm(enough) / Real(double(terms - 1)))) / fast.rate();
     return {s, exponential(Real(fast.a() * s))};
@@ -222,15 +228,15 @@ class ShortContactMap {
     q[0] = q[0] - SimdPair<Real>{Real(0), decay_factor_ * start[2]};
     return q;
   }
-  // From s on to where q vanishes, with q' and q'' at s.
+  // What is left from s to the zero of q, to second order, and q' and q'' at s.
   struct Step {
-    Real rest, w, w1;
+    Real rest, bend, w, w1;  // bend: by what part the second order shortens the step
   };
   template <std::size_t pairs>
   static Step step_to_zero(const std::array<SimdPair<Real>, pairs>& q, const Real& s) {
     const auto [depth, w, w1] = sum<Real>(q, s);
-    const Real over = 1 / w, newton = -depth * over;
-    return {newton * (1 - newton * (w1 * over) / 2), w, w1};
+    const Real over = 1 / w, newton = -depth * over, bend = newton * (w1 * over) / 2;
+    return {newton * (1 - bend), bend, w, w1};
   }
   template <std::size_t pairs>
   std::optional<End> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
@@ -243,17 +249,20 @@ class ShortContactMap {
       if (absolute(step.rest) < accurate_) break;
       s += step.rest;
     }
-    // All else that is a sum by powers of s need not wait for the last step, and is moved on by it.
+    // All other series are summed at s and moved on by the last step.
     const Real rest = step.rest, whole = s + rest, time = half_period_ + whole;
+    // A step may vanish where q does not, by its second order alone.
+    if (!(absolute(step.bend) < Real(0.0625) && absolute(whole) < reach.s)) return {};
     const Real end_w = step.w + rest * (step.w1 + rest * (3 * q[1][1] + 12 * s * q[2][0]));
     if (!(end_w * w < 0)) return {};
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(end_w);
     const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
-    // exp(a s) >= 1 + a s.
+    // The slope at the end is at least as steep as is taken here: exp(a s) >= 1 + a s.
     bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * whole) * out), time,
                              Real(fast_fourth + reach.growth * slow_fourth));
     if (!proved && whole > 0) {
-      // In two pieces, to T and from there: without the weight exp(a t) what it has become by T is b^2 N E.
+      // In two pieces: up to T, and from T on without the weight exp(a t). There the fourth derivative of the
+      // fast part is at most b^2 N E, N being the amplitude of exp(a t) times the fast part.
       const Real depth = inward * q[0][0], slope = inward * q[0][1];
       proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
                           half_period_, Real(fast_fourth + slow_fourth)) &&
