@@ -1,5 +1,4 @@
-// A free decay: how far the primary mass still swings in each half cycle, and how often the loose mass
-// strikes.
+// A free decay: the amplitude of the primary mass in each half cycle, and the number of impacts in it.
 #include <cstdio>
 
 #include "impact_damper/simulate.hpp"
@@ -13,7 +12,7 @@ int main() {
   scene.x0 = 3;             // the primary mass is pulled aside by three times the clearance
   scene.until_time = 100;
 
-  // Recorded are half cycles, unless a Record asks for something else (forced.cpp).
+  // The last argument is a Record; by default only half cycles are recorded (forced.cpp asks for energies).
   const impact_damper::Run run = impact_damper::simulate(scene, impact_damper::Exact{}, {});
 
   const impact_damper::HalfCycles& rows = *run.half_cycles;

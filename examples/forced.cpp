@@ -1,4 +1,4 @@
-// A forced vibration, from a scene file's text: where the energy goes that the force puts in.
+// A forced vibration, from the text of a scene file: the work of the force, and what takes it out.
 #include <cstdio>
 #include <numeric>
 
@@ -6,8 +6,8 @@
 #include "impact_damper/simulate.hpp"
 
 int main() try {
-  // At resonance, with a little viscous damping beside the impact damper. read_scene() reads the same from a
-  // file.
+  // Force at the natural frequency, with a little viscous damping beside the impact damper. read_scene()
+  // reads the same from a file.
   const impact_damper::Scene scene = impact_damper::parse_scene("forced", R"({
     "mass_ratio": 0.04, "damping_ratio": 0.005, "x0": 0,
     "force_amplitude": 0.05, "force_frequency": 1, "until_time": 500

@@ -1,11 +1,12 @@
-// An engine with an observer of one's own: only the longest contact is kept, whatever the length of the run.
+// An engine with an observer of one's own. It keeps only the number of impacts and the longest contact, so
+// its memory does not grow with the length of the run.
 #include <cstdio>
 #include <limits>
 
 #include "impact_damper/engines/exact.hpp"
 
-// What an engine asks its observer, and tells it: RunObserver in engines/observer.hpp. An engine
-// computes only what is wanted.
+// What an engine asks its observer, and reports to it: RunObserver in engines/observer.hpp. An engine
+// computes only what is wanted, except impacts, which it always reports.
 struct LongestContact {
   bool wants_half_cycles() const { return false; }
   bool wants_contacts() const { return true; }

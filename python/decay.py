@@ -13,7 +13,7 @@ def decay(mass_ratio):
 
 
 mass_ratios = [0.01, 0.02, 0.04]
-with ThreadPoolExecutor() as pool:  # runs do not wait for each other
+with ThreadPoolExecutor() as pool:  # runs release the interpreter lock, so they run in parallel
     for mass_ratio, (time, amplitude) in zip(mass_ratios, pool.map(decay, mass_ratios)):
         slope = np.polyfit(time, amplitude, 1)[0]
         print(f"mass ratio {mass_ratio}: amplitude 0.5 at time {time[-1]:.3f}, slope {slope / mass_ratio:.4f} mass ratios")

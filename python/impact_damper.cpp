@@ -1,4 +1,4 @@
-// The Python module: a scene in, a run of numpy arrays out, by the interface for C.
+// The Python module: a scene in, a run of numpy arrays out, through the interface for C.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -21,10 +21,10 @@ namespace py = pybind11;
 
 namespace {
 
-// What a Run is beside its attributes. The capsule owns the run; each array refers to it, too.
+// What a Run holds besides its attributes. The capsule owns the run; each array keeps it alive.
 struct Run {
-  std::optional<py::capsule> run;  // absent in what pickle has made
-  std::string text;                // only there
+  std::optional<py::capsule> run;  // absent in an unpickled Run
+  std::string text;                // of an unpickled Run only
 };
 
 std::string text_of(const Run& run) {
@@ -37,8 +37,8 @@ std::string text_of(const Run& run) {
   return text.get();
 }
 
-// The JSON text of keyword arguments or options. What JSON cannot hold becomes a text, which the reader
-// rejects together with all else that is wrong, each by its name.
+// The JSON text of keyword arguments or options. A value that JSON cannot hold becomes a string; the reader
+// then rejects it by its name, together with everything else that is not valid.
 std::string json_of(const py::dict& object) {
   py::dict plain;
   for (const auto& [name, given] : object) {
@@ -134,7 +134,7 @@ py::object run(const py::object& engine, const py::object& history, const py::kw
 constexpr const char* doc_of_run_class =
     R"(What became of a scene, under the names of a run file. Each column is a one-dimensional, read-only
 numpy array of float64, a view into the run; an absent number is nan. All is dimensionless: lengths are divided by
-the clearance epsilon, times by 1/Omega_n = sqrt(M/K), energies by K epsilon^2.
+the clearance epsilon, times by 1/Omega_n = sqrt(M/K), velocities by epsilon Omega_n, energies by K epsilon^2.
 
 stop_reason   time, amplitude, or the budget that ended the run early
 end_time      when it ended
@@ -156,14 +156,16 @@ std::string doc_of_run() {
 
 engine        exact, restitution or cem with its default options, or a dict with options as in a run file's
               "engine", such as {"name": "cem", "time_step": 1e-4, "locate": True}
-history       (begin, end, count): records the motion at so many equally spaced times, both ends included
+history       (begin, end, count): records the motion at count >= 2 equally spaced times, both ends included,
+              0 <= begin < end, divided by 1/Omega_n also for a scene in units
 all others    the scene, by the keys of a scene file: **json.load(open("scene.json")) is a scene, too
 
 Raises ValueError with a line for each argument that is not valid, and ArithmeticError where the engine fails or
 this process's arithmetic has been changed. Other threads run meanwhile; Ctrl-C takes effect when the run has ended,
 with default options after a second or two at most.
 
-Dimensionless: lengths divided by the clearance epsilon, times by 1/Omega_n = sqrt(M/K), forces by K epsilon.
+Dimensionless: lengths divided by the clearance epsilon, times by 1/Omega_n = sqrt(M/K), velocities by
+epsilon Omega_n, forces by K epsilon.
 )";
   const auto add = [&](std::string_view name, const std::string& meaning) {
     text += "\n" + std::string(name) + std::string(name.size() < 23 ? 23 - name.size() : 1, ' ') + meaning;

@@ -230,7 +230,7 @@ Options output_options() {
       "run an ensemble of N members, 1 (default) to 100: the scene itself\n"
       "and the same with perturbed initial conditions. With -o NAME.json\n"
       "these are NAME.members/02.json and so on, each a run file with\n"
-      "what is recorded but history and energy");
+      "what is recorded, except history and energy");
   options.push_back(threads_option());
   options.back().group = "Output";
   return options;
@@ -260,9 +260,8 @@ Command run_command() {
       "    --format csv --si -o mast.csv\n"
       "  impact-damper run --scene data/scenes/nu2-e06.json --members 16 -o nu2-e06.json\n\n"
       "A run that uses up --max-impacts, --max-half-cycles, --max-time or --max-steps ends there, and\n"
-      "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not valid, 3 "
-      "the scene\n"
-      "file's content is not valid, 4 numerical failure, 5 the scene file cannot be read or\n"
+      "says so on stderr and in its stop_reason. Exit codes: 0 done, 2 the command line is not valid,\n"
+      "3 the scene file's content is not valid, 4 numerical failure, 5 the scene file cannot be read or\n"
       "the run cannot be written.";
   command.act = run_scene;
   return command;

@@ -229,8 +229,8 @@ Options scene_options() {
     options.push_back({name, type, help, "Scene"});
   };
   add("--scene", "FILE",
-      "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; options given beside it win, "
-      "and those of the scene are\ndimensionless");
+      "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the options below replace "
+      "its numbers and are always\ndimensionless");
   const Scene defaults;
   for (const SceneField& field : scene_fields) {
     add(option_of(field.name), "X",

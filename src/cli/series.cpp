@@ -136,8 +136,8 @@ Command series_command() {
   command.options = {
       {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
       {"--runs", "FOLDER",
-       "where the runs are, each SCENE.json by the scene's name, with the\n"
-       "members of the ensembles that figures show (run --members)"},
+       "folder of the runs, must be given: SCENE.json of each scene, with\n"
+       "the members of the ensembles that figures show (run --members)"},
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

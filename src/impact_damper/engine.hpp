@@ -14,10 +14,10 @@
 
 namespace impact_damper {
 
-// How the wall's damping ratio zeta_m follows from the restitution e (wall.hpp).
+// How the wall's damping ratio zeta_m follows from the restitution e (motion/wall.hpp, M2.4).
 enum class Calibration {
-  fixed_wall,  // the paper's: the primary mass is held still
-  two_body,    // both masses free: the delivered restitution is e exactly
+  fixed_wall,  // the paper's: an impact has the restitution e exactly if the primary mass is held still
+  two_body,    // an impact has the restitution e exactly if both masses are otherwise free
 };
 
 // Which velocity the wall damper of the component element method sees.
@@ -26,20 +26,22 @@ enum class Damper {
   lagged,   // (y_n - y_{n-1}) / h: one step behind, explicit
 };
 
-// Where a run ends that nothing else ends. A budget that is used up is a stop reason, never an error. The
-// defaults let no scene run for more than a second or two, nor its record grow beyond 200 MB; a decay of the
-// paper's needs a few thousand impacts and a time of 1200.
+// Limits that end a run which nothing else ends before. Reaching one is a stop reason, not an error. With the
+// defaults a run takes about two seconds at most, and its record 200 MB; a decay of the paper's needs a few
+// thousand impacts and a time of 1200.
 struct Budget {
-  std::int64_t max_impacts = 200'000;      // >= 0; at most most_rows where they are recorded
-  std::int64_t max_half_cycles = 200'000;  // >= 1; the same
-  std::optional<double> max_time;  // > 0, <= 1e12; absent: 500 000, by 1/omega_f where the forcing is faster
+  // >= 0; <= most_rows (run.hpp) if impacts, contacts or energy are recorded.
+  std::int64_t max_impacts = 200'000;
+  std::int64_t max_half_cycles = 200'000;  // >= 1; <= most_rows if half cycles are recorded
+  // > 0, <= 1e12. Absent: 500 000, divided by omega_f if there is a force with omega_f > 1.
+  std::optional<double> max_time;
 
   bool operator==(const Budget&) const = default;
 };
 
-// Steps of the searches for events, and panels of the quadratures of energy, that a run in closed form may
-// take: a budget like the others. All that the other default budgets allow of a scene that is not stiff takes
-// about three million.
+// Default limit on the steps of the searches for events plus the panels of the energy quadratures that a run
+// of the exact or restitution engine may take. A scene that is not stiff needs about three million until one
+// of the other default budgets ends it.
 inline constexpr std::int64_t usual_search_steps = 10'000'000;
 
 struct Exact {
@@ -55,8 +57,9 @@ struct Exact {
 struct Restitution {
   static constexpr std::string_view name = "restitution", meaning = "rigid walls, instantaneous impacts";
   static constexpr bool rigid_walls = true;
-  // Bounce-down jumps to its accumulation point once the rest of it is so short that the relative
-  // acceleration changes by less than this fraction in it (restitution.hpp). In (0, 1e-3].
+  // Bounce-down (complete chattering) is replaced by its limit, the accumulation point, once the relative
+  // acceleration changes by less than this fraction in the time left until that point (restitution.hpp).
+  // In (0, 1e-3].
   double accumulation_tolerance = 1e-8;
   Budget budget;
   std::int64_t max_steps = usual_search_steps;  // > 0
@@ -68,37 +71,40 @@ struct Cem {
   static constexpr std::string_view name = "cem",
                                     meaning = "the component element method, central differences";
   static constexpr bool rigid_walls = false;
-  // h, > 0; absent: a hundredth of the shortest of the nominal contact time, half a period of the primary
-  // mass, pi, and with forcing half a period of that, pi/omega_f.
+  // h, > 0 and, unless `unstable`, at most the stability limit. Absent: a hundredth of the shortest of three
+  // times: the nominal contact time; half a period of the primary mass, pi; with a force, half its period,
+  // pi/omega_f.
   std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;  // locate touch and release inside the step
-  // H, > h, < 2 and with forcing <= pi/omega_f: while no wall can be met steps of whole multiples of h, up to
-  // this long (cem_rates.hpp). Absent: all steps are h.
+  // H, > h, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are whole multiples of h,
+  // at most H (cem_rates.hpp). Absent: all steps are h.
   std::optional<double> large_step;
-  // The paper's stuck regime, u > 0 and finite: an impact slower than u that presses the secondary mass to
-  // the wall joins both masses, until x'' changes its sign. Absent: sticking is a contact that lasts.
+  // The paper's stuck regime, equation (9): an impact with a relative speed below u, while the wall pushes
+  // the secondary mass, joins both masses until x'' changes its sign. u > 0 and finite, divided by epsilon
+  // Omega_n. Absent: sticking is a sustained contact with the compliant wall.
   std::optional<double> stuck_speed;
-  bool unstable = false;  // run even beyond the stability limit
+  bool unstable = false;  // run even with a step beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
-  std::int64_t max_steps = 300'000'000;  // > 0; a budget like the others, for steps too small for the scene
+  std::int64_t max_steps = 300'000'000;  // time steps, > 0; ends a run whose step is too small for its length
   Budget budget;
 
   bool operator==(const Cem&) const = default;
 };
 
-// u where the paper's regime is chosen without one. From a relative acceleration a towards the wall an impact
+// The u of `--stuck paper` without --stuck-speed. From a relative acceleration a towards the wall an impact
 // slower than about 2 a / omega_c does not separate (docs/mathematics.md, 9.1): 0.014 for a = 5, k = 1e4,
 // nu = 0.02, near which the paper's bounce-down ends.
 inline constexpr double usual_stuck_speed = 0.01;
 
 using Engine = std::variant<Exact, Restitution, Cem>;
 
-// One of each with its default options: every list of engines is made of these.
+// One of each with its default options, in the order of the variant.
 const std::vector<Engine>& default_engines();
 std::vector<std::string_view> engine_names();
 
-// What is wrong with the options, each by itself, as problems_of(Scene).
+// What is wrong with the options, each checked by itself; reported as by problems_of(Scene). What depends on
+// the scene, or on what is recorded, simulate() checks.
 std::vector<Problem> problems_of(const Engine& engine);
 bool has_rigid_walls(const Engine& engine);
 

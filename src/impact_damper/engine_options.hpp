@@ -18,16 +18,16 @@
 
 namespace impact_damper {
 
-// What is known of an option but where it is kept.
+// All that describes an option, except where it is kept.
 struct OptionInfo {
   std::string_view name{};    // key in a run file; option of the command line with '-' for '_'
   std::string_view symbol{};  // stands for its number in help; words and flags have none
   NumberRange range{};        // of a number
   std::string_view meaning{};
-  std::string_view further{};    // what else limits it, in words
-  std::string_view otherwise{};  // the default, if a value cannot say it
-  // Whether every run file has it: an optional one is filled in by simulate() then. If not, it is absent
-  // where it has no value, and an older file may lack it.
+  std::string_view further{};    // limits that `range` cannot express, in words
+  std::string_view otherwise{};  // the default in words, where it depends on the scene
+  // True: every run file has it, and simulate() fills in an absent value. False: a file lacks it if it has no
+  // value, or if the file is older than the option.
   bool in_every_file = true;
   bool decides_motion = true;  // false: decides only whether, and until when, a scene is run
 };
@@ -73,8 +73,8 @@ inline constexpr OptionInfo calibration{.name = "calibration",
                                             "fixed-wall, the paper's, delivers the restitution to a primary "
                                             "mass held still, two-body to a free one"};
 
-// Files of before it was an option of the engines in closed form have none: the default was what they were
-// made with.
+// Run files of the exact and restitution engines made before the option existed lack it: they were made with
+// the default.
 constexpr OptionInfo max_steps(bool in_every_file) {
   return {.name = "max_steps",
           .symbol = "N",
@@ -113,7 +113,7 @@ inline constexpr auto engine_options<Cem> = std::tuple{
          .symbol = "H",
          .range = above(0),
          .meaning = "the fixed step",
-         .further = "below the stability limit",
+         .further = "at most the stability limit",
          .otherwise = "a hundredth of an impact's duration, or of half the primary mass's or the forcing's "
                       "period where that is shorter"}},
     EngineOption{&Cem::damper,
@@ -163,7 +163,7 @@ inline constexpr auto engine_options<Budget> =
                              .symbol = "T",
                              .range = {0, 1e12, false},
                              .meaning = "stop at this time at the latest",
-                             .otherwise = "500000, with a forcing faster than 1 divided by its frequency",
+                             .otherwise = "500000, divided by the forcing's frequency where that is above 1",
                              .decides_motion = false}}};
 
 // Calls visit(info, value) for each option of an engine, then of its budget.

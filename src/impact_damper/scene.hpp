@@ -1,8 +1,10 @@
 // A scene: the one system that is simulated, and when to stop looking at it.
 //
 // A primary mass on a spring (and, if zeta > 0, a viscous damper) carries a cavity in which a
-// secondary mass travels freely between two walls. Everything is dimensionless: lengths by the
-// free travel epsilon = D - d, times by 1/Omega_n = sqrt(M/K), forces by K epsilon.
+// secondary mass travels freely between two walls. Everything is dimensionless: lengths are divided by the
+// free travel (clearance) epsilon = D - d, times by 1/Omega_n = sqrt(M/K), velocities by epsilon Omega_n,
+// forces by K epsilon. Small letters and capitals are the paper's: m secondary, M primary mass; K spring, C
+// damper of the primary mass, C_c its critical damping; K_M stiffness of a wall.
 #pragma once
 
 #include <array>
@@ -15,35 +17,41 @@
 namespace impact_damper {
 
 struct Scene {
-  double mass_ratio = 0.02;     // nu = m/M, >= 1e-9
+  double mass_ratio = 0.02;     // nu = m/M, 1e-9 to 1e6
   double restitution = 0.6;     // e, 0 (plastic) to 1 (lossless)
-  double damping_ratio = 0.0;   // zeta = C/C_c of the primary mass, >= 0, overdamped too
-  double wall_stiffness = 1e4;  // k = K_M/K, >= 1e-6; the restitution engine's walls are rigid
+  double damping_ratio = 0.0;   // zeta = C/C_c of the primary mass, 0 to 1e6; above 1 overdamped
+  double wall_stiffness = 1e4;  // k = K_M/K, 1e-6 to 1e15; the restitution engine's walls are rigid
   double x0 = 6.0;              // initial displacement of the primary mass, divided by epsilon
   double v0 = 0.0;              // its initial velocity x', divided by epsilon Omega_n
-  double y0 = 0.0;  // initial displacement of the secondary mass from the left wall, divided by epsilon
-  double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
-  double force_amplitude = 0.0;           // f0 = F0/(K epsilon), 0 = unforced
-  double force_frequency = 1.0;           // omega_f = Omega_f/Omega_n, >= 1e-12
-  std::optional<double> until_time;       // stop at this time, > 0
-  std::optional<double> until_amplitude;  // stop at the end of the first half cycle below it, > 0
+  // Initial distance of the secondary mass from the left wall, divided by epsilon: 0 at the left, 1 at the
+  // right wall. Outside them it begins by pressing a wall together, which needs compliant walls.
+  double y0 = 0.0;
+  double w0 = 0.0;               // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
+  double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
+  // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12, as are the
+  // magnitudes of x0, v0, y0, w0 and force_amplitude, which may be 0.
+  std::optional<double> until_time;       // stop at this time
+  std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
 
   bool operator==(const Scene&) const = default;
 };
 
-// One number of a scene: its name at every border (JSON key; option name with '-' for '_'), where it
-// is kept, and which values it allows. Readers, writers and checks all go through this table,
-// but for the two stops.
+// One number of a scene: its name (as JSON key; as option of the command line, with '-' for '_'), where it
+// is kept, and which values it allows. Readers, writers and checks all go through this table; only
+// until_time and until_amplitude are not in it.
 struct SceneField {
   std::string_view name;
   double Scene::*member;
-  double least, most;  // both allowed
+  double least, most;  // smallest and largest allowed value
   std::string_view meaning;
 };
 extern const std::array<SceneField, 10> scene_fields;
 
 // What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
-// Empty means that any engine may run it. Written so that a NaN is always an offence.
+// A NaN is always an offence. Empty means that the exact engine may run it. simulate() checks what the
+// others ask for besides: the restitution engine 0 <= y0 <= 1, the component element method a time step
+// within its stability limit.
 std::vector<Problem> problems_of(const Scene& scene);
 
 }  // namespace impact_damper

@@ -7,11 +7,13 @@
 namespace impact_damper {
 
 // Runs `scene` with `engine`, recording what `record` asks for.
-// Throws InvalidArguments, a std::invalid_argument that names every problem (base/errors.hpp), if the scene,
-// the engine's options or the record are not valid (an unstable time step of the component element method
-// among them), and NumericalError where that method overflows, and where this process's arithmetic cannot
-// give the promised bits (base/floating_point.hpp). A search that uses up its steps is no error: the run ends
-// there, with StopReason::step_budget.
+// Throws
+//   InvalidArguments, a std::invalid_argument that names every problem (base/errors.hpp), if the scene, the
+//   engine's options or the record are not valid, or do not go together: y0 outside the cavity with rigid
+//   walls, a time step beyond the stability limit, budgets that allow more than most_rows recorded rows;
+//   NumericalError if the component element method overflows, or if the arithmetic of this process cannot
+//   give the promised bits (base/floating_point.hpp).
+// A run that reaches one of its budgets is no error: it ends there, and its stop_reason says so.
 Run simulate(const Scene& scene, const Engine& engine, const Record& record);
 
 }  // namespace impact_damper

@@ -1,4 +1,4 @@
-// What is valid in a scene, but more often a slip than meant.
+// Warnings about numbers of a scene that are valid but probably a mistake.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,15 @@
 
 namespace impact_damper {
 
-// Sentences in plain text, one for each of:
+// One sentence of plain text for each of these that the scene has; empty if it has none:
 //
 //   a secondary mass that begins outside its cavity, y0 < 0 or y0 > 1: with compliant walls it begins by
-//   pressing a wall together, which then holds the energy k q^2 / 2, q being the distance from the cavity; a
-//   mass ratio above 1: the mass may have been typed in grams.
+//   pressing a wall together, which then holds the energy k q^2 / 2, q being the distance from the cavity;
 //
-// Lengths and energies are in mm and J if `scales` are given, else in units of epsilon and K epsilon^2.
+//   a mass ratio above 1: the secondary mass may have been given in grams.
+//
+// Lengths and energies are in mm and J if `scales` are given, else in units of epsilon and K epsilon^2. The
+// scene must be valid (problems_of).
 std::vector<std::string> cautions_of(const Scene& scene, const std::optional<Scales>& scales);
 
 }  // namespace impact_damper

@@ -1,6 +1,5 @@
-// Whether a run agrees with itself: what its columns, its energies and its end say of each other and of its
-// scene and engine. A run made by simulate() does; one whose numbers were altered, or that an engine in error
-// made, mostly does not.
+// Whether a run is consistent: its columns, energies and end with each other, and with its scene and engine.
+// A run made by simulate() is. One with altered numbers, or made by a faulty engine, is in most cases not.
 #pragma once
 
 #include <vector>
@@ -9,19 +8,21 @@
 
 namespace impact_damper {
 
-// What contradicts what: for each rule its first offence, Problem::field being the JSON pointer into the
-// run's file
-// ("/half_cycles/amplitude/3"). Empty if nothing does. Sections that were not recorded are not asked for; the
-// columns of each must be equally long, as the reader of run files ensures.
+// The contradictions found: the first for each rule, Problem::field being the JSON pointer into the run's
+// file ("/half_cycles/amplitude/3"). Empty if there is none. A rule that needs a section which was not
+// recorded is left out. The columns of a section must be equally long, as the reader of run files ensures.
 //
-// The rules: the run ended where its stop reason says, and nothing is later; rows have a length, their peaks
-// lie in them, the first amplitude is >= |x0|; the impacts of each row are as many as it says, lie in it, and
-// have its phases and its amplitude; impacts come from the side of their wall; contacts are disjoint, with
-// compliant walls each but one from the release on begins with its impact, with rigid ones no impact lies in
-// one; every change of sign between samples has its crossing, no |x| of a half cycle exceeds its amplitude, x
-// is zero where a sample meets a crossing; the energies at the release and at the end are those of the states
-// there, an impact on a rigid wall costs what its speed says, and the recorded residual is what the recorded
-// terms leave.
+// The rules:
+//   end: the run ended where its stop reason says, and nothing recorded is later;
+//   half cycles: each row has a length > 0 and its peak within it; the first amplitude is >= |x0|;
+//   impacts: each row has as many as its count says, all within it, with the phases that follow from its
+//     crossings and with its amplitude; the relative velocity is towards the wall that is struck;
+//   contacts: they do not overlap; with compliant walls each begins with an impact, except one that begins
+//     at the release; with rigid walls no impact lies within one;
+//   history: x changes its sign only where a zero crossing is recorded and is zero in a sample there; |x|
+//     does not exceed the amplitude of its half cycle;
+//   energy: the energies at the release and at the end are those of the states there; an impact on a rigid
+//     wall loses what its speed implies; the recorded residual is that of the recorded terms.
 std::vector<Problem> inconsistencies_of(const Run& run);
 
 }  // namespace impact_damper

@@ -1,6 +1,6 @@
-// What somebody asks who builds an impact damper: which clearance, which forces, and what is left of the
-// motion under an exciting force. Dimensionless throughout; the equations are in docs/mathematics.md,
-// chapter 12.
+// For the design of an impact damper: which clearance, which forces, and what amplitude is left under an
+// exciting force. Dimensionless as in run.hpp, forces divided by K epsilon; the equations are in
+// docs/mathematics.md, chapter 12. No function checks its arguments: scenes must be valid (problems_of).
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace impact_damper {
 
 // --- Clearance --------------------------------------------------------------------------------------------
-// How far what is built may be from what was meant.
+// How far a damper that is built, and its motion, may deviate from the nominal numbers.
 struct Tolerances {
-  double restitution = 0.05;  // either way
+  double restitution = 0.05;  // absolute, either way
   double clearance = 0.1;     // relative, either way
   double amplitude = 0.1;     // relative, either way
 };
@@ -24,45 +24,48 @@ struct Tolerances {
 // The clearance for an amplitude that is to be damped (M12.3). Amplitudes in units of the clearance.
 struct ClearanceRule {
   double fold = 0;  // fold_amplitude(e): below it one impact per half cycle cannot go on
-  double margin =
-      0;  // of the recommended amplitude to the fold: least_margin, more if the tolerances take more
+  // Recommended amplitude divided by the fold: least_margin, or more where the tolerances need more.
+  double margin = 0;
   double amplitude = 0;  // margin * fold: what the amplitude to be damped should be
   double loss = 0;       // eta/nu there, of the impacts alone
-  // Where all tolerances are used up to the worse side: a lower restitution, a wider clearance, a smaller
-  // motion.
+  // With every deviation at its limit on the worse side: a lower restitution, a wider clearance, a smaller
+  // amplitude.
   double worst_restitution = 0, worst_fold = 0, worst_amplitude = 0;
   double worst_loss = 0;  // eta/nu there
 };
 inline constexpr double least_margin = 1.5;
-// e in (0, 1).
+// Restitution in (0, 1), clearance tolerance > -1, amplitude tolerance < 1.
 ClearanceRule clearance_rule(double restitution, const Tolerances& tolerances = {});
 
 // --- Contact ----------------------------------------------------------------------------------------------
-// A short contact of both masses, otherwise free, that a relative speed w > 0 begins: (M12.4) and (M12.5).
+// A short contact of the two masses, otherwise free, begun with the relative speed w > 0 (`speed`, divided by
+// epsilon Omega_n): (M12.4) and (M12.5).
 struct ShortContact {
-  double force = 0;                // largest force between them, divided by K epsilon
-  std::optional<double> duration;  // until the overlap is gone; absent without a rebound (damping ratio >= 1)
+  double force = 0;  // largest force between them
+  // Until the wall is back in its place; absent without a rebound (damping ratio of the contact >= 1).
+  std::optional<double> duration;
 };
 ShortContact short_contact(const Scene& scene, Calibration calibration, double speed);
 
-// The force of the wall in which the scene begins, divided by K epsilon; 0 if y0 is in the cavity.
+// Magnitude of the wall's force at the release; 0 if y0 is in the cavity.
 double initial_wall_force(const Scene& scene, Calibration calibration);
 
 // --- Forced motion ----------------------------------------------------------------------------------------
-// Amplitude of mass * x'' + 2 zeta x' + x = f sin(omega t): the empty box for mass 1, the secondary mass
-// locked to it for mass 1 + nu (M12.6). Infinite at the resonance of an undamped oscillator.
+// Amplitude of the steady motion of mass * x'' + 2 zeta x' + x = f sin(omega t), with `mass` = 1 for the
+// empty box, 1 + nu for the secondary mass locked to it (M12.6). Infinite at the resonance of an undamped
+// oscillator.
 double linear_response(double force, double mass, double damping_ratio, double frequency);
 struct WorstResponse {
   double frequency = 0, amplitude = 0;
 };
-// Where linear_response is largest (M12.7): at frequency 0 if the damping is so strong; of infinite
-// amplitude without damping.
+// Where linear_response is largest (M12.7): at frequency 0 if 2 zeta^2 >= mass. Without damping the amplitude
+// is infinite.
 WorstResponse worst_linear_response(double force, double mass, double damping_ratio);
 
-// Amplitudes of the last quarter of a run's half cycles.
+// Smallest, mean and largest amplitude of the last quarter of a run's half cycles.
 struct SteadyAmplitude {
   double least = 0, mean = 0, greatest = 0;
-  bool settled = false;  // the mean of the quarter before differs by less than 2 %
+  bool settled = false;  // the mean of the quarter before differs by at most 2 %
 };
 // Absent with fewer than 12 half cycles.
 std::optional<SteadyAmplitude> steady_amplitude(const HalfCycles& half_cycles);
@@ -71,16 +74,17 @@ struct ResponsePoint {
   double frequency = 0;
   SteadyAmplitude amplitude;
 };
-// The scene under its force at other frequencies, each from the scene's own release, ascending: close
-// together about the resonances of the empty box and of the locked mass and about the frequency given, and
-// closer still where the mean amplitude is largest: about 70 runs. Each is followed for `time`, and by 20 000
-// impacts and a million steps of the searches at most; one that a budget ends is judged by what it has.
-// `progress` is told how many are done.
+// The scene under its force at about 65 frequencies, in ascending order, each run from the scene's own
+// release. They lie closest near the resonances of the empty box and of the locked mass, near the frequency
+// of the scene and, added last, where the mean amplitude is largest. Each run lasts `time`, but ends earlier
+// at 20 000 impacts or a million steps of the engine, or at a smaller budget of `engine`; its last quarter
+// then ends there. A frequency with fewer than 12 half cycles has no point. `progress` is called with the
+// number of runs that are done. Throws what simulate() throws.
 struct FrequencyResponse {
   std::vector<ResponsePoint> points;
-  double time = 0;
+  double time = 0;  // length of each run
   bool empty() const { return points.empty(); }
-  const ResponsePoint& worst() const;  // of a response that is not empty: largest mean amplitude
+  const ResponsePoint& worst() const;  // largest mean amplitude; only if not empty
 };
 FrequencyResponse frequency_response(const Scene& scene, const Engine& engine, const Threads& threads,
                                      const std::function<void(std::size_t done)>& progress);

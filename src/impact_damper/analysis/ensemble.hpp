@@ -1,8 +1,8 @@
 // Ensembles: the same scene with perturbed initial conditions, many times.
 //
-// Between amplitudes of about 3 and 0.4 the motion is chaotic: a last bit of the initial value decides the
-// third digit of an amplitude. A number that such a range enters is therefore the median over an ensemble,
-// and the ensemble's extremes are its error bar.
+// Between the regular windows, from amplitudes of about 4 down to 0.42, the motion is chaotic: a change of
+// the last bit of an initial value changes the third digit of later amplitudes. A number that depends on such
+// a range is therefore the median over an ensemble, and the ensemble's extremes are its error bar.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,25 @@
 namespace impact_damper {
 
 struct EnsembleOptions {
-  std::int64_t members = 16;       // >= 1, the undisturbed scene among them
-  double step = 1e-9;              // relative to what sets the scene moving
-  std::int64_t most_steps = 1000;  // a member is shifted by a whole number of steps up to this, either way
+  std::int64_t members = 16;       // >= 1, the unperturbed scene among them
+  double step = 1e-9;              // relative change of one step
+  std::int64_t most_steps = 1000;  // >= 1: a member is changed by up to so many steps, up or down
   std::uint64_t seed = 1;
   Threads threads;  // that simulate the members; no result depends on it
 };
 
-// The scene itself, then members - 1 shifted ones: x0, v0, w0, the forcing's amplitude and how deep y0 is in
-// a wall, all times 1 + step n, n drawn from the seed, never 0. Only where nothing sets the scene moving they
-// are all equal. Equal options give equal scenes on every machine.
+// The scene itself, then members - 1 perturbed ones: x0, v0, w0, the force's amplitude and the depth of y0 in
+// a wall (0 inside the cavity) are all multiplied by 1 + n step, n a whole number != 0 with |n| <=
+// most_steps, drawn from the seed for each member; the other sign of n is taken where a number would leave
+// its allowed range. If all these are 0, the members are equal. Equal options give equal scenes on every
+// machine. Throws std::invalid_argument if members or most_steps is below 1.
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options = {});
 
-// One run for each scene, in their order. Throws what simulate() throws for the first scene that fails.
+// One run for each scene, in their order. If some fail, throws what simulate() throws for the first of these.
 std::vector<Run> simulate_scenes(const std::vector<Scene>& scenes, const Engine& engine, const Record& record,
                                  const Threads& threads = {});
 
-// One run for each member of the ensemble.
+// One run for each member of ensemble_of(scene, options). Throws as the two functions above.
 std::vector<Run> simulate_ensemble(const Scene& scene, const Engine& engine, const Record& record,
                                    const EnsembleOptions& options = {});
 

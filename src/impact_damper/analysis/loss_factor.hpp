@@ -4,10 +4,10 @@
 // only then is it 2 zeta for viscous damping alone, which the paper subtracts, and only then do the paper's
 // ordinates come out; the "2 dx/x per cycle" of its text is 2 pi times as much.
 //
-// A'/A at a peak comes from a parabola in time, fitted by least squares to that peak and to as many before
-// as behind it. The fit is not free of bias: on an exponential envelope A = exp(-zeta t) with peaks a time p
-// apart it gives 2 zeta (1 + c (zeta p)^2 + ...), c = (3 n^2 + 3 n - 1) / 30 with n = half_cycles / 2
-// (c = 89/30 for n = 5: 0.2 % at zeta = 0.008). That is the price of the smoothing.
+// A'/A at a peak comes from a parabola in time, fitted by least squares to that peak and to equally many
+// before and after it. The fit has a bias: on an exponential envelope A = exp(-zeta t) with peaks a time p
+// apart it gives 2 zeta (1 + c (zeta p)^2 + ...), c = (3 n^2 + 3 n - 1) / 30 with n = half_cycles / 2;
+// c = 89/30 for n = 5, a bias of 0.2 % at zeta = 0.008.
 #pragma once
 
 #include <vector>
@@ -17,14 +17,14 @@
 namespace impact_damper {
 
 struct LossFactorOptions {
-  int half_cycles = 10;  // that the parabola spans: even, 10 to 18, on half_cycles + 1 peaks
+  int half_cycles = 10;  // spanned by the parabola, with half_cycles + 1 peaks; even, 10 to 18
 };
 
 // One row per peak that has half_cycles/2 peaks on either side of it, in the order of time: n peaks give
-// n - half_cycles rows, or none.
+// n - half_cycles rows, none if n <= half_cycles.
 struct LossFactor {
   std::vector<double> amplitude;  // the parabola's value at the middle peak, divided by epsilon
-  std::vector<double> time;       // of the middle peak, by 1/Omega_n
+  std::vector<double> time;       // of the middle peak, divided by 1/Omega_n
   std::vector<double> eta;        // -2 A'/A there, per radian
 };
 
@@ -33,20 +33,22 @@ struct LossFactor {
 LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
                                 const LossFactorOptions& options = {});
 
-// The same from a run's half cycles. A row whose peak does not lie behind the one before it (a run that
-// starts on its way out of a peak of no height) is no peak and is left out.
+// The same from a run's half cycles. Rows of amplitude 0, and rows whose peak is not later than the one
+// before (they occur at the start of a run), are left out.
 LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorOptions& options = {});
 
-// The loss factor without the parabola's bias, for strong damping too: about each peak a straight line is
-// fitted by least squares to ln A over time, over as many peaks on either side as keep the first and the last
-// within a factor of each other: one at least, so a whole cycle, `most_half_cycles` / 2 at most. Exact on an
-// exponential envelope of any decrement; (M12.1), and (M12.2) for its bias under impacts.
+// The loss factor without the parabola's bias, for strong damping too: a straight line is fitted by least
+// squares to ln A over time, at each peak, with n peaks on either side. n is the largest number up to
+// `most_half_cycles` / 2 for which the first and the last of these amplitudes differ by at most `factor`, but
+// at least 1, which spans a whole cycle. Exact on an exponential envelope of any decrement; (M12.1), and
+// (M12.2) for its bias under impacts.
 struct LogarithmicFit {
-  double factor = 2;          // >= 1
+  double factor = 2;          // >= 1, largest ratio of the first to the last amplitude
   int most_half_cycles = 10;  // even, >= 2
 };
-// Of the rows [first, last), with those left out that are no peak, as above. One row per peak that has a
-// neighbour on either side; its amplitude is the geometric mean of the peaks it is fitted to.
+// From the rows [first, last) of the half cycles, last <= their number, without those left out above. One row
+// per peak that has a neighbour on either side; its amplitude is the geometric mean of the peaks that its
+// line is fitted to. Nothing is checked or thrown.
 LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
                              const LogarithmicFit& fit = {});
 
@@ -64,7 +66,8 @@ inline double specific_carried_loss(double eta, double damping_ratio, double mas
   return (eta - 2 * damping_ratio / (1 + mass_ratio)) / mass_ratio;
 }
 
-// A (eta - 2 zeta) / nu, and that by 1 - e (e < 1): the ordinates of Figures 12, 13 and 14.
+// A (eta - 2 zeta) / nu, the ordinate of Figures 12 and 13, from `specific` = (eta - 2 zeta) / nu; and that
+// divided by 1 - e, e < 1, the ordinate of Figure 14.
 inline double amplitude_times_loss(double amplitude, double specific) { return amplitude * specific; }
 inline double loss_by_restitution(double ordinate, double restitution) {
   return ordinate / (1 - restitution);

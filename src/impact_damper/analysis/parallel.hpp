@@ -1,4 +1,4 @@
-// Work that splits into equal-looking pieces, spread over threads.
+// Independent pieces of work, spread over threads.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +13,17 @@
 
 namespace impact_damper {
 
-// How many threads work. Absent: one for each processor; no number below 1 is meant.
+// How many threads work. Absent: one for each processor. A number below 1 counts as 1.
 using Threads = std::optional<std::int64_t>;
 
 inline std::int64_t number_of(const Threads& threads) {
   return std::max<std::int64_t>(1, threads ? *threads : std::int64_t(std::thread::hardware_concurrency()));
 }
 
-// work(i) once for every i in [0, count), the calling thread among those that work. Each index is taken by
-// whichever thread is free, so work(i) must write only what belongs to i; results then do not depend on the
-// number of threads. Neither does what is thrown: of the indices whose work throws it is the smallest's
-// exception that reaches the caller, after all threads have ended; no index is begun once one has thrown.
+// Calls work(i) once for every i in [0, count), in this thread and in others. Any free thread takes the next
+// index, so work(i) must write only what belongs to i; results then do not depend on the number of threads.
+// After an exception no further index is begun. When all threads have ended the exception of the smallest
+// index that threw is rethrown, so that does not depend on the number of threads either.
 template <class Work>
 void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
   std::atomic<std::int64_t> next{0};

@@ -1,6 +1,7 @@
 // The regimes a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and its
-// end, regular impacting, impact failure. Rows are those of Run::half_cycles; "row 0" ran from the release
-// to the first zero crossing and is less than a half cycle, so no rule counts on it.
+// end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to the
+// first zero crossing, is less than a half cycle, so no rule uses it. "Needs" names the sections that the run
+// must have recorded; without one of them the function throws std::invalid_argument.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 namespace impact_damper {
 
 struct RegimeOptions {
-  // A compliant contact is stuck if it outlasts this many nominal contact times. A full period of the
-  // contact is two: a mass that has not left the wall after one whole oscillation no longer bounces.
+  // A compliant contact counts as stuck if it lasts longer than this many nominal contact times (half periods
+  // of the contact, motion/wall.hpp): after a whole period on the wall a mass no longer bounces.
   double stuck_contact_times = 2;
-  // Bounce-down needs this many successive half cycles with a stuck phase. In the chaotic ranges a mass may
-  // meet the wall at a standstill once, even twice; it does not do so regularly.
+  // Bounce-down is this many successive half cycles or more with a stuck phase. In the chaotic ranges a mass
+  // may stick in one half cycle, even in two in succession, but not regularly.
   std::int64_t bounce_down_half_cycles = 4;
   // Half cycles of equal impact count that make a regular window.
   std::int64_t window_half_cycles = 8;
@@ -25,8 +26,8 @@ struct RegimeOptions {
   std::int64_t failure_half_cycles = 3;
 };
 
-// The contacts in which the secondary mass sticks to a wall: all that a restitution run recorded, the
-// lasting ones of a compliant run. Needs contacts.
+// The contacts in which the secondary mass sticks to a wall: all that a restitution run recorded; with
+// compliant walls those that last longer than stuck_contact_times. Needs contacts.
 Contacts stuck_contacts(const Run& run, const RegimeOptions& options = {});
 
 // A stuck interval, or the part of one that lies in a half cycle, in the coordinates of Figure 15.
@@ -42,17 +43,17 @@ StuckPhases stuck_phases(const Run& run, const RegimeOptions& options = {});
 // and if the run ends in it. Needs half_cycles and contacts.
 std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& options = {});
 
-// Impact failure: the amplitude of a half cycle without an impact,
+// Impact failure: the amplitude of a half cycle without an impact; absent if there is none of the kind.
 struct ImpactFailure {
-  // the first, behind the last regular window, that no neighbour makes up for: the failure_half_cycles half
-  // cycles that it is the middle of bring fewer impacts than half cycles. (In the chaotic ranges above a
-  // single impact may be missed too, but impacting recovers.)
+  // The first one after the last regular window that its neighbours do not make up for: the
+  // failure_half_cycles half cycles in whose middle it lies have fewer impacts than half cycles. (In the
+  // chaotic ranges at higher amplitudes a single impact may be missed too, but impacting recovers.)
   std::optional<double> first_missed;
-  // the first from which on, to the end of the run, every failure_half_cycles successive half cycles bring
-  // fewer impacts than half cycles: impacting has ceased to be regular for good.
+  // The first one after which, to the end of the run, any failure_half_cycles successive half cycles have
+  // fewer impacts than half cycles: impacting does not recover.
   std::optional<double> for_good;
 };
-// Amplitudes. Needs half_cycles.
+// Amplitudes are divided by epsilon. Needs half_cycles.
 ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
 
 // A maximal series of at least window_half_cycles half cycles with the same number of impacts, at least one.

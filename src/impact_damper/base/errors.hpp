@@ -12,10 +12,10 @@ struct Problem {
   std::string field;  // "" if it is about the whole
   std::string message;
 };
-// Each as one line, "FIELD: MESSAGE", with `head` before it.
+// Each problem as one line, "FIELD: MESSAGE", with `head` before it.
 std::vector<std::string> lines_of(const std::vector<Problem>& problems, const std::string& head = {});
 
-// What was given to a function, by the names of its fields, is not valid. what() has a line for each problem.
+// Arguments of a function are not valid. problems() names their fields; what() has a line for each problem.
 class InvalidArguments : public std::invalid_argument {
  public:
   explicit InvalidArguments(std::vector<Problem> problems);
@@ -40,7 +40,8 @@ class InputError : public std::runtime_error {
   std::vector<std::string> problems_;
 };
 
-// A computation that went astray: a result that is not finite. what() is one line.
+// A result that is not finite, or arithmetic that cannot give the promised bits (floating_point.hpp). what()
+// is one line.
 class NumericalError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

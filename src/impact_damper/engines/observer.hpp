@@ -1,5 +1,5 @@
-// What every engine asks of, and tells, its observer. Recorder (recorder.hpp) keeps columns; a program of
-// your own may keep less, or something else.
+// What every engine asks its observer, and what it reports to it. Recorder (recorder.hpp) keeps columns; a
+// program of your own may keep less, or something else. Quantities are dimensionless, as in run.hpp.
 #pragma once
 
 #include <concepts>
@@ -8,8 +8,10 @@
 
 namespace impact_damper {
 
-// An engine asks what is wanted and computes nothing else, then tells it in the order of time. Observing
-// never changes the motion.
+// An engine asks what is wanted, computes only that, and reports it. Calls of one kind come in the order of
+// time, and an impact before the half cycle and the contact that it belongs to; the order is not fixed
+// otherwise. Impacts are always reported. Half cycles may be reported although they are not wanted, where
+// Scene::until_amplitude needs them. Observing never changes the motion.
 template <class T>
 concept RunObserver = requires(T observer, const T asked, double number, Wall wall) {
   { asked.wants_half_cycles() } -> std::same_as<bool>;
@@ -19,11 +21,14 @@ concept RunObserver = requires(T observer, const T asked, double number, Wall wa
   observer.half_cycle(number, number, number, number);
   // time, wall, y' just before, x.
   observer.impact(number, wall, number, number);
-  // begin, end, wall: told at the end.
+  // begin, end, wall: told at the end. Only if wants_contacts().
   observer.contact(number, number, wall);
-  // The time of the next sample that is wanted, infinity for none; and x, x', y, y' there.
+  // The time of the next sample that is wanted, infinity for none. Asked for anew after each call of sample()
+  // and half_cycle(); times ascend.
   { asked.next_sample() } -> std::same_as<double>;
+  // That time, and x, x', y, y' there.
   observer.sample(number, number, number, number, number);
+  // Where the engine writes the energies. Called only if wants_energy().
   { observer.energy_balance() } -> std::same_as<EnergyBalance&>;
 };
 

@@ -7,9 +7,10 @@
 //   {"mass": 40, "stiffness": 1e6, "secondary_mass": 1.6, "clearance": 2, "initial_displacement": 12,
 //    "until_millimetres": 0.02}
 //
-// never both in one file but for those that mean the same in both. A key may be left out and then has the
-// default of Scene or SceneInUnits, but one of the two stops must be given, and in units the four that Scales
-// and the mass ratio need. An optional "description" says in a sentence what the scene is.
+// never both in one file, except restitution and damping_ratio, which mean the same in both. A key that is
+// left out has the default of Scene or SceneInUnits. One of the two stops must be given, and in units mass,
+// stiffness, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
+// file may have at most 64 KiB.
 #pragma once
 
 #include <filesystem>
@@ -28,24 +29,26 @@ class JsonWriter;    // json_writer.hpp
 inline constexpr FileKind scene_kind{"scene", 1 << 16};
 
 struct SceneFile {
-  Scene scene;                   // dimensionless, however it was given
+  Scene scene;                   // dimensionless, also of a scene in units
   std::optional<Scales> scales;  // of a scene in units
   std::string description;
 };
 
-// Throws IoError if `file` cannot be read, InputError naming everything in it that is not valid.
+// Throws IoError if `file` cannot be read, InputError, with a line for everything in it that is not valid.
+// These lines begin with the name of the file, or with `name`.
 SceneFile read_scene_file(const std::filesystem::path& file);
 SceneFile parse_scene_file(const std::string& name, const std::string& text);
-// The same where nobody asks for units.
+// Its scene alone.
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);
 
-// The fields of a scene out of an object that may hold others beside them, where problems are reported, and
-// into one. For the project's own readers and writers: neither class is part of the library's interface.
+// Reads the fields of a scene from an object, which may hold others and collects the problems, and writes
+// them into one. For the project's own readers and writers: neither class is part of the library's interface.
 Scene read_scene_fields(ObjectReader& object);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
 
-// The scene on one line with every field in the order of Scene, absent stops as null: reads back as equal.
+// The scene as JSON on one line, every field in the order of Scene, absent stops as null. It reads back as an
+// equal scene.
 // Throws NumericalError if a number is not finite.
 std::string scene_text(const Scene& scene);
 
