@@ -60,9 +60,9 @@ plant("loss factor per cycle" analysis/loss_factor.cpp
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes.
 plant("contact force clipped at zero" motion/contact.hpp
       "    if (start_.y == wall_) {
-      std::optional<typename ShortContactMap<Real>::End> end;"
+      std::optional<End> end;"
       "    if (false) {
-      std::optional<typename ShortContactMap<Real>::End> end;"
+      std::optional<End> end;"
       "    LocalEnclosure<Real> ahead =
         look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
              instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
