@@ -504,7 +504,7 @@ TEST_CASE_TEMPLATE("a long forced run ends by a budget or its time, never in an 
                    Restitution) {
   const Scene scene{.force_amplitude = 0.05, .until_time = 3e3};
   std::vector<double> before;
-  for (const std::int64_t steps : {100, 1'000, 100'000}) {
+  for (const std::int64_t steps : {10, 100, 100'000}) {
     const Run run = with_steps<Options>(scene, steps);
     CHECK(run.stop_reason == (steps < 100'000 ? StopReason::step_budget : StopReason::time));
     CHECK(run.impacts->time.size() > before.size());

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/simulate.hpp"
 #include "random_scenes.hpp"
 #include "round_scenes.hpp"
@@ -369,7 +371,53 @@ std::string mirrors_but_for_rounding(Trial& trial) {
   return {};
 }
 
+// Wants what is set, and counts what it is told.
+struct Selective {
+  bool half_cycles, contacts, energy;
+  int told_half_cycles = 0, told_contacts = 0, told_energy = 0;
+
+  bool wants_half_cycles() const { return half_cycles; }
+  bool wants_contacts() const { return contacts; }
+  bool wants_energy() const { return energy; }
+  void half_cycle(double, double, double, double) { ++told_half_cycles; }
+  void impact(double, Wall, double, double) {}
+  void contact(double, double, Wall) { ++told_contacts; }
+  double next_sample() const { return absent; }
+  void sample(double, double, double, double, double) {}
+  EnergyBalance& energy_balance() {
+    ++told_energy;
+    return balance;
+  }
+  EnergyBalance balance;
+};
+
+Outcome observed(const Scene& scene, const Exact& options, Selective& observer) {
+  return run_exact<double>(scene, options, observer);
+}
+Outcome observed(const Scene& scene, const Restitution& options, Selective& observer) {
+  return run_restitution<double>(scene, options, observer);
+}
+Outcome observed(const Scene& scene, const Cem& options, Selective& observer) {
+  return run_cem<double>(scene, options, observer);
+}
+
 }  // namespace
+
+TEST_CASE_TEMPLATE("an observer is told only what it wants, also where an amplitude ends the run", Choice,
+                   Exact, Restitution, Cem) {
+  const Scene scene{.until_time = 100, .until_amplitude = 5.9};
+  Selective all{true, true, true};
+  const Outcome end = observed(scene, Choice{}, all);
+  CHECK(end.stop_reason == StopReason::amplitude);
+  for (int wants = 0; wants < 8; ++wants) {
+    Selective some{(wants & 1) != 0, (wants & 2) != 0, (wants & 4) != 0};
+    CAPTURE(wants);
+    CHECK(observed(scene, Choice{}, some).end_time == end.end_time);
+    CHECK((some.told_half_cycles > 0) == some.half_cycles);
+    CHECK((some.told_contacts > 0) == some.contacts);
+    CHECK((some.told_energy > 0) == some.energy);
+  }
+}
 
 TEST_CASE_TEMPLATE("any subset of what can be recorded gives the same columns", Choice, Exact, Restitution,
                    Cem) {

@@ -82,6 +82,9 @@ struct EnergyBalance {
   // Left minus right side of the equation above, divided by the sum of the initial energy and the integral of
   // the forcing's |power|; 0 if that sum is 0.
   double residual = 0;
+  // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it tells the
+  // fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
+  double reactive_work = 0;
 };
 
 // Largest allowed number of rows that budgets may give a recorded section, and of samples of a history in

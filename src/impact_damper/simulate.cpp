@@ -4,11 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "impact_damper/engines/cem.hpp"
 #include "impact_damper/engines/compatibility.hpp"
-#include "impact_damper/engines/exact.hpp"
-#include "impact_damper/engines/recorder.hpp"
-#include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/recorded.hpp"
 
 namespace impact_damper {
 namespace {

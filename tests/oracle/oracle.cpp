@@ -348,7 +348,9 @@ class Integrator {
     Quad power = rest / h;
     for (int n = 1; n <= 6; ++n, power *= rest / h)
       change += magnitude(step_.acceleration.at[n]) / (h * h) * power;
-    if (change <= a * Quad(1e-10L) && rest * change <= a * Quad(1e-29L) * (1 + state_.t))
+    // But impacts that an engine may list, however little they matter, are listed here, too.
+    if (change <= a * Quad(1e-10L) && rest * change <= a * Quad(1e-29L) * (1 + state_.t) &&
+        rest <= Quad(1e-15L) * (1 + state_.t))
       complete_chattering(rest);
   }
 

@@ -21,7 +21,6 @@ namespace impact_damper {
 // Runs a scene that problems_of finds nothing wrong with, telling `observer` what it wants.
 template <Scalar Real, RunObserver Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
-  require_arithmetic();
   return with_system<Real>(scene,
                            [&](const auto& system) { return run_exact(system, scene, options, observer); });
 }
@@ -29,6 +28,7 @@ Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) 
 template <class Real, class Force, class Observer>
 Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
                   Observer& observer) {
+  require_arithmetic();
   const ContactModes<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
   return walls.coupled ? run_exact<ContactWithoutModes<Real, Force>>(walls, system, scene, options, observer)
                        : run_exact<Contact<Real, Force>>(walls, system, scene, options, observer);
@@ -59,14 +59,10 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
 
   while (!tracker.stopped()) {
     if (!in_contact) {
-      const Flight<Real, Force> flight(system, tracker.now(), state);
-      const auto met = at_rest_on_wall ? flight.released_meets_wall(tracker.remaining(), tracker.search())
-                                       : flight.next_wall(tracker.remaining(), tracker.search());
+      const auto met = pass_flight(system, tracker, state, at_rest_on_wall);
       at_rest_on_wall = false;
-      if (met) state = copied(met->state);
-      tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
-      if (tracker.stopped()) break;
-      wall = met->wall;
+      if (!met) break;
+      wall = *met;
       if (!tracker.impact(wall, state)) break;
       in_contact = by_impact = true;
     } else {

@@ -29,10 +29,11 @@ class HalfCycleTracker {
     amplitude_ = height;
     peak_time_ = time;
   }
-  // x crosses zero: one half cycle is complete, which is told, and the next begins.
+  // x crosses zero: one half cycle is complete, which is told if it is wanted, and the next begins.
   template <class Observer>
   void crossing(const Real& time, Observer& observer) {
-    observer.half_cycle(double(begin_), double(time), double(peak_time_), double(amplitude_));
+    if (observer.wants_half_cycles())
+      observer.half_cycle(double(begin_), double(time), double(peak_time_), double(amplitude_));
     last_amplitude_ = amplitude_;
     ++complete_;
     side_ = -side_;

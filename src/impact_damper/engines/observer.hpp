@@ -10,14 +10,18 @@ namespace impact_damper {
 
 // An engine asks what is wanted, computes only that, and reports it. Calls of one kind come in the order of
 // time, and an impact before the half cycle and the contact that it belongs to; the order is not fixed
-// otherwise. Impacts are always reported. Half cycles may be reported although they are not wanted, where
-// Scene::until_amplitude needs them. Observing never changes the motion.
+// otherwise. Impacts are always reported. Observing never changes the motion.
+//
+// An observer of a closed-form engine may also have passed(motion, begin, duration, end), a template over the
+// motion (motion/motion.hpp). It is then told of each motion in turn, in the engine's own numbers: when it
+// began, how long it lasted, and the state in which it ended, before what its end changes.
 template <class T>
 concept RunObserver = requires(T observer, const T asked, double number, Wall wall) {
   { asked.wants_half_cycles() } -> std::same_as<bool>;
   { asked.wants_contacts() } -> std::same_as<bool>;
   { asked.wants_energy() } -> std::same_as<bool>;
-  // begin, zero crossing, time of the peak, amplitude: told at the zero crossing.
+  // begin, zero crossing, time of the peak, amplitude: told at the zero crossing. Only if
+  // wants_half_cycles().
   observer.half_cycle(number, number, number, number);
   // time, wall, y' just before, x.
   observer.impact(number, wall, number, number);

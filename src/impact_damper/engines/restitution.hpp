@@ -28,7 +28,6 @@ namespace impact_damper {
 // Runs a scene that problems_of finds nothing wrong with and that begins between the walls, 0 <= y0 <= 1.
 template <Scalar Real, RunObserver Observer>
 Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
-  require_arithmetic();
   return with_system<Real>(
       scene, [&](const auto& system) { return run_restitution(system, scene, options, observer); });
 }
@@ -36,6 +35,7 @@ Outcome run_restitution(const Scene& scene, const Restitution& options, Observer
 template <class Real, class Force, class Observer>
 Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
                         Observer& observer) {
+  require_arithmetic();
   RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
   const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
 
@@ -98,14 +98,9 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       if (tracker.stopped()) break;
     }
 
-    const Flight<Real, Force> flight(system, tracker.now(), state);
-    const bool released = on_wall && state.w == 0;
-    const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.search())
-                              : flight.next_wall(tracker.remaining(), tracker.search());
-    if (met) state = copied(met->state);
-    tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
-    if (tracker.stopped()) break;
-    wall = met->wall;
+    const auto met = pass_flight(system, tracker, state, on_wall && state.w == 0);
+    if (!met) break;
+    wall = *met;
     if (!tracker.impact(wall, state)) break;
     if (observer.wants_energy()) {
       const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));

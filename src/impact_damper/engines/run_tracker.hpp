@@ -8,6 +8,7 @@
 
 #include "impact_damper/engines/half_cycle_tracker.hpp"
 #include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/motion.hpp"
 
 namespace impact_damper {
@@ -83,6 +84,8 @@ class RunTracker {
     tell_samples(motion, duration);
     const Work<Real> works =
         observer_.wants_energy() ? add_work(motion, duration, wall_damping) : Work<Real>{};
+    if constexpr (requires { observer_.passed(motion, now(), duration, end); })
+      observer_.passed(motion, now(), duration, end);
     clock_.advance(duration);
     passed_ = duration;
     return works;
@@ -108,6 +111,7 @@ class RunTracker {
     balance.final = energy_of(system_, last, depth);
     balance.viscous_work = double(viscous_);
     balance.forcing_work = double(forcing_);
+    balance.reactive_work = double(reactive_);
     const Real handled = balance.initial.total() + turnover_;
     const Real open = (balance.initial.total() + forcing_) - (balance.final.total() + losses + viscous_);
     balance.residual = handled > 0 ? double(open / handled) : 0.0;
@@ -130,6 +134,7 @@ class RunTracker {
     const Work<Real> works = work_of(system_, motion, now(), duration, wall_damping, search_);
     viscous_ += works.viscous;
     forcing_ += works.forcing;
+    reactive_ += works.reactive;
     turnover_ += works.turnover;
     return works;
   }
@@ -161,7 +166,33 @@ class RunTracker {
   bool timed_out_ = false;  // by the horizon
   Real passed_{0};
   std::int64_t impacts_ = 0;
-  Real viscous_{0}, forcing_{0}, turnover_{0};
+  Real viscous_{0}, forcing_{0}, reactive_{0}, turnover_{0};
 };
+
+// Lets a flight pass, in pieces (Flight::length()), until it meets a wall, in `state`: which one. Nothing
+// where the run has stopped before. `released`: from rest on a wall.
+template <class Real, class Force, class Observer>
+[[gnu::always_inline]] inline std::optional<Wall> pass_flight(const System<Real, Force>& system,
+                                                              RunTracker<Real, Force, Observer>& tracker,
+                                                              State<Real>& state, bool released) {
+  FlightStart<Real> start(state);
+  for (;;) {
+    const Flight<Real, Force> flight(system, tracker.now(), start);
+    const Real remaining = tracker.remaining(), length = flight.length();
+    const Real until = length < remaining ? length : remaining;
+    const auto met = released ? flight.released_meets_wall(until, tracker.search())
+                              : flight.next_wall(until, tracker.search());
+    if (met) {
+      state = copied(met->state);
+    } else if (until < remaining) {
+      start = flight.start_of_rest(until);
+      state = copied(start.state);
+    }
+    tracker.pass(flight, met ? met->time : until, state, Real(0));
+    if (tracker.stopped()) return {};
+    if (met) return met->wall;
+    released = false;
+  }
+}
 
 }  // namespace impact_damper

@@ -200,12 +200,12 @@ class Contact {
   }
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, if it is near
-  // F, where the slow part u does. Nothing where that is not proved.
+  // F, where the slow mode u does. Nothing where that is not proved.
   //
-  // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast part below a
-  // bound that decreases (M3.5): so there is no zero before the time `quiet` at which that bound meets the
+  // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast mode below a
+  // bound that decreases (M3.5): so there is no zero before the time `settling` at which that bound meets the
   // chord, taken twice. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on u''
-  // proves that the sum falls from `quiet` on, so that it has one zero there, which a Newton step from F
+  // proves that the sum falls from `settling` on, so that it has one zero there, which a Newton step from F
   // finds.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
@@ -221,11 +221,11 @@ class Contact {
         std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
     if (from > 0) return ringing(0, from) < nothing ? std::optional(fall) : std::nullopt;
 
-    Real quiet{0}, rest = ringing(0, quiet);
+    Real settling{0}, rest = ringing(0, settling);
     for (int i = 0; i < 2; ++i) {
       if (!(rest < kept * u)) return {};
-      quiet = fall - fall * rest / (kept * u);
-      rest = ringing(0, quiet);
+      settling = fall - fall * rest / (kept * u);
+      rest = ringing(0, settling);
       if (rest < nothing) return fall;
     }
     const ContactState<Real> slow_then = slow_at(fall), fast_then = fast_at(fall);
@@ -233,11 +233,11 @@ class Contact {
     const auto f_then = derivatives<3>(c.fast, fast_then.x, fast_then.v);
     const Real slope = absolute(u_then[order + 1]);
     const Real second = c.slow.bound_after(slow[order + 2], slow[order + 3], Real(0));
-    const Real within = fall - quiet + 2 * rest / slope;
-    if (!(2 * (second * within + ringing(1, quiet)) < slope)) return {};
+    const Real within = fall - settling + 2 * rest / slope;
+    if (!(2 * (second * within + ringing(1, settling)) < slope)) return {};
     const Real shift = -(u_then[order] + f_then[order]) / (u_then[order + 1] + f_then[order + 1]);
     const Real enough = std::numeric_limits<Real>::epsilon() / 32 * fall;
-    if (!((second + ringing(2, quiet)) * (shift * shift) < enough * slope)) return {};
+    if (!((second + ringing(2, settling)) * (shift * shift) < enough * slope)) return {};
     return fall + shift;
   }
 

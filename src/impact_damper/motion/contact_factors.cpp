@@ -1,10 +1,11 @@
 #include "impact_damper/motion/contact_factors.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+
+#include "impact_damper/math/eigenvalues.hpp"
 
 namespace impact_damper {
 namespace {
@@ -25,44 +26,15 @@ double separation(const std::array<Complex, 4>& roots, int first, int second) {
   return least;
 }
 
-// Of a matrix in Hessenberg form. Eigen's EigenSolver would bring it into that form first and knows
-// eigenvectors: the same eigenvalues, bit for bit, but ten times as long to compile.
-std::array<Complex, 4> eigenvalues_of(const Eigen::Matrix4d& hessenberg) {
-  const double largest = hessenberg.cwiseAbs().maxCoeff();
-  Eigen::RealSchur<Eigen::Matrix4d> schur(4);
-  schur.computeFromHessenberg(hessenberg / largest, Eigen::Matrix4d(), false);
-  const Eigen::Matrix4d triangular = schur.matrixT() * largest;
-
-  // On the diagonal stand real eigenvalues, and blocks of two rows for two conjugate ones.
-  std::array<Complex, 4> values;
-  for (int i = 0; i < 4; ++i) {
-    if (i == 3 || triangular(i + 1, i) == 0) {
-      values[i] = triangular(i, i);
-      continue;
-    }
-    const double below = triangular(i + 1, i), above = triangular(i, i + 1), last = triangular(i + 1, i + 1);
-    const double half = 0.5 * (triangular(i, i) - last);
-    const double most = std::max({std::fabs(half), std::fabs(below), std::fabs(above)});
-    const double p = half / most;
-    values[i] = {last + half, most * std::sqrt(std::fabs(p * p + (below / most) * (above / most)))};
-    values[i + 1] = std::conj(values[i]);
-    ++i;
-  }
-  return values;
-}
-
 }  // namespace
 
 QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
   // In s = scale t the roots lie about 1.
   const double scale = std::sqrt(std::sqrt(c0));
-  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
-  companion(0, 0) = -c3 / scale;
-  companion(0, 1) = -c2 / (scale * scale);
-  companion(0, 2) = -c1 / (scale * scale * scale);
-  companion(0, 3) = -1;
-  companion(1, 0) = companion(2, 1) = companion(3, 2) = 1;
-  std::array<Complex, 4> roots = eigenvalues_of(companion);
+  Matrix4 companion{};
+  companion[0] = {-c3 / scale, -c2 / (scale * scale), -c1 / (scale * scale * scale), -1};
+  companion[1][0] = companion[2][1] = companion[3][2] = 1;
+  std::array<Complex, 4> roots = eigenvalues_of_hessenberg(companion);
   for (Complex& root : roots) root *= scale;
 
   // Conjugates are so exactly, so two roots make a real factor if they are conjugate or both real.

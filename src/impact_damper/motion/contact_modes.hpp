@@ -38,7 +38,7 @@ class ContactModes {
     slow_ = (beta - alpha * p) / resultant;
     fast_ = (beta - alpha * p2) / resultant;
     // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
-    // slow part of x follows with all its digits. As 1 less the fast part it would lose those of 1 + nu.
+    // slow mode of x follows with all its digits. As 1 less the fast mode it would lose those of 1 + nu.
     const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast),
                        driven_slow_centre{-driven_centre.x, joined_ - driven_centre.v};
     drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
@@ -67,7 +67,7 @@ class ContactModes {
     }
   }
 
-  // Splits u into a slow and a fast part, whose sum it is. Returns the centre X of the fast part.
+  // Splits u into a slow and a fast mode, whose sum it is. Returns the centre X of the fast mode.
   Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
                      ContactState<Real>& fast_part) const {
     const auto& [p, b, p2, b2, dp, db, db2] = factors_;
@@ -177,7 +177,7 @@ class ContactModes {
     return all;
   }
 
-  // How much larger than a motion its fast part can be, both masses counted alike: the square root of the sum
+  // How much larger than a motion its fast mode can be, both masses counted alike: the square root of the sum
   // of squares over four orthogonal states of norm 1.
   Real norm_of_split() const {
     const Real root_k = square_root(stiffness);

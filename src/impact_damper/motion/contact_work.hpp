@@ -115,9 +115,13 @@ Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>
     }
     return sum;
   };
+  // f, and f a quarter of a period ahead.
   const auto force_times_ringing = [&](const RateParts<Real>& rate, const Real& t) {
-    const auto f = walls.forcing.template derivatives<2>(walls.forcing.phase(begin + t));
-    return antiderivative({f[0], f[1]}, by_parts(fast, rate.ringing, Real(0), square), Real(0));
+    const auto f = walls.forcing.template derivatives<3>(walls.forcing.phase(begin + t));
+    const Real& frequency = walls.forcing.frequency;
+    const Wave<Real> r = by_parts(fast, rate.ringing, Real(0), square);
+    return std::array<Real, 2>{antiderivative({f[0], f[1]}, r, Real(0)),
+                               antiderivative({f[1] / frequency, f[2] / frequency}, r, Real(0))};
   };
   const Real start{0};
   const State slow_start = contact.slow_at(start), fast_start = contact.fast_at(start);
@@ -130,8 +134,10 @@ Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>
   works.wall += wall_damping * (square_of_ringing(fast, q_start.ringing, duration) +
                                 2 * (smooth_times_ringing(q_end) - smooth_times_ringing(q_start)));
   if (walls.forcing) {
-    const Real work = force_times_ringing(x_end, duration) - force_times_ringing(x_start, start);
+    const auto at_end = force_times_ringing(x_end, duration), at_start = force_times_ringing(x_start, start);
+    const Real work = at_end[0] - at_start[0];
     works.forcing += work;
+    works.reactive += at_end[1] - at_start[1];
     works.turnover += absolute(work);
   }
   return works;

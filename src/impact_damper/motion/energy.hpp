@@ -28,6 +28,7 @@ Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const 
 template <class Real>
 struct Work {
   Real wall{0}, viscous{0}, forcing{0};
+  Real reactive{0};  // of the forcing a quarter of a period ahead, f0 cos(omega_f t)
   Real turnover{0};  // integral of the forcing's |power|: what rounding errors of its work are measured by
 };
 
@@ -69,9 +70,10 @@ Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Pan
         works.viscous += dt * (2 * system.zeta) * (v * v);
         works.wall += dt * wall_damping * (w * w);
         if (system.forcing) {
-          const Real work =
-              dt * v * system.forcing.template derivatives<2>(system.forcing.phase(begin + t))[0];
+          const SinCos<Real> phase = system.forcing.phase(begin + t);
+          const Real work = dt * v * system.forcing.template derivatives<2>(phase)[0];
           works.forcing += work;
+          works.reactive += dt * v * (system.forcing.amplitude * phase.cos);
           works.turnover += absolute(work);
         }
       }

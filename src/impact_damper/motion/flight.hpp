@@ -7,21 +7,50 @@
 
 namespace impact_damper {
 
+// A state in flight, with its distance u from the wall nearest to where the flight began: a small bounce
+// keeps its relative accuracy, and a mirrored flight is the same to the bit.
+template <class Real>
+struct FlightStart {
+  explicit FlightStart(const State<Real>& start)
+      : state(copied(start)),
+        wall(start.y > Real(0.5) ? 1 : 0),
+        away(start.y > Real(0.5) ? -1 : 1),
+        u(away * (start.y - wall)) {}
+  // Of a further piece of a flight.
+  FlightStart(const State<Real>& now, const Real& which, const Real& direction, const Real& distance)
+      : state(now), wall(which), away(direction), u(distance), goes_on(true) {}
+  State<Real> state;
+  Real wall, away;  // where the wall is, 0 or 1, and which way leads away from it, 1 or -1
+  Real u;
+  bool goes_on = false;  // a piece of a flight that began before
+};
+
 template <class Real, class Force = Forcing<Real>>
 class Flight {
  public:
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
-      : primary_(system.free, system.forcing, begin, start.x, start.v),
-        start_(copied(start)),
-        wall_(start.y > Real(0.5) ? 1 : 0),
-        away_(start.y > Real(0.5) ? -1 : 1) {}
+      : Flight(system, begin, FlightStart<Real>(start)) {}
+  Flight(const System<Real, Force>& system, const Real& begin, const FlightStart<Real>& start)
+      : primary_(system.free, system.forcing, begin, start.state.x, start.state.v),
+        start_(start.state),
+        wall_(start.wall),
+        away_(start.away),
+        u_(start.u),
+        goes_on_(start.goes_on) {}
 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
     return state_of(from_wall(t));
   }
 
-  // Where and when a wall is met, if before `horizon`.
+  // After this time at the latest the flight goes on as another piece, which begins there.
+  Real length() const { return primary_.length(); }
+  FlightStart<Real> start_of_rest(const Real& t) const {
+    const Place now = from_wall(t);
+    return {state_of(now), wall_, away_, now.u};
+  }
+  bool goes_on() const { return goes_on_; }  // as a piece of a flight that began before
+  // Where and when a wall is met, if before `horizon`, which is no later than length().
   std::optional<WallEvent<Real>> next_wall(const Real& horizon, Search<Real>& search) const {
     return met_from(Real(0), Real(0), horizon, search);
   }
@@ -41,6 +70,21 @@ class Flight {
     State<Real> state = at(met->time);
     state.y = wall == Wall::left ? 0 : 1;
     return WallEvent<Real>{met->time, wall, state};
+  }
+  // The first time in [from, until) at which sign times y' falls through zero.
+  std::optional<Real> turn_of_y(const Real& sign, const Real& from, const Real& until,
+                                Search<Real>& search) const {
+    const auto enclose = [&](const Real& t) {
+      const Place now = from_wall(t);
+      const auto x = primary_.template instant<6>(now.x, now.v, t);
+      return LocalEnclosure<Real>{
+          {sign * away_ * now.u1, -sign * x[2], -sign * x[3], x.bound(4, search.span)},
+          {},
+          std::numeric_limits<Real>::infinity()};
+    };
+    // A mass that begins at rest on a wall turns there, and by rounding alone a second time.
+    const Real leap = start_.w == 0 ? begin_by_jerk(search.span) : Real(0);
+    return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
   }
   // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one, 1 - y.
   std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
@@ -70,7 +114,7 @@ class Flight {
   Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
 
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_side(side, end.x, t);
+    return primary_.keeps_side(side, end.x, end.v, t);
   }
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return primary_.keeps_course(end.v, t);
@@ -93,16 +137,15 @@ class Flight {
   Real resolution() const { return 1; }
 
  private:
-  // The place of the secondary mass as its distance u from the wall nearest to the start: a small bounce
-  // keeps its relative accuracy.
+  // The place of the secondary mass as its distance u from the wall.
   struct Place {
     Real x, v, u, u1;
   };
   [[gnu::always_inline]] Place from_wall(const Real& t) const {
-    const Real u = away_ * (start_.y - wall_), u1 = away_ * start_.w;
-    if (t == 0) return {start_.x, start_.v, u, u1};
+    const Real u1 = away_ * start_.w;
+    if (t == 0) return {start_.x, start_.v, u_, u1};
     const auto now = primary_.at(t);
-    return {now.x, now.v, u + (u1 * t - away_ * now.dx), u1 - away_ * now.dv};
+    return {now.x, now.v, u_ + (u1 * t - away_ * now.dx), u1 - away_ * now.dv};
   }
   State<Real> state_of(const Place& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
@@ -119,6 +162,17 @@ class Flight {
   [[gnu::always_inline]] std::optional<WallEvent<Real>> met_from(const Real& predict_from,
                                                                  const Real& search_from, const Real& horizon,
                                                                  Search<Real>& search) const {
+    if constexpr (ForcedMotion<Real, Force>::forced) {
+      if (predict_from == 0) {
+        const auto predicted = predicted_by_series();
+        if (predicted && predicted->wall)
+          return predicted->wall->time < horizon ? predicted->wall : std::nullopt;
+        if (predicted && horizon <= primary_.reach()) {
+          search.take_step();  // a scene without end is one of many pieces
+          return {};
+        }
+      }
+    }
     std::optional<WallEvent<Real>> met = predicted_wall(predict_from, search.span);
     if (!met) {
       SearchCounter<Real>::found(FoundBy::search);
@@ -158,21 +212,37 @@ class Flight {
            stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
                                fourth, halvings - 1);
   }
-  // By the series of a motion under a force (M4.4), which is as good as the closed form while it holds.
-  std::optional<WallEvent<Real>> predicted_by_series(const Real& span) const {
-    const Real reach = primary_.reach() < span ? primary_.reach() : span;
-    const auto u =
-        primary_.series().template derivatives<4>(away_ * (start_.y - wall_), away_ * start_.w, -away_);
+  // By the series of a motion under a force (M4.4), which is as good as the closed form while it holds: the
+  // wall that is met first, or, `wall` empty, that none is met meanwhile. Nothing where Lemma L2 proves
+  // neither.
+  struct PredictedWall {
+    std::optional<WallEvent<Real>> wall;
+  };
+  std::optional<PredictedWall> predicted_by_series() const {
+    const Real reach = primary_.reach();
+    const DrivenSeries<Real>& x = primary_.series();
+    const Derivatives<Real, 4> u{u_, away_ * start_.w, -away_ * x.derivative(2), -away_ * x.derivative(3)};
+    const Real fourth = primary_.bound(4, reach);
+    const auto none = [&] {
+      const Place end = from_wall(reach);
+      return stays_between_walls(u, Real(0), {end.u, end.u1}, reach, fourth, 2);
+    };
+    const bool late = !(guess_by_parabola(u, reach).time < reach);
+    if (late && none()) return PredictedWall{};
     const Prediction<Real> predicted = predict_impact(
-        u, primary_.series().departure_times(-away_), reach, [](const Real&, const Real&) { return true; },
+        u, x.departure_times(-away_), reach, [](const Real&, const Real&) { return true; },
         [](const Real&, const Real&) { return true; });
     const Real& h = predicted.time;
-    if (!(predicted.exact && h > 0 && h < reach)) return {};
-    const auto& [by_u, by_u1] = predicted.gained;
-    const Real level = predicted.across ? 1 : 0, u1 = u[1] + by_u1;
-    if (!stays_between_walls(u, Real(0), {level, u1}, h, primary_.bound(4, reach), 2)) return {};
-    SearchCounter<Real>::found(FoundBy::series);
-    return met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u), start_.v - away_ * by_u1, u1);
+    if (predicted.exact && h > 0 && h < reach) {
+      const auto& [by_u, by_u1] = predicted.gained;
+      const Real level = predicted.across ? 1 : 0, u1 = u[1] + by_u1;
+      if (!stays_between_walls(u, Real(0), {level, u1}, h, fourth, 2)) return {};
+      SearchCounter<Real>::found(FoundBy::series);
+      return PredictedWall{
+          met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u), start_.v - away_ * by_u1, u1)};
+    }
+    if (!late && none()) return PredictedWall{};
+    return {};
   }
   WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1) const {
     const bool left = across == (wall_ == 1);
@@ -182,9 +252,6 @@ class Flight {
   // not succeed.
   std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
     const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
-    if constexpr (ForcedMotion<Real, Force>::forced)
-      if (from == 0)
-        if (const auto by_series = predicted_by_series(span)) return by_series;
     Real begin = from;
     Place here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
@@ -236,7 +303,8 @@ class Flight {
 
   ForcedMotion<Real, Force> primary_;
   State<Real> start_;
-  Real wall_, away_;
+  Real wall_, away_, u_;
+  bool goes_on_;
 };
 
 }  // namespace impact_damper

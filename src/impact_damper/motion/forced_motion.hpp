@@ -9,7 +9,7 @@
 #include "impact_damper/events/exclusion.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/events/root_isolation.hpp"
-#include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
@@ -20,83 +20,11 @@ Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
 }
 
-// The Taylor series of x about the beginning of a motion under a force (M4.4). It holds as long as what it
-// leaves out is below rounding. Its sum needs no sine, and nothing cancels near resonance.
-template <class Real>
-class DrivenSeries {
- public:
-  static constexpr std::size_t terms = 24;
-  template <class Force>
-  DrivenSeries(const Oscillator<Real>& oscillator, const Force& forcing, const SinCos<Real>& phase,
-               const Real& x, const Real& v) {
-    // c_n = x^(n)/n!, and likewise of the force.
-    const auto& over = reciprocals<Real>;
-    const auto start = forcing.template derivatives<2>(phase);
-    const Real square = forcing.frequency * forcing.frequency;
-    Real f_now = start[0], f_next = start[1];
-    c_[0] = x;
-    c_[1] = v;
-    for (std::size_t n = 2; n < terms; ++n) {
-      c_[n] = (f_now - oscillator.b() * c_[n - 2]) * (over[n - 1] * over[n]) -
-              2 * oscillator.a() * over[n] * c_[n - 1];
-      const Real f_after = -square * f_now * (over[n - 1] * over[n]);
-      f_now = f_next;
-      f_next = f_after;
-    }
-    for (std::size_t n = 1; n < terms / 2; ++n) departure_[n] = SimdPair<Real>{c_[2 * n], c_[2 * n + 1]};
-    departure_[0] = SimdPair<Real>{Real(0), Real(0)};
-  }
-
-  // How long the series and its first two derivatives hold. `rate`: that of the motion, ForcedMotion::rate().
-  static Real reach(const Real& rate) { return Real(radians) / rate; }
-  // By how much x and v differ from x0 + v0 t and v0, and x''.
-  SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
-  // The series of x - x0 - v0 t, multiplied by `times`.
-  PairedSeries<Real, terms / 2> departure_times(const Real& times) const {
-    PairedSeries<Real, terms / 2> all;
-    for (std::size_t n = 0; n < all.size(); ++n) all[n] = departure_[n] * times;
-    return all;
-  }
-  // u, u' and then `times` the second and the third derivative of x at the beginning.
-  template <std::size_t N>
-  Derivatives<Real, N> derivatives(const Real& u, const Real& u1, const Real& times) const {
-    static_assert(N == 4);
-    return {u, u1, times * 2 * c_[2], times * 6 * c_[3]};
-  }
-  // The n-th derivative of x at the beginning.
-  Real derivative(std::size_t n) const {
-    constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
-    return c_[n] * Real(factorial[n]);
-  }
-  // The series of sign times the `order`-th derivative of x; order: 0, 1 or 2.
-  PairedSeries<Real, terms / 2> derivative(std::size_t order, const Real& sign) const {
-    PairedSeries<Real, terms / 2> all;
-    const auto term = [&](std::size_t n) {
-      if (n + order >= terms) return Real(0);
-      const Real factor = order == 0   ? Real(1)
-                          : order == 1 ? Real(double(n + 1))
-                                       : Real(double((n + 1) * (n + 2)));
-      return Real(sign * factor * c_[n + order]);
-    };
-    for (std::size_t n = 0; n < all.size(); ++n) all[n] = SimdPair<Real>{term(2 * n), term(2 * n + 1)};
-    return all;
-  }
-
- private:
-  // The first term left out of x'' is radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or near
-  // critical damping and in resonance up to `terms` times that, which is still below rounding.
-  static constexpr double radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
-                                    : std::numeric_limits<Real>::digits10 < 20 ? 1.029
-                                                                               : 0.22;
-  std::array<Real, terms> c_;
-  PairedSeries<Real, terms / 2> departure_;
-};
-
 // x of a single oscillator, with or without a force, and bounds on its derivatives.
 template <class Real, class Force = Forcing<Real>>
 class ForcedMotion {
  public:
-  ForcedMotion(const Oscillator<Real>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
+  ForcedMotion(const Driven<Real, Force>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
                const Real& v0)
       : oscillator_(oscillator),
         forcing_(forcing),
@@ -111,8 +39,8 @@ class ForcedMotion {
   };
   Change at(const Real& t) const {
     if constexpr (forced) {
-      if (t < reach()) {
-        const SeriesAt<Real> by = series().departure(t);
+      if (t <= reach()) {
+        const SeriesAt<Real> by = departure(t);
         return {x0_ + (v0_ * t + by.u), v0_ + by.u1, by.u, by.u1};
       }
     }
@@ -160,10 +88,8 @@ class ForcedMotion {
       // Under a fast force the steady state may give the smaller of the two bounds (M3.4). Else only the
       // bound that grows with `span` is computed, from the series, which is there already.
       if (forcing_.frequency * forcing_.frequency > 4 * oscillator_.b()) return beginning().bound(n, span);
-      Real power = absolute(forcing_.amplitude);
-      for (std::size_t i = 0; i < n; ++i) power *= forcing_.frequency;
       return oscillator_.bound(series().derivative(n), series().derivative(n + 1)) +
-             power * span / oscillator_.root_b();
+             absolute(forcing_.amplitude) * oscillator_.series.growth(n) * span;
     } else {
       return beginning().bound(n, span);
     }
@@ -186,21 +112,30 @@ class ForcedMotion {
             absolute(forcing_.amplitude));
   }
 
-  // Whether x, or v, is proved to keep its sign in [0, t], by its ends.
-  bool keeps_side(const Real& side, const Real& x, const Real& t) const {
+  // Whether x, or x', is proved to keep its sign in [0, t], by its ends, x and v at the last.
+  bool keeps_side(const Real& side, const Real& x, const Real& v, const Real& t) const {
     if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
-    return forcing_ ? keeps_sign(x0_, x, bound(2, t), t) : t < oscillator_.half_period();
+    if (!forcing_) return t < oscillator_.half_period();
+    return stays_open(Real(side * x0_), Real(side * v0_), Real(side * x), Real(side * v), t, bound(4, t));
   }
   bool keeps_course(const Real& v, const Real& t) const {
     if (!(v0_ * v > 0)) return false;
-    return forcing_ ? keeps_sign(v0_, v, bound(3, t), t) : t < oscillator_.half_period();
+    if constexpr (forced) {
+      if (keeps_sign(v0_, v, bound(3, t), t)) return true;
+      if (!(t <= reach())) return false;
+      const Real sign = v > 0 ? 1 : -1;
+      return stays_open(Real(sign * v0_), Real(sign * series().derivative(2)), Real(sign * v),
+                        Real(sign * departure(t).u2), t, bound(5, t));
+    } else {
+      return t < oscillator_.half_period();
+    }
   }
   // A time from t on in which x' has one zero at most; without a force x and every derivative, too.
   Real one_turn_within(const Real& t) const {
     if constexpr (forced) {
       if (!(t < reach())) return 0;
       // While x'' keeps its sign x' has one zero at most, and |x'''| <= m proves that for a time |x''(t)|/m.
-      const Real rest = reach() - t, within = absolute(series().departure(t).u2) / bound(3, reach());
+      const Real rest = reach() - t, within = absolute(departure(t).u2) / bound(3, reach());
       return within < rest ? within : rest;
     } else {
       return oscillator_.half_period();
@@ -262,13 +197,37 @@ class ForcedMotion {
 
   // The series about the beginning under a force, and how long it holds.
   const DrivenSeries<Real>& series() const {
-    if (!cached_.series) cached_.series.emplace(oscillator_, forcing_, phase_, x0_, v0_);
+    if (!cached_.series) {
+      const Real& f0 = forcing_.amplitude;
+      cached_.series.emplace(oscillator_.series.terms_of(x0_, v0_, f0 * phase_.sin, f0 * phase_.cos));
+    }
     return *cached_.series;
   }
-  Real reach() const { return DrivenSeries<Real>::reach(rate()); }
+  SeriesAt<Real> departure(const Real& t) const {
+    if (t != reach()) return series().departure(t);
+    if (!cached_.at_reach) cached_.at_reach = series().departure(t);
+    return *cached_.at_reach;
+  }
+  const Real& reach() const { return oscillator_.series.reach(); }
+  // How long the motion is followed as one: under a force as long as the series holds. But a fast force or
+  // strong damping would make that many pieces of a slow motion: then the closed form is cheaper.
+  Real length() const {
+    if constexpr (forced)
+      if (forcing_.frequency <= 64 * oscillator_.root_b() && oscillator_.rate() <= 4 * oscillator_.root_b())
+        return reach();
+    return std::numeric_limits<Real>::infinity();
+  }
 
  private:
   SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
+  // Sign times x (order 0) or x' (1), and its derivative, by the series.
+  std::array<Real, 2> x_or_v(std::size_t order, const Real& sign, const Real& t) const {
+    const SeriesAt<Real> by =
+        t == 0 ? SeriesAt<Real>{Real(0), Real(0), series().derivative(2)} : departure(t);
+    const Real v = v0_ + by.u1;
+    if (order == 1) return {sign * v, sign * by.u2};
+    return {sign * (x0_ + (v0_ * t + by.u)), sign * v};
+  }
   // What falls() returns, if Lemma L2 proves it: the fall that Halley's method finds on the series is the
   // first; or, `time` empty, there is none before `until`. Nothing where neither is proved. The time of a
   // fall does not depend on `until`, so a shorter run is the beginning of a longer one.
@@ -278,19 +237,29 @@ class ForcedMotion {
   std::optional<PredictedFall> predicted_fall(std::size_t order, const Real& sign, const Real& from,
                                               const Real& until) const {
     if (!(from < reach())) return {};
+    const Real fourth = bound(order + 4, reach());
+    const bool whole = until <= reach();
+    // The ends alone tell most often that x or x' does not fall.
+    if (whole && order < 2) {
+      const auto [end, end_slope] = x_or_v(order, sign, until);
+      auto [begin, slope] = x_or_v(order, sign, from);
+      if (begin < 0 && from > 0) begin = 0;
+      if (end > 0 && (begin > 0 || slope > 0) &&
+          stays_open(begin, slope, end, end_slope, Real(until - from), fourth))
+        return PredictedFall{};
+    }
     const auto g = series().derivative(order, sign);
     SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
     // Later than the beginning a search starts where g is positive, or at a zero of g that has just been
     // left: if g is negative there, then by rounding.
     if (begin.u < 0 && from > 0) begin.u = 0;
     if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
-    const Real fourth = bound(order + 4, reach());
     if (const auto root = root_of_series(g, begin, from)) {
       if (root->slope < 0 &&
           stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth))
         return PredictedFall{root->time < until ? std::optional(root->time) : std::nullopt};
     }
-    if (!(until < reach())) return {};
+    if (!whole) return {};
     const SeriesAt<Real> end = sum<Real>(g, until);
     if (stays_open(begin.u, begin.u1, end.u, end.u1, Real(until - from), fourth)) return PredictedFall{};
     return {};
@@ -300,14 +269,17 @@ class ForcedMotion {
   struct SeriesRoot {
     Real time, slope;
   };
-  using WholeSeries = PairedSeries<Real, DrivenSeries<Real>::terms / 2>;
-  std::optional<SeriesRoot> root_of_series(const WholeSeries& g, const SeriesAt<Real>& begin,
+  std::optional<SeriesRoot> root_of_series(const DrivenTerms<Real>& g, const SeriesAt<Real>& begin,
                                            const Real& from) const {
     const Real slope_2 = begin.u1 * begin.u1 - 2 * begin.u2 * begin.u;
     if (!(slope_2 > 0) || (begin.u2 >= 0 && begin.u1 >= 0)) return {};
-    const Real room = reach() - from, root = square_root(slope_2);
+    const Real available = reach() - from, root = square_root(slope_2);
     Real t = begin.u1 > 0 ? Real((begin.u1 + root) / -begin.u2) : Real(2 * begin.u / (root - begin.u1));
-    if (!(t < room)) t = room;
+    if (!(t < available)) t = available;
+    if (from == 0) {  // on to the root of the cubic, by Newton's method
+      const Real third = g[1][1] * t * t * t, slope = begin.u1 + t * (begin.u2 + 3 * g[1][1] * t);
+      if (slope < 0 && absolute(third) < -slope * t / 4) t -= third / slope;
+    }
     bool near = false;
     for (int i = 0; i < 8; ++i) {
       const SeriesAt<Real> at =
@@ -316,16 +288,18 @@ class ForcedMotion {
       const bool bends_little = absolute(bend) < Real(0.0625);
       const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
       t += step;
-      if (!(t > 0 && t < room)) return {};
-      // Halley's step alone vanishes at a turn, too, where the function is not zero.
-      if (near && bends_little && absolute(step) * two_to_the_25 < t)
+      if (!(t > 0 && t < available)) return {};
+      // Halley's method is of third order: the next step would be below rounding. The step alone vanishes at
+      // a turn, too, where the function is not zero.
+      constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
+      if (near && absolute(step) * two_to_the_18 < t && absolute(bend) * two_to_the_26 < 1)
         return SeriesRoot{from + t, at.u1 + step * at.u2};
-      near = near || absolute(step) * 64 < t;
+      near = near || absolute(step) * 32 < t;
     }
     return {};
   }
 
-  const Oscillator<Real>& oscillator_;
+  const Driven<Real, Force>& oscillator_;
   Force forcing_;
   Real begin_;
   SinCos<Real> phase_;  // of the forcing at the beginning
@@ -334,6 +308,7 @@ class ForcedMotion {
   struct Nothing {};
   struct Cached {
     std::optional<DrivenSeries<Real>> series;
+    std::optional<SeriesAt<Real>> at_reach;
     std::optional<Beginning> beginning;
   };
   [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;

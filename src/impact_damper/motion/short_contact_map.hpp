@@ -38,7 +38,7 @@ struct Centre {
   Real x, v;
 };
 
-// One unit of x, of v or of w at the touch: its slow and its fast part, and the fast part's centre.
+// One unit of x, of v or of w at the touch: its slow and its fast mode, and the fast mode's centre.
 template <class Real>
 struct Touch {
   ContactState<Real> slow, fast;
@@ -79,13 +79,11 @@ class ShortContactMap {
       : share_(share), zeta_(zeta) {
     half_period_ = fast.half_period();
     if (!(half_period_ < std::numeric_limits<Real>::infinity())) return;
-    const Real epsilon = std::numeric_limits<Real>::epsilon();
     decay_factor_ = exponential(Real(-fast.a() * half_period_));
     few_ = reach_of(few, fast);
     more_ = reach_of(more, fast);
     many_ = reach_of(many, fast);
     most_ = reach_of(most, fast);
-    accurate_ = exponential(Real(logarithm(epsilon) * 2 / 5)) / fast.rate();
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
     latest_ = half_period_ + most_.s;
@@ -106,7 +104,7 @@ class ShortContactMap {
     }
   }
 
-  explicit operator bool() const { return accurate_ > 0; }
+  explicit operator bool() const { return latest_ > 0; }
 
   // No contact of the map is longer, but for its last correction of s. Under a force the bounds on x hold
   // until then, without one for ever.
@@ -208,17 +206,23 @@ class ShortContactMap {
 
   // How far from T a series of so many terms is used.
   struct Reach {
-    Real s{0};       // the longest |s|
-    Real growth{0};  // exp(a s), by which exp(a t) grows from T on
+    Real s{0};          // the longest |s|
+    Real growth{0};     // exp(a s), by which exp(a t) grows from T on
+    Real last_step{0};  // the longest last step of s
   };
   static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
-    const std::size_t terms = 2 * pairs;
+    const std::size_t taken = 2 * pairs;
     Real factorial{1};
-    for (std::size_t n = 2; n < terms; ++n) factorial *= Real(double(n));
-    // The first term left out of the velocity: (rate s)^(terms - 1) / (terms - 1)! of it.
-    const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
-    const Real s = exponential(Real(logarithm(enough) / Real(double(terms - 1)))) / fast.rate();
-    return {s, exponential(Real(fast.a() * s))};
+    for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
+    // The first term left out of the velocity: (rate s)^(taken - 1) / (taken - 1)! of it.
+    const Real epsilon = std::numeric_limits<Real>::epsilon(), enough = factorial * epsilon / 16;
+    const Real rs = exponential(Real(logarithm(enough) / Real(double(taken - 1)))), s = rs / fast.rate();
+    // q is taken along the last step to second order: the third power of the step is then below rounding. Its
+    // velocity is so, too, with q''' to second order in s: (rate step)^2 (rate s)^3 / 12 of it is left out.
+    const Real of_q = exponential(Real(logarithm(epsilon) * 2 / 5)),
+               of_velocity = square_root(Real(3 * epsilon / (rs * rs * rs)));
+    const Real last_step = (of_q < of_velocity ? of_q : of_velocity) / fast.rate();
+    return {s, exponential(Real(fast.a() * s)), last_step};
   }
 
   // The terms of q(T + s).
@@ -246,14 +250,15 @@ class ShortContactMap {
     for (int i = 0;; ++i) {
       if (i == 8 || !(absolute(s) < reach.s)) return {};
       step = step_to_zero(q, s);
-      if (absolute(step.rest) < accurate_) break;
+      if (absolute(step.rest) < reach.last_step) break;
       s += step.rest;
     }
     // All other series are summed at s and moved on by the last step.
     const Real rest = step.rest, whole = s + rest, time = half_period_ + whole;
     // A step may vanish where q does not, by its second order alone.
     if (!(absolute(step.bend) < Real(0.0625) && absolute(whole) < reach.s)) return {};
-    const Real end_w = step.w + rest * (step.w1 + rest * (3 * q[1][1] + 12 * s * q[2][0]));
+    const Real half_w2 = 3 * q[1][1] + s * (12 * q[2][0] + 30 * s * q[2][1]);
+    const Real end_w = step.w + rest * (step.w1 + rest * half_w2);
     if (!(end_w * w < 0)) return {};
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(end_w);
     const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
@@ -262,7 +267,7 @@ class ShortContactMap {
                              Real(fast_fourth + reach.growth * slow_fourth));
     if (!proved && whole > 0) {
       // In two pieces: up to T, and from T on without the weight exp(a t). There the fourth derivative of the
-      // fast part is at most b^2 N E, N being the amplitude of exp(a t) times the fast part.
+      // fast mode is at most b^2 N E, N being the amplitude of exp(a t) times the fast mode.
       const Real depth = inward * q[0][0], slope = inward * q[0][1];
       proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
                           half_period_, Real(fast_fourth + slow_fourth)) &&
@@ -286,7 +291,6 @@ class ShortContactMap {
   Real half_period_{0}, decay_factor_{0};  // T and E = exp(-a T)
   Real decay_{0}, growth_{0};              // a and exp(a T)
   Real unweighted_{0};                     // (b / omega^2)^2
-  Real accurate_{0};                       // the largest correction of s whose third power is below rounding
   Reach few_, more_, many_, most_;
   Real latest_{0};
   Real share_{0}, zeta_{0};

@@ -39,7 +39,7 @@ class Stuck {
     return released;
   }
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_side(side, end.x, t);
+    return primary_.keeps_side(side, end.x, end.v, t);
   }
   bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
     return primary_.keeps_course(end.v, t);

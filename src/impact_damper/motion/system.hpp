@@ -3,10 +3,22 @@
 
 #include <limits>
 
-#include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper {
+
+// An oscillator under a force of one frequency, with the table of its series; without a force there is none.
+template <class Real, class Force>
+struct Driven : Oscillator<Real> {
+  Driven(const Real& a, const Real& b, const Force& forcing)
+      : Oscillator<Real>(a, b), series(*this, forcing.frequency) {}
+  DrivenSeriesTable<Real> series;
+};
+template <class Real>
+struct Driven<Real, NoForcing<Real>> : Oscillator<Real> {
+  Driven(const Real& a, const Real& b, const NoForcing<Real>&) : Oscillator<Real>(a, b) {}
+};
 
 // The scene's numbers in the engine's scalar type.
 template <class Real, ForceOf<Real> Force = Forcing<Real>>
@@ -17,13 +29,14 @@ struct System {
         zeta(scene.damping_ratio),
         k(scene.wall_stiffness),
         forcing{Real(scene.force_amplitude), Real(scene.force_frequency)},
-        free(zeta, Real(1)),
-        stuck(zeta / (1 + nu), 1 / (1 + nu)) {}
+        free(zeta, Real(1), forcing),
+        // NOLINTNEXTLINE(clang-analyzer-optin.cplusplus.UninitializedObject): it takes a rate for unknown
+        stuck(zeta / (1 + nu), 1 / (1 + nu), forcing) {}
 
   Real nu, e, zeta, k;
   Force forcing;
-  Oscillator<Real> free;   // (M2.1), the paper's (3)
-  Oscillator<Real> stuck;  // (M2.3), the paper's (9) with the factor 1/(1+nu) that its force lacks
+  Driven<Real, Force> free;   // (M2.1), the paper's (3)
+  Driven<Real, Force> stuck;  // (M2.3), the paper's (9) with the factor 1/(1+nu) that its force lacks
 };
 
 // Calls `then` with the scene's numbers, whose type tells whether there is a forcing.

@@ -1,0 +1,21 @@
+// The engines with the program's observer, Recorder. Each takes seconds to compile, so each is
+// compiled once, in a source of its own (recorded_*.cpp), and so that two processors share the work.
+#pragma once
+
+#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/recorder.hpp"
+#include "impact_damper/engines/restitution.hpp"
+
+namespace impact_damper {
+
+using FreeSystem = System<double, NoForcing<double>>;
+using ForcedSystem = System<double, Forcing<double>>;
+
+extern template Outcome run_exact(const FreeSystem&, const Scene&, const Exact&, Recorder&);
+extern template Outcome run_exact(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
+extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
+extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
+extern template Outcome run_cem<double>(const Scene&, const Cem&, Recorder&);
+
+}  // namespace impact_damper
