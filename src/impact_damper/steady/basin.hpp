@@ -1,0 +1,54 @@
+// Which steady motion a scene ends in, over two of its numbers: a map of basins of attraction over two
+// initial values, or of the motions over two parameters.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "impact_damper/steady/sweep.hpp"
+
+namespace impact_damper {
+
+struct BasinRule {
+  SteadyRule steady{.tolerance = 1e-6, .max_periods = 1000};
+  // Distance from a state at phase 0 of a known motion within which a point may be captured by it. In (0, 1).
+  double capture_radius = 1e-3;
+};
+std::vector<Problem> problems_of(const BasinRule& rule);
+
+// A steady motion that points of the map end in. All those without impacts are one, "idle".
+struct Attractor {
+  bool idle = false;
+  std::int64_t period = 1;  // in periods of the force
+  ImpactCounts impacts{};   // in one period of the motion
+  bool symmetric = false;
+  std::int64_t points = 0;  // of the map
+  // Its states at phase 0, `period` of them; none where the map varies the scene's parameters: then equal
+  // periods, impacts and symmetry are one and the same motion.
+  std::vector<State<double>> states{};
+};
+
+inline constexpr std::int32_t undecided = -1;  // not within SteadyRule::max_periods
+struct Basin {
+  std::vector<Attractor> attractors;  // those that most points end in first
+  std::vector<std::int32_t>
+      attractor;             // of each point, an index or `undecided`; the first axis's value changes first
+  std::int64_t stopped = 0;  // points that a budget of the engine ended; they are undecided
+};
+
+// A point of the map is decided as soon as
+// - the secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
+// - over initial values: it is within the capture radius of a known motion, and nearer a period of that
+// later.
+//   Known are those that a coarse grid of points ends in, each followed until it is steady by `rule`; or
+// - it is steady by `rule`.
+// No result depends on the number of threads. Throws InvalidArguments if the scene is not valid at a corner
+// of the map.
+Basin basin(const Scene& scene, const Engine& engine, const Axis& first, const Axis& second,
+            const BasinRule& rule, const Threads& threads,
+            const std::function<void(std::int64_t done)>& progress);
+
+// Whether the number is an initial value of the motion.
+bool is_initial_value(const double Scene::*number);
+
+}  // namespace impact_damper

@@ -1,0 +1,87 @@
+#include "impact_damper/steady/lyapunov.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/steady/poincare_map.hpp"
+#include "impact_damper/steady/variation_observer.hpp"
+
+namespace impact_damper {
+namespace {
+
+double dot(const StateVector& a, const StateVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
+// Four orthonormal changes of the state, and the logarithms of what they have been stretched by (M13.15).
+class Frame {
+ public:
+  // Orthogonal to the ones before it, by modified Gram-Schmidt, twice: an impact that is slow shears so much
+  // that once would leave rounding errors.
+  template <class ByParameters>
+  void step(const StateMatrix& a, ByParameters&&) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      StateVector& column = columns_[j] = product(a, columns_[j]);
+      for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t k = 0; k < j; ++k) {
+          const double along = dot(columns_[k], column);
+          for (std::size_t i = 0; i < 4; ++i) column[i] -= along * columns_[k][i];
+        }
+      }
+      const double size = std::sqrt(dot(column, column));
+      if (!(size > 0)) continue;  // lost
+      for (double& entry : column) entry /= size;
+      logarithms_[j] += logarithm(size);
+    }
+  }
+  void joined() { dimensions_ = 2; }
+  // Each contracts volumes by at most e; what one contracts by more than exp(-36) is lost in rounding errors.
+  int pieces(double loss) {
+    constexpr int most = 4096;
+    if (loss > 36.0 * most) joined();
+    return loss < most ? 1 + int(loss) : most;
+  }
+  void forget_logarithms() { logarithms_ = {}; }
+  std::vector<double> exponents(double time) const {
+    std::vector<double> all;
+    for (std::size_t j = 0; j < dimensions_; ++j) all.push_back(logarithms_[j] / time);
+    return all;
+  }
+
+ private:
+  std::array<StateVector, 4> columns_ = identity<double>();
+  StateVector logarithms_{};
+  std::size_t dimensions_ = 4;
+};
+
+}  // namespace
+
+LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
+                                     std::int64_t skipped) {
+  std::vector<Problem> problems;
+  if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
+  if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
+  require_none(problems);
+  const PoincareMap map(scene, engine, 2);
+
+  // Each period is a run of its own, so that the phase of the force does not drift.
+  Scene period = map.scene();
+  period.x0 = scene.x0, period.v0 = scene.v0, period.y0 = scene.y0, period.w0 = scene.w0;
+  require_none(incompatibilities_of(period, engine));
+  LyapunovExponents result;
+  Frame frame;
+  for (std::int64_t n = 0; n < skipped + periods; ++n) {
+    if (n == skipped) frame.forget_logarithms();
+    VariationObserver<Frame> observer(period, engine, frame);
+    result.stop_reason = run_observed(period, engine, observer).stop_reason;
+    if (result.stop_reason != StopReason::time) return result;
+    const State<double>& end = observer.variation.end();
+    period.x0 = end.x, period.v0 = end.v, period.y0 = end.y, period.w0 = end.w;
+  }
+  result.periods = periods;
+  result.exponents = frame.exponents(double(periods) * map.duration());
+  return result;
+}
+
+}  // namespace impact_damper

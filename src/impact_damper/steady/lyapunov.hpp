@@ -1,0 +1,26 @@
+// Lyapunov exponents: at what rates small changes of the state grow or decay along a run.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+struct LyapunovExponents {
+  StopReason stop_reason = StopReason::time;  // any other: of a period that could not be completed
+  std::int64_t periods = 0;                   // of the force, over which the exponents are averaged
+  // Per unit of time; their sum is the mean of ln|det A|, (M13.9). In the order in which the
+  // orthogonalisation finds them: descending, if there are enough periods. Four; or two where the others are
+  // minus infinity, because both masses stick, or too far below to be told, because a sustained contact damps
+  // its fast mode by more than exp(-36) 4096 times.
+  std::vector<double> exponents;
+};
+
+// From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0. Throws
+// InvalidArguments as PoincareMap does.
+LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
+                                     std::int64_t skipped = 0);
+
+}  // namespace impact_damper

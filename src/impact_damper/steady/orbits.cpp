@@ -1,0 +1,697 @@
+#include "impact_damper/steady/orbits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/steady/saltation.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr std::size_t at_parameter = 4;
+using Point = std::array<double, 5>;  // x, v, y, w and the parameter
+using Square = std::array<Point, 5>;
+
+double dot(const Point& a, const Point& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+Point along(const Point& from, double step, const Point& direction) {
+  Point p = from;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] += step * direction[i];
+  return p;
+}
+Point normalized(Point p) {
+  const double size = std::sqrt(dot(p, p));
+  for (double& entry : p) entry /= size;
+  return p;
+}
+double distance(const Point& a, const Point& b) {
+  const Point d = along(a, -1, b);
+  return std::sqrt(dot(d, d));
+}
+double largest(const StateVector& s) {
+  double most = 0;
+  for (const double entry : s) most = std::max(most, std::fabs(entry));
+  return most;
+}
+State<double> state_at(const Point& p) { return {p[0], p[1], p[2], p[3]}; }
+Point point_at(const State<double>& s, double parameter) { return {s.x, s.v, s.y, s.w, parameter}; }
+
+double Scene::*member_of(Parameter parameter) {
+  switch (parameter) {
+    case Parameter::force_frequency:
+      return &Scene::force_frequency;
+    case Parameter::force_amplitude:
+      return &Scene::force_amplitude;
+  }
+  return {};
+}
+
+// The equation H^n(s) - s = 0 for states and values of one parameter.
+struct Equation {
+  Scene scene;
+  Engine engine;
+  int half_periods;
+  Parameter parameter;
+  OrbitOptions options;
+
+  PoincareMap map(double value) const {
+    Scene changed = scene;
+    changed.*member_of(parameter) = value;
+    return {changed, engine, half_periods};
+  }
+  // Whether an iterate is one that a scene may have.
+  bool allows(const Point& p) const {
+    for (const SceneField& field : scene_fields)
+      if (field.member == member_of(parameter) &&
+          !(p[at_parameter] > 0 && p[at_parameter] >= field.least && p[at_parameter] <= field.most))
+        return false;
+    return largest(vector_of(state_at(p))) <= 1e12;
+  }
+};
+
+// A plane in the space of points, on which a solution is looked for.
+struct Plane {
+  Point through, normal;
+};
+
+// A state on the other side of an event at phase 0, and its derivative.
+struct Crossing {
+  StateMatrix by_state;
+  State<double> state;
+};
+
+// With rigid walls an iterate may come to lie beyond a wall. Then the impact has passed phase 0: one that was
+// to come has just been, or the other way round, and the state is taken across it (M13.13).
+std::optional<Crossing> across_impact(const Scene& scene, const State<double>& s) {
+  const double wall = s.y < 0 ? 0 : 1, away = s.y < 0 ? 1 : -1, e = scene.restitution;
+  const bool approaching = away * s.w < 0;
+  if (!approaching && !(away * s.w > 0 && e > 0)) return {};
+  StateMatrix jump = impact_jump(scene.mass_ratio, e);
+  if (!approaching) {  // the inverse
+    jump[1][3] /= e;
+    jump[3][3] = -1 / e;
+  }
+  const auto rates = [&](const State<double>& at) {
+    return rates_in_flight(scene.damping_ratio, at, 0.0);  // the force is 0 at phase 0
+  };
+  const auto moved = [](const State<double>& from, const Rates<double>& by, double time) {
+    return State<double>{from.x + by[0] * time, from.v + by[1] * time, from.y + by[2] * time,
+                         from.w + by[3] * time};
+  };
+  const double since = (s.y - wall) / s.w;
+  const Rates<double> before = rates(s);
+  const State<double> at_wall = state_of(product(jump, vector_of(moved(s, before, -since))));
+  const Rates<double> after = rates(at_wall);
+  return Crossing{saltation(jump, before, after, s.w), moved(at_wall, after, since)};
+}
+
+// The same with compliant walls, where the touch, or the end of a contact, passes phase 0 (M13.6): the branch
+// has a kink there.
+Crossing across_edge(const Scene& scene, double zeta_m, bool into_contact, const State<double>& s) {
+  const double damping = 2 * zeta_m * std::sqrt(scene.wall_stiffness / scene.mass_ratio);
+  const StateMatrix edge = contact_edge(scene.mass_ratio, damping, into_contact ? 1 : -1);
+  const double q = s.y < 0.5 ? s.y : s.y - 1;
+  return {edge, {s.x, s.v + edge[1][2] * q, s.y, s.w + edge[3][2] * q}};
+}
+
+bool is_inside(double y) { return y >= 0 && y <= 1; }
+
+// Takes an iterate that came from `before` to where the equation holds that led it there, and the plane with
+// it. False: that is not possible.
+bool carry_across(const Scene& scene, const Engine& engine, const Point& before, Point& p, Plane& plane) {
+  const auto carry = [&](const Crossing& crossing) {
+    const auto carried = [&](const Point& direction) {
+      const StateVector by =
+          product(crossing.by_state, {direction[0], direction[1], direction[2], direction[3]});
+      return Point{by[0], by[1], by[2], by[3], direction[at_parameter]};
+    };
+    const Point apart = carried(along(plane.through, -1, p));
+    plane.normal = normalized(carried(plane.normal));
+    p = point_at(crossing.state, p[at_parameter]);
+    plane.through = along(p, 1, apart);
+  };
+  if (const auto* exact = std::get_if<Exact>(&engine)) {
+    const bool into_contact = is_inside(before[2]);
+    if (into_contact == is_inside(p[2])) return true;
+    carry(across_edge(scene, zeta_m<double>(scene, exact->calibration), into_contact, state_at(p)));
+    return true;
+  }
+  for (int impacts = 0; impacts < 8; ++impacts) {
+    const State<double> s = state_at(p);
+    // At rest on a wall, but for rounding errors.
+    constexpr double rounding = 1e-13;
+    const double wall = s.y < 0.5 ? 0 : 1;
+    if (std::fabs(s.y - wall) < rounding && std::fabs(s.w) < rounding) {
+      p[2] = wall;
+      p[3] = 0;
+      return true;
+    }
+    if (is_inside(s.y)) return true;
+    const std::optional<Crossing> crossing = across_impact(scene, s);
+    if (!crossing) return false;
+    carry(*crossing);
+  }
+  return false;
+}
+
+struct Solution {
+  OrbitEnd end = OrbitEnd::no_convergence;
+  Point point{};
+  PoincareImage image;
+  std::vector<double> residuals;
+  Plane plane{};
+};
+
+const StateVector& by_parameter(const PoincareImage& image, Parameter parameter) {
+  return parameter == Parameter::force_frequency ? image.by_frequency : image.by_amplitude;
+}
+// The derivative of H^n(s) - s by s and the parameter, and a last row.
+Square bordered(const PoincareImage& image, Parameter parameter, const Point& last) {
+  Square a{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) a[i][k] = image.by_state[i][k] - (i == k);
+    a[i][at_parameter] = by_parameter(image, parameter)[i];
+  }
+  a[at_parameter] = last;
+  return a;
+}
+
+struct Rest {
+  StateVector state;  // H^n(s) - s
+  double off = 0;     // distance from the plane
+  double size = 0;    // the larger of both, in the units of OrbitOptions::tolerance
+};
+Rest rest_of(const Solution& at) {
+  Rest rest;
+  rest.state = vector_of(at.image.state);
+  for (std::size_t k = 0; k < 4; ++k) rest.state[k] -= at.point[k];
+  rest.off = dot(at.plane.normal, along(at.point, -1, at.plane.through));
+  rest.size = std::max(largest(rest.state), std::fabs(rest.off)) /
+              std::max(1.0, largest(vector_of(state_at(at.point))));
+  return rest;
+}
+
+// Newton's step (M13.10). Written as the image and A times the change: where the masses stick y and w are
+// then those of the image, to the bit.
+std::optional<Point> newton_step(const Solution& at, const Rest& rest, Parameter parameter) {
+  const StateVector& r = rest.state;
+  const auto change =
+      solution<5>(bordered(at.image, parameter, at.plane.normal), {-r[0], -r[1], -r[2], -r[3], -rest.off});
+  if (!change) return {};
+  Point next = point_at(at.image.state, at.point[at_parameter] + (*change)[at_parameter]);
+  for (std::size_t i = 0; i < 4; ++i) {
+    next[i] += by_parameter(at.image, parameter)[i] * (*change)[at_parameter];
+    for (std::size_t k = 0; k < 4; ++k) next[i] += at.image.by_state[i][k] * (*change)[k];
+  }
+  return next;
+}
+
+// Solves H^n(s) = s on a plane by Newton's method from `start`, which a prediction from `before` led to. A
+// step that raises the rest is halved.
+Solution solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane) {
+  Solution best, now;
+  now.point = start;
+  best.plane = now.plane = plane;
+  double least = std::numeric_limits<double>::infinity(), fraction = 1;
+  Point step{}, last = before;
+  std::vector<double> residuals;
+  for (int i = 0; i < equation.options.max_iterations; ++i) {
+    if (!equation.allows(now.point)) break;
+    const PoincareMap map = equation.map(now.point[at_parameter]);
+    if (!carry_across(map.scene(), equation.engine, last, now.point, now.plane)) break;
+    now.image = map(state_at(now.point), PoincareMap::Derivatives::by_state_and_parameters);
+    if (now.image.stop_reason != StopReason::time) {
+      best.end = OrbitEnd::run_stopped;
+      break;
+    }
+    const Rest rest = rest_of(now);
+    residuals.push_back(rest.size);
+    const bool tolerated = least <= equation.options.tolerance;
+    if (tolerated && !(rest.size < least / 2)) break;  // rounding errors are all that is left
+    if (i > 0 && !(rest.size < 2 * least) && fraction > 1.0 / 64) {
+      fraction /= 2;
+      now.point = along(best.point, fraction, step);
+      now.plane = best.plane;
+      continue;
+    }
+    fraction = 1;
+    least = rest.size;
+    best = now;
+    last = now.point;
+    const auto next = least > 0 ? newton_step(now, rest, equation.parameter) : std::nullopt;
+    if (!next) break;
+    step = along(*next, -1, now.point);
+    now.point = *next;
+  }
+  if (best.end != OrbitEnd::run_stopped && least <= equation.options.tolerance)
+    best.end = OrbitEnd::converged;
+  best.residuals = std::move(residuals);
+  return best;
+}
+
+// Across the parameter: a plane on which it has one value.
+Plane at_value(const Point& p) { return {p, {0, 0, 0, 0, 1}}; }
+
+// How far a point of n half periods is from being one of m; nothing where the run does not get that far.
+std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
+  Equation shorter = equation;
+  shorter.half_periods = half_periods;
+  const PoincareImage image = shorter.map(p[at_parameter])(state_at(p));
+  if (image.stop_reason != StopReason::time) return {};
+  StateVector rest = vector_of(image.state);
+  for (std::size_t i = 0; i < 4; ++i) rest[i] -= p[i];
+  return rest;
+}
+// Whether it is one, to within `gap` in units of the larger of 1 and |s|.
+bool closes_after(const Equation& equation, const Point& p, int half_periods, double gap) {
+  const auto rest = rest_after(equation, p, half_periods);
+  return rest && largest(*rest) <= gap * std::max(1.0, largest(vector_of(state_at(p))));
+}
+
+Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
+  Orbit orbit;
+  orbit.end = found.end;
+  orbit.residuals = found.residuals;
+  orbit.engine = equation.engine;
+  orbit.periods = periods;
+  orbit.symmetric = symmetric;
+  orbit.scene = equation.scene;
+  if (found.end != OrbitEnd::converged) return orbit;
+  const PoincareMap map = equation.map(found.point[at_parameter]);
+  orbit.scene = map.scene();
+  const State<double> s = state_at(found.point);
+  orbit.scene.x0 = s.x, orbit.scene.v0 = s.v, orbit.scene.y0 = s.y, orbit.scene.w0 = s.w;
+  orbit.impacts = found.image.impacts;
+  orbit.sticking = found.image.sticking;
+  orbit.multipliers = multipliers_of(found.image.by_state);
+  orbit.slowest_impact = found.image.slowest_impact;
+  orbit.nearest_miss = found.image.nearest_miss;
+  if (!symmetric) return orbit;
+
+  // The other half is the mirror image of this one.
+  orbit.scene.until_time = 2 * map.duration();
+  for (const OrbitImpact& impact : found.image.impacts)
+    orbit.impacts.push_back(
+        {impact.time + map.duration(), impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed});
+  orbit.sticking *= 2;
+  orbit.half_multipliers = orbit.multipliers;
+  for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im};
+  return orbit;
+}
+
+std::vector<Problem> problems_of(const OrbitOptions& options) {
+  std::vector<Problem> problems;
+  if (!(options.tolerance > 0 && options.tolerance <= 1e-3))
+    problems.push_back({"tolerance", "must be > 0 and <= 0.001"});
+  if (!(options.max_iterations >= 1)) problems.push_back({"max_iterations", "must be >= 1"});
+  return problems;
+}
+
+// The products of (1 - m), (1 + m) and (1 - m m') over all multipliers m and all pairs of them (M13.12). They
+// are real, as conjugates come in pairs.
+struct Products {
+  double fold, flip, pairs;
+};
+Products products_of(const PoincareImage& image) {
+  const Multipliers all = multipliers_of(image.by_state);
+  struct Complex {
+    double re = 1, im = 0;
+    void times(double re2, double im2) { *this = {re * re2 - im * im2, re * im2 + im * re2}; }
+  };
+  Complex fold, flip, pairs;
+  for (std::size_t i = 0; i < 4; ++i) {
+    fold.times(1 - all[i].re, -all[i].im);
+    flip.times(1 + all[i].re, all[i].im);
+    for (std::size_t j = i + 1; j < 4; ++j)
+      pairs.times(1 - (all[i].re * all[j].re - all[i].im * all[j].im),
+                  -(all[i].re * all[j].im + all[i].im * all[j].re));
+  }
+  return {fold.re, flip.re, pairs.re};
+}
+
+// What distinguishes orbits between which there is a grazing. Complete chattering has no number of impacts.
+bool of_one_kind(const PoincareImage& a, const PoincareImage& b) {
+  return a.sticking > 0 || b.sticking > 0 || a.impacts.size() == b.impacts.size();
+}
+
+class Follower {
+ public:
+  Follower(const Orbit& orbit, Parameter parameter, const FollowOptions& options)
+      : options_(options),
+        first_(orbit),
+        equation_{orbit.scene, orbit.engine, orbit.symmetric ? orbit.periods : 2 * orbit.periods, parameter,
+                  options.orbit} {}
+
+  Branch follow() {
+    Branch branch;
+    const Scene& scene = first_.scene;
+    const double begin = scene.*member_of(equation_.parameter);
+    if (first_.end != OrbitEnd::converged || !(begin >= options_.least && begin <= options_.most))
+      return branch;
+    const Point start = point_at({scene.x0, scene.v0, scene.y0, scene.w0}, begin);
+    Solution now = solve(equation_, start, start, at_value(start));
+    if (now.end != OrbitEnd::converged) return branch;
+    const Point origin = now.point;
+    add(branch, now);
+    auto tangent = tangent_at(now, Point{0, 0, 0, 0, options_.upwards ? 1.0 : -1.0});
+    double step = options_.first_step;
+    branch.end = BranchEnd::points;
+    while (tangent && int(branch.orbits.size()) < options_.max_points) {
+      if (far_from_grazing(now.image)) {
+        anchor_ = now;
+        anchor_tangent_ = *tangent;
+      }
+      const Solution next = between(now, *tangent, step);
+      const auto turned = next.end == OrbitEnd::converged && follows(now, next, step)
+                              ? tangent_at(next, next.plane.normal)
+                              : std::nullopt;
+      if (!turned || !(dot(*turned, next.plane.normal) > 0.9) ||
+          jumped(now, (*tangent)[at_parameter], next, (*turned)[at_parameter])) {
+        step /= 2;
+        if (step >= options_.smallest_step) continue;
+        branch.end = BranchEnd::step_too_small;
+        add_grazing_at_end(branch, now);
+        return branch;
+      }
+      if (!in_range(next.point)) {
+        finish_at_end_of_range(branch, now, next);
+        return branch;
+      }
+      add_events(branch, now, *tangent, step, next);
+      add(branch, next);
+      const bool is_back = branch.orbits.size() > 3 && distance(next.point, origin) < step &&
+                           dot(along(origin, -1, now.point), *tangent) > 0;
+      now = next;
+      tangent = turned;
+      if (is_back) {
+        branch.end = BranchEnd::closed;
+        return branch;
+      }
+      if (next.residuals.size() <= 5) step = std::min(1.5 * step, options_.largest_step);
+    }
+    if (!tangent) branch.end = BranchEnd::step_too_small;
+    return branch;
+  }
+
+ private:
+  void add(Branch& branch, const Solution& at) { branch.orbits.push_back(orbit_at(at)); }
+  Orbit orbit_at(const Solution& at) const {
+    return orbit_of(equation_, at, first_.periods, first_.symmetric);
+  }
+  static bool far_from_grazing(const PoincareImage& image) {
+    constexpr double far = 1e-5;
+    return !(image.slowest_impact && *image.slowest_impact < far) &&
+           !(image.nearest_miss && *image.nearest_miss < far);
+  }
+  bool in_range(const Point& p) const {
+    return p[at_parameter] >= options_.least && p[at_parameter] <= options_.most;
+  }
+  // Whether `next` is near enough to where it was expected, and of the same kind if a grazing ends branches.
+  bool follows(const Solution& now, const Solution& next, double step) const {
+    return distance(next.point, next.plane.through) < step / 2 &&
+           (!has_rigid_walls(equation_.engine) || of_one_kind(now.image, next.image));
+  }
+  // The determinant of the bordered matrix keeps its sign along a branch, and is the product of (1 - m)
+  // divided by the parameter's share of the direction (M13.11). So if one of the two changes its sign and
+  // not the other, the step has led to another branch. Where orbits that are not symmetric become so it
+  // changes as well.
+  bool jumped(const Solution& now, double share, const Solution& next, double next_share) const {
+    if (!first_.symmetric || now.image.impacts.empty()) return false;
+    return products_of(now.image).fold * share * products_of(next.image).fold * next_share < 0;
+  }
+  // The direction of the branch, (M13.11), the one that `like` points to.
+  std::optional<Point> tangent_at(const Solution& at, const Point& like) const {
+    const auto direction = solution<5>(bordered(at.image, equation_.parameter, like), {0, 0, 0, 0, 1});
+    return direction ? std::optional(normalized(*direction)) : std::nullopt;
+  }
+
+  // The solution at a distance s from `now`, along the tangent there.
+  Solution between(const Solution& now, const Point& tangent, double s) const {
+    const Point from = along(now.point, s, tangent);
+    return solve(equation_, now.point, from, {from, normal_at(now, tangent)});
+  }
+  // Where an orbit that is not symmetric is about to become so, and so to meet the branch of symmetric ones,
+  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it.
+  Point normal_at(const Solution& now, const Point& tangent) const {
+    if (first_.symmetric || first_.periods % 2 == 0) return tangent;
+    const auto rest = rest_after(equation_, now.point, first_.periods);
+    if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
+    const Point across = normalized(Point{(*rest)[0], (*rest)[1], (*rest)[2], (*rest)[3], 0});
+    const double along_tangent = dot(across, tangent);
+    if (!(std::fabs(along_tangent) > 0.95)) return tangent;
+    return along_tangent > 0 ? across : along(Point{}, -1, across);
+  }
+
+  void add_events(Branch& branch, const Solution& now, const Point& tangent, double step,
+                  const Solution& next) const {
+    if (!of_one_kind(now.image, next.image)) add_grazing(branch, now, tangent, step);
+    if (now.image.impacts.empty() || next.image.impacts.empty()) return;  // linear: nothing can change
+    // At a fold the parameter turns back; where an orbit that is not symmetric becomes so, it does, too.
+    const auto slope = [&](const Solution& at) {
+      const auto direction = tangent_at(at, at.plane.normal);
+      return direction ? (*direction)[at_parameter] : 0;
+    };
+    add_event(branch, now, tangent, step, BranchEventKind::fold, tangent[at_parameter], slope(next), slope);
+    const auto flip = [](const Solution& at) { return products_of(at.image).flip; };
+    add_event(branch, now, tangent, step,
+              first_.symmetric ? BranchEventKind::symmetry_breaking : BranchEventKind::flip, flip(now),
+              flip(next), flip);
+    const auto pairs = [](const Solution& at) { return products_of(at.image).pairs; };
+    add_event(branch, now, tangent, step, BranchEventKind::neimark_sacker, pairs(now), pairs(next), pairs);
+  }
+  // If the test changes its sign.
+  template <class Test>
+  void add_event(Branch& branch, const Solution& now, const Point& tangent, double step, BranchEventKind kind,
+                 double before, double after, Test&& test) const {
+    if (!(before * after < 0)) return;
+    const auto at = root_between(now, tangent, step, before, after, test);
+    if (!at) return;
+    if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
+    // How far from symmetric the orbit is grows as the root of the distance in the parameter.
+    constexpr double nearly = 1e-4;
+    if (kind == BranchEventKind::fold && !first_.symmetric && first_.periods % 2 != 0 &&
+        closes_after(equation_, at->point, first_.periods, nearly))
+      kind = BranchEventKind::symmetry_breaking;
+    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at)});
+  }
+  // Of two real multipliers, one the inverse of the other, the product is 1 as well.
+  static bool on_unit_circle(const PoincareImage& image) {
+    const Multipliers all = multipliers_of(image.by_state);
+    return std::any_of(all.begin(), all.end(),
+                       [](const Multiplier& m) { return m.im > 1e-6 && std::fabs(m.modulus() - 1) < 1e-6; });
+  }
+  // By the Illinois variant of regula falsi.
+  template <class Value>
+  std::optional<Solution> root_between(const Solution& now, const Point& tangent, double step, double at_low,
+                                       double at_high, Value&& value_of) const {
+    double low = 0, high = step;
+    std::optional<Solution> found;
+    int side = 0;
+    for (int i = 0; i < 80 && high - low > 1e-14; ++i) {
+      const double s = low + (high - low) * (at_low / (at_low - at_high));
+      Solution at = between(now, tangent, s);
+      if (at.end != OrbitEnd::converged) return {};
+      const double value = value_of(at);
+      found = std::move(at);
+      if (value == 0) break;
+      if (value * at_low > 0) {
+        const double moved = s - low;
+        low = s;
+        at_low = value;
+        if (side == 1) at_high /= 2;
+        side = 1;
+        if (!(moved > 1e-14)) break;
+      } else {
+        const double moved = high - s;
+        high = s;
+        at_high = value;
+        if (side == -1) at_low /= 2;
+        side = -1;
+        if (!(moved > 1e-14)) break;
+      }
+    }
+    return found;
+  }
+  // Compliant walls: the number of impacts changes between; by bisection.
+  void add_grazing(Branch& branch, const Solution& now, const Point& tangent, double step) const {
+    double low = 0, high = step;
+    Solution last = now;
+    while (high - low > 1e-13) {
+      const double middle = low + (high - low) / 2;
+      Solution at = between(now, tangent, middle);
+      if (at.end != OrbitEnd::converged) return;
+      if (of_one_kind(now.image, at.image)) {
+        low = middle;
+        last = std::move(at);
+      } else {
+        high = middle;
+      }
+    }
+    branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], orbit_at(last)});
+  }
+
+  // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
+  // parameter is a smooth function of it (M13.14), so a polynomial through a few orbits before leads there.
+  void add_grazing_at_end(Branch& branch, const Solution& last) const {
+    if (!has_rigid_walls(equation_.engine)) return;
+    for (const auto member : {&PoincareImage::slowest_impact, &PoincareImage::nearest_miss}) {
+      if (!(last.image.*member && *(last.image.*member) < 1e-4)) continue;
+      std::optional<Extrapolated> best;
+      for (const double spacing : {1e-4, 2e-5, 4e-6}) {
+        const auto at = at_size_0(member, spacing);
+        if (at && !(best && best->error <= at->error)) best = at;
+      }
+      if (!best) continue;
+      branch.end = BranchEnd::grazing;
+      branch.events.push_back({BranchEventKind::grazing, best->parameter, branch.orbits.back()});
+      return;
+    }
+  }
+  // The parameter at which a size vanishes, by Neville's scheme for five orbits before the grazing, and by
+  // how much the last order changed it.
+  struct Extrapolated {
+    double parameter = 0, error = 0;
+  };
+  std::optional<Extrapolated> at_size_0(std::optional<double> PoincareImage::*size_of, double spacing) const {
+    std::array<double, 5> size, value;
+    for (std::size_t i = 0; i < size.size(); ++i) {
+      const Solution at = between(anchor_, anchor_tangent_, -spacing * double(i));
+      if (at.end != OrbitEnd::converged || !(at.image.*size_of)) return {};
+      size[i] = *(at.image.*size_of);
+      value[i] = at.point[at_parameter];
+    }
+    double before = 0;
+    for (std::size_t order = 1; order < size.size(); ++order) {
+      before = value.back();
+      for (std::size_t i = size.size() - 1; i >= order; --i)
+        value[i] += (value[i] - value[i - 1]) * size[i] / (size[i - order] - size[i]);
+    }
+    Extrapolated all;
+    all.parameter = value.back();
+    all.error = std::fabs(value.back() - before);
+    return all;
+  }
+
+  void finish_at_end_of_range(Branch& branch, const Solution& now, const Solution& next) {
+    const double end = next.point[at_parameter] > options_.most ? options_.most : options_.least;
+    const double share =
+        (end - now.point[at_parameter]) / (next.point[at_parameter] - now.point[at_parameter]);
+    Point p = along(now.point, share, along(next.point, -1, now.point));
+    p[at_parameter] = end;
+    const Solution last = solve(equation_, now.point, p, at_value(p));
+    branch.end = last.end == OrbitEnd::converged ? BranchEnd::range : BranchEnd::step_too_small;
+    if (last.end == OrbitEnd::converged) add(branch, last);
+  }
+
+  FollowOptions options_;
+  Orbit first_;
+  Equation equation_;
+  Solution anchor_;  // the last that is not so near grazing that rounding errors, which grow as 1/speed, show
+  Point anchor_tangent_{};
+};
+
+}  // namespace
+
+std::string_view name_of(OrbitEnd end) {
+  switch (end) {
+    case OrbitEnd::converged:
+      return "converged";
+    case OrbitEnd::no_convergence:
+      return "no_convergence";
+    case OrbitEnd::run_stopped:
+      return "run_stopped";
+  }
+  return {};
+}
+
+std::string_view name_of(BranchEventKind kind) {
+  switch (kind) {
+    case BranchEventKind::fold:
+      return "fold";
+    case BranchEventKind::flip:
+      return "flip";
+    case BranchEventKind::symmetry_breaking:
+      return "symmetry_breaking";
+    case BranchEventKind::neimark_sacker:
+      return "neimark_sacker";
+    case BranchEventKind::grazing:
+      return "grazing";
+  }
+  return {};
+}
+
+std::string_view name_of(BranchEnd end) {
+  switch (end) {
+    case BranchEnd::range:
+      return "range";
+    case BranchEnd::grazing:
+      return "grazing";
+    case BranchEnd::closed:
+      return "closed";
+    case BranchEnd::step_too_small:
+      return "step_too_small";
+    case BranchEnd::points:
+      return "points";
+    case BranchEnd::not_an_orbit:
+      return "not_an_orbit";
+  }
+  return {};
+}
+
+Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const State<double>& guess,
+                 const OrbitOptions& options) {
+  Scene guessed = scene;
+  guessed.x0 = guess.x, guessed.v0 = guess.v, guessed.y0 = guess.y, guessed.w0 = guess.w;
+  guessed.until_time = 1;
+  std::vector<Problem> problems = impact_damper::problems_of(guessed);
+  if (problems.empty()) problems = incompatibilities_of(guessed, engine);
+  for (const Problem& problem : problems_of(options)) problems.push_back(problem);
+  if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
+  if (options.symmetric && periods % 2 == 0)
+    problems.push_back({"periods", "must be odd for a symmetric orbit"});
+  require_none(problems);
+
+  Equation equation{scene, engine, options.symmetric ? periods : 2 * periods, Parameter::force_frequency,
+                    options};
+  const Point start = point_at(guess, scene.force_frequency);
+  Solution found = solve(equation, start, start, at_value(start));
+  bool symmetric = options.symmetric;
+  if (found.end != OrbitEnd::converged) return orbit_of(equation, found, periods, symmetric);
+
+  // The least number of half periods after which it closes.
+  for (int n = 1; n < equation.half_periods; ++n) {
+    const bool divides = equation.half_periods % n == 0;
+    if (!divides || !closes_after(equation, found.point, n, 100 * options.tolerance)) continue;
+    equation.half_periods = n;
+    std::vector<double> residuals = std::move(found.residuals);
+    Solution shorter = solve(equation, found.point, found.point, at_value(found.point));
+    if (shorter.end == OrbitEnd::converged) found = std::move(shorter);
+    found.residuals = std::move(residuals);
+    break;
+  }
+  symmetric = equation.half_periods % 2 != 0;
+  periods = symmetric ? equation.half_periods : equation.half_periods / 2;
+  return orbit_of(equation, found, periods, symmetric);
+}
+
+Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& options) {
+  std::vector<Problem> problems = problems_of(options.orbit);
+  if (!(options.least > 0 && options.most > options.least))
+    problems.push_back({"least", "must be > 0 and below most"});
+  if (!(options.smallest_step > 0 && options.smallest_step <= options.first_step))
+    problems.push_back({"smallest_step", "must be > 0 and <= first_step"});
+  if (!(options.largest_step >= options.first_step))
+    problems.push_back({"largest_step", "must be >= first_step"});
+  if (!(options.max_points >= 1)) problems.push_back({"max_points", "must be >= 1"});
+  require_none(problems);
+  return Follower(orbit, parameter, options).follow();
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,105 @@
+// Periodic motions under a force, stable or not: found by Newton's method on the Poincare map, followed in
+// omega_f or f0, with the points at which their stability or their kind changes (docs/mathematics.md, 13.5
+// and 13.6).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/steady/multipliers.hpp"
+#include "impact_damper/steady/poincare_map.hpp"
+
+namespace impact_damper {
+
+enum class OrbitEnd {
+  converged,
+  no_convergence,  // the iteration went astray; or the orbit is not isolated (OrbitOptions::symmetric)
+  run_stopped,     // a run ended before its periods were over, by a budget
+};
+std::string_view name_of(OrbitEnd end);  // the enumerator's own name
+
+struct OrbitOptions {
+  // Only among orbits that are their own mirror image half of the periods later; `periods` must be odd. An
+  // orbit without impacts needs this: its secondary mass may rest anywhere, and only y + x = 1/2 is
+  // symmetric.
+  bool symmetric = false;
+  // Of |H^n(s) - s|, the largest of four, in units of the larger of 1 and the largest of |s|. In (0, 1e-3].
+  // Newton's iteration goes on beyond it for as long as each step halves the rest.
+  double tolerance = 1e-10;
+  int max_iterations = 40;  // >= 1
+};
+
+// All but `end` and `residuals` is meaningful if end == converged only.
+struct Orbit {
+  OrbitEnd end = OrbitEnd::no_convergence;
+  std::vector<double> residuals;  // |H^n(s) - s| at each iterate, in the units of `tolerance`
+  Scene scene;                    // its initial condition is on the orbit, its until_time the orbit's period
+  Engine engine;
+  int periods = 1;                   // of the force, after which the orbit first closes
+  bool symmetric = false;            // its own mirror image half a period of its own later
+  std::vector<OrbitImpact> impacts;  // in one period of its own
+  std::int64_t sticking = 0;         // in one period of its own, times in which the masses stick
+  Multipliers multipliers{};         // of one period of its own; a mass that sticks makes two of them 0
+  // Of half of that with the mirror, if symmetric: their squares are the multipliers.
+  std::optional<Multipliers> half_multipliers;
+  // How near to grazing, as in PoincareImage.
+  std::optional<double> slowest_impact, nearest_miss;
+
+  bool stable() const { return multipliers[0].modulus() < 1; }
+  double residual() const { return residuals.back(); }
+};
+
+// guess: at phase 0 of the force. Throws InvalidArguments as PoincareMap does, and for options out of range.
+Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const State<double>& guess,
+                 const OrbitOptions& options = {});
+
+enum class Parameter { force_frequency, force_amplitude };
+
+enum class BranchEventKind {
+  fold,               // the branch turns back in the parameter: multiplier +1
+  flip,               // multiplier -1: an orbit of twice the period branches off
+  symmetry_breaking,  // multiplier -1 of half a period with the mirror: two that are not symmetric branch off
+  neimark_sacker,     // two conjugate multipliers of modulus 1
+  grazing,            // an impact appears, or vanishes, with speed 0
+};
+std::string_view name_of(BranchEventKind kind);
+
+struct BranchEvent {
+  BranchEventKind kind = BranchEventKind::fold;
+  double parameter = 0;  // to about 1e-10; a grazing close to a fold to about 1e-7
+  Orbit orbit;           // there; at a grazing with rigid walls the last one that was found
+};
+
+enum class BranchEnd {
+  range,           // the parameter reached an end of its range; the last orbit is there
+  grazing,         // rigid walls: beyond it the branch, if it goes on, has another number of impacts
+  closed,          // it came back to the first orbit
+  step_too_small,  // no orbit was found near enough to the last
+  points,          // FollowOptions::max_points
+  not_an_orbit,    // the first was not converged, or is none for the parameter's first value
+};
+std::string_view name_of(BranchEnd end);
+
+// Steps are measured along the branch in the space of x, v, y, w and the parameter.
+struct FollowOptions {
+  double least = 0, most = 0;   // range of the parameter, > 0; the first orbit lies in it
+  bool upwards = true;          // which way the parameter goes first
+  double first_step = 1e-2;     // > 0
+  double largest_step = 5e-2;   // >= first_step
+  double smallest_step = 1e-9;  // > 0, <= first_step
+  int max_points = 1000;        // >= 1
+  OrbitOptions orbit;           // tolerance and iterations of each point; `symmetric` is the first orbit's
+};
+
+struct Branch {
+  BranchEnd end = BranchEnd::not_an_orbit;
+  std::vector<Orbit> orbits;  // in the order in which they were met, the first included
+  std::vector<BranchEvent> events;
+};
+
+// Throws InvalidArguments for options out of range.
+Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& options);
+
+}  // namespace impact_damper

@@ -1,0 +1,66 @@
+// The Poincare map of a scene under a force, with its exact derivative (docs/mathematics.md, chapter 13).
+//
+// A force f0 sin(omega_f t) changes its sign after half a period, and the system looks the same in a mirror:
+// x -> -x, y -> 1 - y. H is half a period of motion followed by that mirror (M13.1); H applied twice is one
+// period. A motion of m periods that repeats itself is a fixed point of H^(2m); one that is its own mirror
+// image half a period later, of H^m with m odd.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/math/eigenvalues.hpp"
+#include "impact_damper/motion/state.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+using StateVector = std::array<double, 4>;  // x, v, y, w
+using StateMatrix = Matrix4;
+StateVector vector_of(const State<double>& s);
+State<double> state_of(const StateVector& s);
+StateVector product(const StateMatrix& a, const StateVector& s);
+
+struct OrbitImpact {
+  double time = 0;  // since the force's phase was 0
+  Wall wall = Wall::left;
+  double speed = 0;  // |y'| just before
+};
+
+struct PoincareImage {
+  StopReason stop_reason = StopReason::time;  // any other: the run did not get there, and nothing else is set
+  State<double> state{};                      // H^n(s)
+  StateMatrix by_state{};                     // its derivative by s
+  StateVector by_frequency{}, by_amplitude{};  // by omega_f and by f0, if asked for
+  std::vector<OrbitImpact> impacts;            // in these n half periods, not mirrored
+  std::int64_t sticking = 0;                   // rigid walls: times in which the secondary mass sticks
+  // What tells how near the motion is to grazing, where the derivative by s has no bound (rigid walls) or a
+  // kink. Absent where there is no such event.
+  std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
+  std::optional<double> nearest_miss;    // least distance from a wall at which y turns back in flight
+};
+
+class PoincareMap {
+ public:
+  // half_periods: n >= 1. Throws InvalidArguments: scene or options are not valid, there is no force, or the
+  // engine is cem. Of the scene its initial condition and its end are not used.
+  PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
+
+  enum class Derivatives { by_state, by_state_and_parameters };
+  // s: at phase 0 of the force; with rigid walls 0 <= y <= 1.
+  PoincareImage operator()(const State<double>& s, Derivatives wanted = Derivatives::by_state) const;
+
+  const Scene& scene() const { return scene_; }
+  const Engine& engine() const { return engine_; }
+  int half_periods() const { return half_periods_; }
+  double duration() const { return *scene_.until_time; }  // n pi / omega_f
+
+ private:
+  Scene scene_;
+  Engine engine_;
+  int half_periods_;
+};
+
+}  // namespace impact_damper

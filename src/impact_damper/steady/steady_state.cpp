@@ -1,0 +1,322 @@
+#include "impact_damper/steady/steady_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
+#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/math/elementary.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr std::int64_t blocks = 10;
+
+}  // namespace
+
+// Keeps what a steady state is made of. While a transient passes it asks for states alone.
+class ForcedScene::Watch {
+ public:
+  // Until `end`, with so many equally spaced states, the last one there.
+  Watch(double end, std::size_t states, bool measures, Watched& kept)
+      : end_(end), states_(states), measures_(measures), kept_(kept) {}
+
+  bool wants_half_cycles() const { return measures_; }
+  static bool wants_contacts() { return false; }
+  bool wants_energy() const { return measures_; }
+  void half_cycle(double, double, double, double amplitude) {
+    kept_.amplitude = std::max(kept_.amplitude, amplitude);
+  }
+  void impact(double time, Wall wall, double, double) {
+    const auto side = static_cast<std::size_t>(wall);
+    ++kept_.impacts[side];
+    if (time < end_ / 2) ++kept_.impacts_until_half_way[side];
+  }
+  void contact(double, double, Wall) {}
+  double next_sample() const {
+    if (sampled_ == states_) return std::numeric_limits<double>::infinity();
+    return sampled_ + 1 == states_ ? end_ : end_ * (double(sampled_ + 1) / double(states_));
+  }
+  void sample(double, double x, double v, double y, double w) { kept_.states[sampled_++] = {x, v, y, w}; }
+  EnergyBalance& energy_balance() { return kept_.energy; }
+
+  double end() const { return end_; }
+
+ private:
+  double end_;
+  std::size_t states_;
+  bool measures_;
+  Watched& kept_;
+  std::size_t sampled_ = 0;
+};
+
+namespace {
+
+// An engine's run of a scene whose numbers, but for release and stops, are always the same.
+template <class Watch>
+std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Exact& options) {
+  const System<double> system(scene);
+  const ContactModes<double> walls(system, zeta_m<double>(scene, options.calibration));
+  return [system, walls, options](const Scene& from, Watch& watch) {
+    return walls.coupled ? run_exact<ContactWithoutModes<double>>(walls, system, from, options, watch)
+                         : run_exact<Contact<double>>(walls, system, from, options, watch);
+  };
+}
+template <class Watch>
+std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Restitution& options) {
+  return [system = System<double>(scene), options](const Scene& from, Watch& watch) {
+    return run_restitution(system, from, options, watch);
+  };
+}
+template <class Watch>
+std::function<Outcome(const Scene&, Watch&)> runner(const Scene&, const Cem&) {
+  return {};  // never asked for: problems_of() tells
+}
+
+Scene without_stops(Scene scene) {
+  scene.until_amplitude.reset();
+  scene.until_time = 1;  // a scene needs one; each run has its own
+  return scene;
+}
+
+}  // namespace
+
+std::vector<Problem> problems_of(const SteadyRule& rule) {
+  std::vector<Problem> problems;
+  const auto check = [&](const char* name, double value, const NumberRange& range) {
+    if (!range.allows(value))
+      problems.push_back({name, range.describe("must be") + ", got " + number_text(value)});
+  };
+  check("tolerance", rule.tolerance, {0, 1e-2, false});
+  check("longest_period", double(rule.longest_period), within(1, 64));
+  check("max_periods", double(rule.max_periods), within(1, 1e9));
+  check("mean_periods", double(rule.mean_periods), within(blocks, 1e6));
+  return problems;
+}
+
+State<double> release_of(const Scene& scene) { return {scene.x0, scene.v0, scene.y0, scene.w0}; }
+
+Scene released_from(Scene scene, const State<double>& state) {
+  scene.x0 = state.x;
+  scene.v0 = state.v;
+  scene.y0 = state.y;
+  scene.w0 = state.w;
+  return scene;
+}
+
+double distance(const State<double>& a, const State<double>& b) {
+  return std::max(std::max(std::abs(a.x - b.x), std::abs(a.v - b.v)),
+                  std::max(std::abs(a.y - b.y), std::abs(a.w - b.w)));
+}
+
+double size_of(const State<double>& s) { return std::max(1.0, distance(s, {0, 0, 0, 0})); }
+
+Recurrence::Recurrence(const SteadyRule& rule)
+    : tolerance_(rule.tolerance),
+      longest_(rule.longest_period),
+      states_(static_cast<std::size_t>(differences * rule.longest_period + 1)) {}
+
+const State<double>& Recurrence::before(std::int64_t periods) const {
+  return states_[static_cast<std::size_t>((count_ - 1 - periods) % std::int64_t(states_.size()))];
+}
+
+std::optional<Recurrence::Repeats> Recurrence::add(const State<double>& state) {
+  states_[static_cast<std::size_t>(count_ % std::int64_t(states_.size()))] = state;
+  ++count_;
+  const double size = size_of(state), allowed = tolerance_ * size;
+  // Below it the differences no longer shrink: some rounding errors of a whole period.
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * size;
+  // A period whose divisor may turn out to be one, too, waits for that.
+  const auto may_be_shorter = [&](std::int64_t m) {
+    for (std::int64_t d = 1; d < m; ++d)
+      if (m % d == 0 && distance(state, before(d)) <= 100 * allowed) return true;
+    return false;
+  };
+  for (std::int64_t m = 1; m <= longest_ && differences * m < count_; ++m) {
+    if (!(distance(state, before(m)) <= allowed) || may_be_shorter(m)) continue;
+    const auto largest_of = [&](std::int64_t from, std::int64_t to) {
+      double largest = 0;
+      for (std::int64_t j = from; j < to; ++j)
+        largest = std::max(largest, distance(before(j * m), before((j + 1) * m)));
+      return largest;
+    };
+    // (M14.1), of several differences each, because they may turn while they shrink.
+    const double last = largest_of(0, differences / 2), first = largest_of(differences / 2, differences);
+    if (std::max(last, first) <= rounding) return Repeats{m, std::nullopt};
+    if (!(last <= allowed && last < first)) continue;
+    static_assert(differences == 8);
+    const double contraction = square_root(square_root(last / first));
+    if (last * contraction <= allowed * (1 - contraction)) return Repeats{m, contraction};  // (M14.2)
+  }
+  return std::nullopt;
+}
+
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
+  std::vector<Problem> problems = problems_of(without_stops(scene));
+  for (const Problem& each : problems_of(engine)) problems.push_back(each);
+  if (std::holds_alternative<Cem>(engine)) {
+    problems.push_back({"engine", "must be exact or restitution, got cem"});
+  } else if (problems.empty()) {
+    problems = incompatibilities_of(scene, engine);
+  }
+  if (scene.force_amplitude == 0)
+    problems.push_back({"force_amplitude", "must not be 0: without a force there is no steady motion"});
+  return problems;
+}
+
+ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
+    : scene_(without_stops(scene)), rigid_(has_rigid_walls(engine)) {
+  require_arithmetic();
+  require_none(problems_of(scene, engine));
+  period_ = 2 * half_turn<double>() / scene_.force_frequency;
+  run_ = std::visit(
+      [&](auto options) {
+        options.budget = budget_for(scene_, options.budget);
+        return runner<Watch>(scene_, options);
+      },
+      engine);
+}
+
+ForcedScene::Watched ForcedScene::pass_periods(const State<double>& state) const {
+  Watched kept;
+  Watch watch(double(periods_at_once) * period_, periods_at_once, false, kept);
+  kept.stop_reason = run_from(state, watch);
+  return kept;
+}
+
+ForcedScene::Watched ForcedScene::watch(const State<double>& state, std::int64_t periods) const {
+  Watched kept;
+  Watch watch(double(periods) * period_, 2, true, kept);
+  kept.stop_reason = run_from(state, watch);
+  return kept;
+}
+
+StopReason ForcedScene::run_from(const State<double>& state, Watch& watch) const {
+  Scene from = released_from(scene_, state);
+  if (rigid_) from.y0 = std::clamp(from.y0, 0.0, 1.0);
+  from.until_time = watch.end();
+  return run_(from, watch).stop_reason;
+}
+
+SteadyState ForcedScene::settle(const State<double>& state, const SteadyRule& rule) const {
+  SteadyState steady = follow(state, rule, [](const State<double>&) { return false; });
+  if (steady.stop_reason == StopReason::time) measure(steady, rule);
+  return steady;
+}
+
+SteadyState ForcedScene::follow(const State<double>& state, const SteadyRule& rule,
+                                const std::function<bool(const State<double>&)>& enough) const {
+  SteadyState steady;
+  steady.state = state;
+  Recurrence recurrence(rule);
+  Watched passed;
+  std::size_t next = periods_at_once;
+  for (;; ++steady.transient_periods) {
+    if (enough(steady.state)) return steady;
+    if (const auto repeats = recurrence.add(steady.state)) {
+      steady.period = repeats->period;
+      steady.contraction = repeats->contraction;
+      return steady;
+    }
+    if (steady.transient_periods == rule.max_periods) return steady;
+    if (next == periods_at_once) {
+      passed = pass_periods(steady.state);
+      steady.stop_reason = passed.stop_reason;
+      if (steady.stop_reason != StopReason::time) return steady;
+      next = 0;
+    }
+    steady.state = passed.states[next++];
+  }
+}
+
+void ForcedScene::measure(SteadyState& steady, const SteadyRule& rule) const {
+  if (steady.period) {
+    measure_periodic(steady, rule);
+  } else {
+    measure_blocks(steady, rule);
+  }
+}
+
+// (M14.3), (M14.4).
+SteadyMeans ForcedScene::means_of(const Watched& watched, const State<double>& begin,
+                                  std::int64_t periods) const {
+  const double duration = double(periods) * period_, omega = scene_.force_frequency,
+               f0 = scene_.force_amplitude;
+  const EnergyBalance& energy = watched.energy;
+  SteadyMeans means;
+  means.amplitude = watched.amplitude;
+  const double on_cos = -energy.forcing_work / (f0 * omega),
+               on_sin = (energy.reactive_work / f0 - (watched.states[1].x - begin.x)) / omega;
+  const double in_phase = 2 * on_sin / duration, behind = -2 * on_cos / duration;
+  const double sign = f0 < 0 ? -1 : 1;
+  means.fundamental = square_root(in_phase * in_phase + behind * behind);
+  means.lag_deg = angle_of(sign * behind, sign * in_phase) * (180 / half_turn<double>());
+  double lost = energy.contact_loss + energy.bounce_down_loss;
+  for (const double loss : energy.impact_loss) lost += loss;
+  means.power = energy.forcing_work / duration;
+  means.viscous_power = energy.viscous_work / duration;
+  means.impact_power = lost / duration;
+  return means;
+}
+
+void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) const {
+  const std::int64_t m = *steady.period;
+  steady.measured_periods = m;
+  // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
+  const Watched watched = watch(steady.state, 2 * m);
+  steady.stop_reason = watched.stop_reason;
+  if (steady.stop_reason != StopReason::time) return;
+  steady.impacts = watched.impacts_until_half_way;
+  steady.means = means_of(watched, steady.state, 2 * m);
+  if (m % 2 == 1) {
+    const Watched half = watch(steady.state, m);
+    const double near = 100 * rule.tolerance * size_of(steady.state);
+    steady.symmetric = distance(mirrored(half.states[0]), steady.state) <= near;
+  }
+}
+
+void ForcedScene::measure_blocks(SteadyState& steady, const SteadyRule& rule) const {
+  steady.measured_periods = rule.mean_periods;
+  std::vector<SteadyMeans> means;
+  SteadyMeans mean;
+  double on_sin = 0, on_cos = 0;
+  for (std::int64_t block = 0; block < blocks; ++block) {
+    // Blocks differ by one period where their number does not divide that of the periods.
+    const std::int64_t periods =
+        rule.mean_periods * (block + 1) / blocks - rule.mean_periods * block / blocks;
+    const Watched watched = watch(steady.state, periods);
+    steady.stop_reason = watched.stop_reason;
+    if (steady.stop_reason != StopReason::time) return;
+    means.push_back(means_of(watched, steady.state, periods));
+    for (const std::size_t wall : {0, 1}) steady.impacts[wall] += watched.impacts[wall];
+    steady.state = watched.states[1];
+    const SteadyMeans& now = means.back();
+    const double weight = double(periods) / double(rule.mean_periods);
+    mean.amplitude = std::max(mean.amplitude, now.amplitude);
+    const auto [sin, cos] = sin_cos(now.lag_deg * (half_turn<double>() / 180));
+    on_sin += weight * now.fundamental * sin;
+    on_cos += weight * now.fundamental * cos;
+    mean.power += weight * now.power;
+    mean.viscous_power += weight * now.viscous_power;
+    mean.impact_power += weight * now.impact_power;
+  }
+  mean.fundamental = square_root(on_sin * on_sin + on_cos * on_cos);
+  mean.lag_deg = angle_of(on_sin, on_cos) * (180 / half_turn<double>());
+  steady.means = mean;
+  const auto scatter = [&](double SteadyMeans::*number) {
+    double sum = 0, squares = 0;
+    for (const SteadyMeans& each : means) sum += each.*number / double(blocks);
+    for (const SteadyMeans& each : means) squares += (each.*number - sum) * (each.*number - sum);
+    return square_root(squares / double(blocks - 1));
+  };
+  steady.amplitude_scatter = scatter(&SteadyMeans::amplitude);
+  steady.power_scatter = scatter(&SteadyMeans::power);
+}
+
+}  // namespace impact_damper

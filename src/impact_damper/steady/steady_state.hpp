@@ -1,0 +1,149 @@
+// The steady state of a scene under its force, by simulating one period of the force after another
+// (docs/mathematics.md, chapter 14).
+//
+// The state at phase 0 of the force is all that the next period depends on. Each period is a run of its own
+// that begins where the one before ended, at time 0, so the phase has no error that grows with time. A motion
+// is periodic if that state repeats; what then is missing to the periodic motion is estimated from how the
+// differences have shrunk. Quantities are dimensionless, as in run.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/motion/state.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// When a motion counts as steady.
+struct SteadyRule {
+  // Largest estimated distance of the state from the periodic motion, in units of the larger of the clearance
+  // and the largest number of the state. In (0, 1e-2].
+  double tolerance = 1e-10;
+  std::int64_t longest_period = 16;  // in periods of the force, 1 to 64
+  // Periods of the force after which a motion that has not repeated counts as not periodic. >= 1.
+  std::int64_t max_periods = 5000;
+  // Over so many periods a motion that is not periodic is then averaged, in ten blocks. 10 to 1e6.
+  std::int64_t mean_periods = 500;
+};
+// What is wrong with it, one entry for each member.
+std::vector<Problem> problems_of(const SteadyRule& rule);
+
+// Impacts on the left and on the right wall.
+using ImpactCounts = std::array<std::int64_t, 2>;
+
+// Over whole periods of the force.
+struct SteadyMeans {
+  double amplitude = 0;  // largest |x|; of a block of means in the half cycles that are complete in it
+  // The component of x at the force's frequency is fundamental * sin(omega_f t - lag), 0 <= fundamental,
+  // -180 < lag <= 180 degrees (M14.4). A negative force_amplitude counts as a force of half a turn later.
+  double fundamental = 0, lag_deg = 0;
+  double power = 0;          // put in by the force, per unit of time
+  double viscous_power = 0;  // taken out by the damper of the primary mass
+  double impact_power = 0;   // taken out by impacts and contacts
+};
+
+struct SteadyState {
+  // StopReason::time, unless a budget of the engine has ended a run: then the point has no means.
+  StopReason stop_reason = StopReason::time;
+  std::optional<std::int64_t> period;  // m in periods of the force; absent: not periodic
+  std::int64_t transient_periods = 0;  // until that was known
+  // By which the distance to the periodic motion shrinks in m periods; absent: it repeats to rounding.
+  std::optional<double> contraction;
+  std::int64_t measured_periods = 0;  // m, or SteadyRule::mean_periods
+  ImpactCounts impacts{};             // in these
+  bool symmetric = false;             // half of an odd number of periods later it is its own mirror image
+  std::optional<SteadyMeans> means;
+  // Standard deviation of the ten blocks of a motion that is not periodic.
+  double amplitude_scatter = 0, power_scatter = 0;
+  State<double> state{};  // at phase 0, at the end
+};
+
+// What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
+// or the engine is not valid, or it is the component element method, whose steps would begin anew with each
+// run.
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
+
+// A scene and an engine, with all that does not depend on the state made once. It may be copied, and used by
+// several threads at a time.
+class ForcedScene {
+ public:
+  // Throws InvalidArguments if there are problems_of() the two.
+  ForcedScene(const Scene& scene, const Engine& engine);
+
+  // Goes on to the steady state by `rule`, and measures it.
+  SteadyState settle(const State<double>& state, const SteadyRule& rule) const;
+  // The first half of that alone: everything but what is measured. Ends without a period as soon as
+  // enough(state) is true of the state at phase 0, the first one included.
+  SteadyState follow(const State<double>& state, const SteadyRule& rule,
+                     const std::function<bool(const State<double>&)>& enough) const;
+  // The second half.
+  void measure(SteadyState& steady, const SteadyRule& rule) const;
+
+  static constexpr std::size_t periods_at_once = 8;
+  // A run of some periods of the force.
+  struct Watched {
+    StopReason stop_reason = StopReason::time;
+    std::array<State<double>, periods_at_once> states{};  // after each period, or half way and at the end
+    ImpactCounts impacts{}, impacts_until_half_way{};
+    double amplitude = 0;  // of the half cycles that are complete
+    EnergyBalance energy;
+  };
+  // The states at phase 0 after each of the next periods, and no amplitude or energy. Fewer runs cut fewer
+  // flights in two.
+  Watched pass_periods(const State<double>& state) const;
+  // All but the states after each period.
+  Watched watch(const State<double>& state, std::int64_t periods) const;
+
+ private:
+  class Watch;
+  StopReason run_from(const State<double>& state, Watch& watch) const;
+  SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
+  void measure_periodic(SteadyState& steady, const SteadyRule& rule) const;
+  void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
+
+  Scene scene_;
+  double period_ = 0;   // of the force, 2 pi / omega_f
+  bool rigid_ = false;  // walls, which leave no room for a state beyond them
+  std::function<Outcome(const Scene&, Watch&)> run_;
+};
+
+// A scene's initial state, and the scene with another one.
+State<double> release_of(const Scene& scene);
+Scene released_from(Scene scene, const State<double>& state);
+
+// The mirror image of a state: left and right exchanged.
+template <class Real>
+State<Real> mirrored(const State<Real>& s) {
+  return {-s.x, -s.v, 1 - s.y, -s.w};
+}
+// The largest difference of two states' numbers.
+double distance(const State<double>& a, const State<double>& b);
+// The larger of 1 and the largest number of a state.
+double size_of(const State<double>& s);
+
+// Finds the smallest number of periods after which states repeat (M14.1, M14.2).
+class Recurrence {
+ public:
+  explicit Recurrence(const SteadyRule& rule);
+
+  struct Repeats {
+    std::int64_t period;
+    std::optional<double> contraction;
+  };
+  // The next state at phase 0; what it shows with those before.
+  std::optional<Repeats> add(const State<double>& state);
+
+ private:
+  static constexpr std::int64_t differences = 8;  // that are looked at
+  const State<double>& before(std::int64_t periods) const;
+
+  double tolerance_;
+  std::int64_t longest_, count_ = 0;
+  std::vector<State<double>> states_;  // the last ones, in turn
+};
+
+}  // namespace impact_damper

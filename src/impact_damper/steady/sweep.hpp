@@ -1,0 +1,39 @@
+// The steady states of a scene along one of its numbers, for instance the frequency of the force: up, and
+// down again, with the state carried along. Where two motions coexist the two ways differ.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+
+namespace impact_damper {
+
+// A number of a scene, and the values it takes: `count` >= 2, equally spaced, both ends included, from < to.
+struct Axis {
+  double Scene::*number = &Scene::force_frequency;
+  double from = 0, to = 0;
+  std::int64_t count = 2;
+
+  double value(std::int64_t i) const;           // 0 <= i < count
+  Scene at(Scene scene, std::int64_t i) const;  // with that value
+};
+
+// Throws InvalidArguments if the scene is not valid (problems_of) at one of the values.
+void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
+
+// The values of the axis and what the scene does there.
+struct Sweep {
+  State<double> start{};              // where the way up begins, at the axis's first value
+  std::vector<SteadyState> up, down;  // both in the order of the axis; down begins in the last state of up
+};
+
+// A sweep from each of `starts`, at the same time on several threads. `progress` is called, from any of them,
+// with the number of steady states that are done. Throws InvalidArguments if the scene is not valid at one of
+// the values.
+std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
+                         const std::vector<State<double>>& starts, const Threads& threads,
+                         const std::function<void(std::int64_t done)>& progress);
+
+}  // namespace impact_damper

@@ -1,0 +1,145 @@
+#include "impact_damper/steady/lyapunov.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/orbits.hpp"
+#include "impact_damper/steady/two_impact_orbit.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Scene forced(double nu, double zeta, double frequency, double amplitude) {
+  Scene scene;
+  scene.mass_ratio = nu;
+  scene.damping_ratio = zeta;
+  scene.force_frequency = frequency;
+  scene.force_amplitude = amplitude;
+  scene.x0 = 0.3;
+  scene.y0 = 0.4;
+  scene.w0 = 0.2;
+  return scene;
+}
+
+// Minus the mean divergence over periods that are each begun at phase 0, as the exponents' are.
+double mean_loss(Scene scene, const Engine& engine, int periods) {
+  const PoincareMap map(scene, engine, 2);
+  State<double> s{scene.x0, scene.v0, scene.y0, scene.w0};
+  double loss = 0;
+  for (int i = 0; i < periods; ++i) {
+    Scene period = map.scene();
+    period.x0 = s.x, period.v0 = s.v, period.y0 = s.y, period.w0 = s.w;
+    const Run run = simulate(period, engine, {.half_cycles = false, .impacts = true, .contacts = true});
+    loss += 2 * scene.damping_ratio * map.duration();
+    if (has_rigid_walls(engine)) {
+      loss -= 2 * double(run.impacts->time.size()) * std::log(scene.restitution);
+    } else {
+      const double k = scene.wall_stiffness, nu = scene.mass_ratio;
+      const double damping = 2 * std::sqrt(k / nu) * zeta_m<double>(scene, Calibration::fixed_wall);
+      for (std::size_t n = 0; n < run.contacts->begin.size(); ++n)
+        loss += (1 + nu) * damping * (run.contacts->end[n] - run.contacts->begin[n]);
+    }
+    s = map(s).state;
+  }
+  return loss / (periods * map.duration());
+}
+
+double sum_of(const std::vector<double>& all) {
+  double sum = 0;
+  for (const double one : all) sum += one;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the exponents add up to the mean divergence") {
+  const Scene chaotic = forced(0.05, 0.01, 0.9, 0.3), regular = forced(0.02, 0.05, 0.9, 0.1);
+  Scene soft = chaotic;
+  soft.wall_stiffness = 20;
+  const Scene sustained = forced(0.1, 0.02, 0.95, 0.3);  // contacts that damp the fast mode by exp(-200)
+  int compared = 0;
+  for (const Scene& scene : {chaotic, regular, soft, sustained}) {
+    for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+      const int periods = 60;
+      const LyapunovExponents found = lyapunov_exponents(scene, engine, periods);
+      REQUIRE(found.stop_reason == StopReason::time);
+      CHECK(found.periods == periods);
+      if (found.exponents.size() < 4) continue;
+      ++compared;
+      CHECK(sum_of(found.exponents) == doctest::Approx(-mean_loss(scene, engine, periods)).epsilon(1e-9));
+    }
+  }
+  CHECK(compared >= 6);
+}
+
+TEST_CASE("on a stable orbit they are the logarithms of the multipliers divided by the period") {
+  const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    const PoincareMap map(scene, engine, 2);
+    State<double> s = two_impact_orbits(scene).at(0).state;
+    for (int i = 0; i < 500; ++i) s = map(s).state;
+    const Orbit orbit = find_orbit(scene, engine, 1, s);
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    REQUIRE(orbit.stable());
+    const double period = *orbit.scene.until_time;
+    const int periods = 400;
+    const std::vector<double> found = lyapunov_exponents(orbit.scene, engine, periods, 400).exponents;
+    REQUIRE(found.size() == 4);
+    // Of a conjugate pair each period's stretch varies as the pair turns; so it is known to one part in
+    // `periods`, the pair's sum to all digits.
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double expected = std::log(orbit.multipliers[i].modulus()) / period;
+      if (orbit.multipliers[i].im > 0) {
+        CHECK(found[i] + found[i + 1] == doctest::Approx(2 * expected).epsilon(1e-9));
+        CHECK(found[i] == doctest::Approx(expected).epsilon(0.03));
+      } else if (orbit.multipliers[i].im == 0) {
+        CHECK(found[i] == doctest::Approx(expected).epsilon(1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours part") {
+  const Scene scene = forced(0.05, 0.01, 0.9, 0.3);
+  const int periods = 1500;
+  const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, periods);
+  REQUIRE(found.stop_reason == StopReason::time);
+  const PoincareMap map(scene, Restitution{}, 2);
+  const double distance = 1e-9;
+  State<double> one{scene.x0, scene.v0, scene.y0, scene.w0}, other = one;
+  other.x += distance;
+  double stretch = 0;
+  for (int i = 0; i < periods; ++i) {
+    one = map(one).state;
+    other = map(other).state;
+    const StateVector a = vector_of(one), b = vector_of(other);
+    StateVector c{};
+    double size = 0;
+    for (std::size_t k = 0; k < 4; ++k) size += (b[k] - a[k]) * (b[k] - a[k]);
+    size = std::sqrt(size);
+    stretch += std::log(size / distance);
+    for (std::size_t k = 0; k < 4; ++k) c[k] = a[k] + (b[k] - a[k]) * (distance / size);
+    c[2] = std::min(1.0, std::max(0.0, c[2]));
+    other = state_of(c);
+  }
+  const double expected = stretch / (periods * map.duration());
+  MESSAGE("largest exponent ", found.exponents[0], ", of two neighbours ", expected);
+  CHECK(found.exponents[0] == doctest::Approx(expected).epsilon(0.02));
+  CHECK(found.exponents[0] > 0.01);
+}
+
+TEST_CASE("sticking leaves two exponents") {
+  Scene scene = forced(0.1, 0.02, 0.95, 0.3);
+  const State<double> s = two_impact_orbits(scene).at(0).state;
+  scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
+  const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, 100, 100);
+  REQUIRE(found.exponents.size() == 2);
+  CHECK(found.exponents[0] < 0);
+  CHECK_THROWS_AS(lyapunov_exponents(scene, Restitution{}, 0), InvalidArguments);
+  CHECK_THROWS_AS(lyapunov_exponents(scene, Cem{}, 1), InvalidArguments);
+}

@@ -1,0 +1,400 @@
+#include "impact_damper/steady/orbits.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/two_impact_orbit.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Scene forced(double nu, double zeta, double frequency, double amplitude) {
+  Scene scene;
+  scene.mass_ratio = nu;
+  scene.damping_ratio = zeta;
+  scene.force_frequency = frequency;
+  scene.force_amplitude = amplitude;
+  return scene;
+}
+double linear_amplitude(const Scene& scene) {
+  const double w = scene.force_frequency;
+  return std::fabs(scene.force_amplitude) / std::hypot(1 - w * w, 2 * scene.damping_ratio * w);
+}
+State<double> state_of_scene(const Scene& scene) { return {scene.x0, scene.v0, scene.y0, scene.w0}; }
+double apart(const State<double>& a, const State<double>& b) {
+  return std::max({std::fabs(a.x - b.x), std::fabs(a.v - b.v), std::fabs(a.y - b.y), std::fabs(a.w - b.w)});
+}
+// Where a plain simulation is after many periods, each begun at phase 0.
+State<double> settled(const Scene& scene, const Engine& engine, State<double> s, int periods) {
+  const PoincareMap map(scene, engine, 2);
+  for (int i = 0; i < periods; ++i) s = map(s).state;
+  return s;
+}
+double bisected(double low, double high, const std::function<bool(double)>& is_low) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = (low + high) / 2;
+    (is_low(middle) ? low : high) = middle;
+  }
+  return low;
+}
+const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
+  for (const BranchEvent& event : branch.events)
+    if (event.kind == kind) return &event;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("orbits of two symmetric impacts are those of the closed form, with their multipliers") {
+  int compared = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    reference::Random random(seed);
+    Scene scene = forced(random.log_uniform(1e-4, 1), random.log_uniform(5e-3, 0.5), random.uniform(0.5, 1.6),
+                         random.log_uniform(0.05, 1));
+    scene.restitution = random.uniform(0.2, 0.9);
+    for (const TwoImpactOrbit& expected : two_impact_orbits(scene)) {
+      State<double> guess = expected.state;
+      if (!(guess.y > 0.01 && guess.y < 0.99) || expected.impact_speed < 0.05) continue;
+      guess.x += 1e-5;
+      guess.w -= 1e-5;
+      const Orbit orbit = find_orbit(scene, Restitution{}, 1, guess);
+      if (orbit.impacts.size() != 2) continue;  // a wall was in the way of the closed form
+      ++compared;
+      REQUIRE(orbit.end == OrbitEnd::converged);
+      CHECK(orbit.symmetric);
+      CHECK(orbit.periods == 1);
+      const double scale = 1 + linear_amplitude(scene) + 1 / expected.impact_speed;
+      CHECK(apart(state_of_scene(orbit.scene), expected.state) < 1e-12 * scale);
+      CHECK(std::fabs(orbit.impacts[0].speed - expected.impact_speed) < 1e-12 * scale);
+      REQUIRE(orbit.half_multipliers);
+      // Of the whole period, by its own derivative.
+      const Multipliers whole =
+          multipliers_of(PoincareMap(scene, Restitution{}, 2)(state_of_scene(orbit.scene)).by_state);
+      double of_whole = 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Multiplier &a = orbit.multipliers[i], &b = whole[i];
+        of_whole += a.re * a.re - a.im * a.im - (b.re * b.re - b.im * b.im);
+      }
+      CHECK(std::fabs(of_whole) < 1e-11 * scale * (1 + std::pow(whole[0].modulus(), 2)));
+      // The coefficients of the characteristic polynomial, which keep their digits where two roots are near.
+      double sum = 0, sum_of_squares = 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Multiplier &a = (*orbit.half_multipliers)[i], &b = expected.half_multipliers[i];
+        sum += a.re - b.re;
+        sum_of_squares += a.re * a.re - a.im * a.im - (b.re * b.re - b.im * b.im);
+      }
+      const double size = 1 + orbit.multipliers[0].modulus();
+      CHECK(std::fabs(sum) < 1e-12 * scale * size);
+      CHECK(std::fabs(sum_of_squares) < 1e-12 * scale * size * size);
+    }
+  }
+  CHECK(compared >= 100);
+}
+
+TEST_CASE("Newton's iteration converges quadratically") {
+  const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  const TwoImpactOrbit exact = two_impact_orbits(scene).at(0);
+  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{.calibration = Calibration::two_body})}) {
+    State<double> guess = exact.state;
+    guess.x += 0.02;
+    guess.v -= 0.02;
+    const Orbit orbit = find_orbit(scene, engine, 1, guess);
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    int quadratic = 0;
+    for (std::size_t i = 0; i + 1 < orbit.residuals.size(); ++i) {
+      const double now = orbit.residuals[i], next = orbit.residuals[i + 1];
+      if (!(now < 2e-2 && now > 1e-7)) continue;
+      CHECK(std::log(next) / std::log(now) > 1.6);
+      ++quadratic;
+    }
+    CHECK(quadratic >= 2);
+    CHECK(orbit.residual() < 1e-12);
+  }
+}
+
+TEST_CASE(
+    "a branch through both folds closes, and is the closed form throughout, also where impacts pass phase "
+    "0") {
+  const Scene scene = forced(0.02, 0.1, 0.9, 0.0655307);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  REQUIRE(first.end == OrbitEnd::converged);
+  const Branch branch = follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5});
+  CHECK(branch.end == BranchEnd::closed);
+  bool left_before = false, left_after = false;
+  for (const Orbit& orbit : branch.orbits) {
+    double nearest = 1;
+    for (const TwoImpactOrbit& expected : two_impact_orbits(orbit.scene))
+      nearest = std::min(nearest, apart(state_of_scene(orbit.scene), expected.state));
+    CHECK(nearest < 1e-9);  // near a fold both orbits are known to half of the digits
+    REQUIRE(orbit.impacts.size() == 2);
+    (orbit.impacts[0].wall == Wall::left ? left_before : left_after) = true;
+  }
+  CHECK(left_before);
+  CHECK(left_after);
+  REQUIRE(branch.events.size() == 2);
+  const auto fold_between = [&](double low, double high, bool exists_low) {
+    return bisected(low, high, [&](double frequency) {
+      Scene changed = scene;
+      changed.force_frequency = frequency;
+      return (linear_amplitude(changed) > least_linear_amplitude(changed)) == exists_low;
+    });
+  };
+  for (const BranchEvent& event : branch.events) {
+    CHECK(event.kind == BranchEventKind::fold);
+    const double expected = event.parameter > 1 ? fold_between(1, 2, true) : fold_between(0.3, 0.9, false);
+    CHECK(std::fabs(event.parameter - expected) < 1e-10);
+  }
+}
+
+TEST_CASE("a heavy secondary mass, too, is followed both ways through its impacts at phase 0") {
+  const Scene scene = forced(0.5, 0.1, 1.2, 0.224362);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  REQUIRE(first.end == OrbitEnd::converged);
+  for (const bool upwards : {true, false}) {
+    const Branch branch = follow(first, Parameter::force_frequency,
+                                 {.least = 0.3, .most = 2.5, .upwards = upwards, .max_points = 400});
+    int crossings = 0;
+    for (std::size_t i = 0; i < branch.orbits.size(); ++i) {
+      const Orbit& orbit = branch.orbits[i];
+      double nearest = 1;
+      for (const TwoImpactOrbit& expected : two_impact_orbits(orbit.scene))
+        nearest = std::min(nearest, apart(state_of_scene(orbit.scene), expected.state));
+      if (orbit.slowest_impact.value_or(0) > 1e-3) CHECK(nearest < 1e-8);
+      if (i > 0) crossings += orbit.impacts[0].wall != branch.orbits[i - 1].impacts[0].wall;
+    }
+    CHECK(crossings >= 1);
+    CHECK(branch.orbits.size() < 150);
+  }
+}
+
+TEST_CASE("near a fold no step leads from one side of the branch to the other") {
+  const Scene scene = forced(0.5, 0.1, 1.4, 0.309605);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Branch branch =
+      follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5, .upwards = false});
+  REQUIRE(branch.end == BranchEnd::grazing);
+  CHECK(first_of(branch, BranchEventKind::fold) != nullptr);
+  const double expected = bisected(0.3, 0.9, [&](double frequency) {
+    Scene changed = scene;
+    changed.force_frequency = frequency;
+    return linear_amplitude(changed) < 0.5;
+  });
+  CHECK(std::fabs(first_of(branch, BranchEventKind::grazing)->parameter - expected) < 1e-10);
+}
+
+TEST_CASE(
+    "symmetry breaking and Neimark-Sacker are where the closed form's multipliers are on the unit circle") {
+  const auto faster = [](const Scene& scene, double amplitude) {
+    Scene changed = scene;
+    changed.force_amplitude = amplitude;
+    return two_impact_orbits(changed).at(0);
+  };
+  {
+    const Scene scene = forced(0.02, 0.02, 0.9, 0.04);
+    const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+    const Branch branch = follow(first, Parameter::force_amplitude, {.least = 0.03, .most = 0.07});
+    const BranchEvent* event = first_of(branch, BranchEventKind::symmetry_breaking);
+    REQUIRE(event);
+    const double expected = bisected(0.04, 0.07, [&](double amplitude) {
+      double least = 0;
+      for (const Multiplier& m : faster(scene, amplitude).half_multipliers) least = std::min(least, m.re);
+      return least > -1;
+    });
+    CHECK(std::fabs(event->parameter - expected) < 1e-10);
+    CHECK(branch.end == BranchEnd::range);
+    CHECK(branch.orbits.back().scene.force_amplitude == 0.07);
+  }
+  {
+    const Scene scene = forced(0.02, 0.02, 1.2, 0.06);
+    const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+    const Branch branch =
+        follow(first, Parameter::force_amplitude, {.least = 0.0385, .most = 0.07, .upwards = false});
+    const BranchEvent* event = first_of(branch, BranchEventKind::neimark_sacker);
+    REQUIRE(event);
+    const double expected = bisected(0.0385, 0.06, [&](double amplitude) {
+      double most = 0;
+      for (const Multiplier& m : faster(scene, amplitude).half_multipliers)
+        if (m.im != 0) most = std::max(most, m.modulus());
+      return most > 1;
+    });
+    CHECK(std::fabs(event->parameter - expected) < 1e-10);
+  }
+}
+
+TEST_CASE("a secondary mass that is not struck grazes both walls where the linear amplitude is 1/2") {
+  for (const double nu : {1e-6, 0.02, 1e6}) {
+    for (const double frequency : {0.8, 1.0, 1.7}) {
+      const Scene scene = forced(nu, 0.05, frequency, 0.02);
+      const Orbit idle = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.symmetric = true});
+      REQUIRE(idle.end == OrbitEnd::converged);
+      CHECK(idle.impacts.empty());
+      CHECK(*idle.nearest_miss == doctest::Approx(0.5 - linear_amplitude(scene)).epsilon(1e-12));
+      const Branch branch = follow(idle, Parameter::force_amplitude, {.least = 0.01, .most = 2});
+      CHECK(branch.end == BranchEnd::grazing);
+      REQUIRE(branch.events.size() == 1);
+      CHECK(branch.events[0].kind == BranchEventKind::grazing);
+      const double expected = 0.02 * 0.5 / linear_amplitude(scene);
+      CHECK(std::fabs(branch.events[0].parameter - expected) < 1e-10);
+    }
+  }
+}
+
+TEST_CASE("orbits of two impacts end in the same grazing, from the other side") {
+  for (const double nu : {0.02, 0.1}) {
+    const Scene scene = forced(nu, 0.1, 0.9, 0.08);
+    const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+    REQUIRE(first.end == OrbitEnd::converged);
+    const Branch branch =
+        follow(first, Parameter::force_amplitude, {.least = 0.005, .most = 0.3, .upwards = false});
+    CHECK(branch.end == BranchEnd::grazing);
+    const BranchEvent* event = first_of(branch, BranchEventKind::grazing);
+    REQUIRE(event);
+    CHECK(std::fabs(event->parameter - 0.08 * 0.5 / linear_amplitude(scene)) < 1e-10);
+  }
+}
+
+TEST_CASE("compliant walls tend to rigid ones, with the root of the stiffness") {
+  Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  const TwoImpactOrbit rigid = two_impact_orbits(scene).at(0);
+  double before = 0;
+  for (const double stiffness : {1e6, 1e8, 1e10}) {
+    scene.wall_stiffness = stiffness;
+    const Orbit orbit = find_orbit(scene, Exact{.calibration = Calibration::two_body}, 1, rigid.state);
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    CHECK(orbit.symmetric);
+    const double off = apart(state_of_scene(orbit.scene), rigid.state);
+    if (before > 0) CHECK(before / off == doctest::Approx(10).epsilon(0.05));
+    before = off;
+  }
+  CHECK(before < 1e-4);
+}
+
+TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
+  struct Kind {
+    Scene scene;
+    Engine engine;
+    State<double> guess;
+  };
+  const Scene light = forced(0.02, 0.05, 0.9, 0.1);
+  Scene strong = forced(0.1, 0.02, 0.95, 0.3);
+  strong.wall_stiffness = 1e5;
+  const std::vector<Kind> kinds{{light, Restitution{}, two_impact_orbits(light).at(0).state},
+                                {light, Exact{}, two_impact_orbits(light).at(0).state},
+                                {strong, Restitution{}, two_impact_orbits(strong).at(0).state},
+                                {strong, Exact{}, two_impact_orbits(strong).at(0).state}};
+  int stable = 0, sticking = 0;
+  for (const Kind& kind : kinds) {
+    const Orbit orbit =
+        find_orbit(kind.scene, kind.engine, 1, settled(kind.scene, kind.engine, kind.guess, 300));
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    if (!orbit.stable()) continue;
+    ++stable;
+    sticking += orbit.sticking > 0;
+    Scene scene = orbit.scene;
+    const double period = *scene.until_time, end = 1e4 * period;
+    scene.until_time = end;
+    const Run run = std::visit(
+        [&](auto options) {
+          options.budget.max_impacts = 10'000'000;
+          options.max_steps = 1'000'000'000;
+          return simulate(scene, options, {.half_cycles = false, .history = {{end - 1, end, 2}}});
+        },
+        kind.engine);
+    REQUIRE(run.stop_reason == StopReason::time);
+    const std::size_t last = run.history->time.size() - 1;
+    const State<double> then{run.history->x[last], run.history->v[last], run.history->y[last],
+                             run.history->w[last]};
+    // The force's phase is known to 2^-52 omega_f t, by which all else is late; 1/(1 - |multiplier|) periods
+    // of such errors add up.
+    const double rate =
+        1 + std::fabs(scene.x0) + std::fabs(scene.w0) + 10 * std::fabs(orbit.impacts[0].speed);
+    CHECK(apart(then, state_of_scene(orbit.scene)) <
+          0x1p-52 * end * rate / (1 - orbit.multipliers[0].modulus()));
+  }
+  CHECK(stable >= 3);
+  CHECK(sticking >= 1);
+}
+
+TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds such an orbit as any other") {
+  const Scene scene = forced(0.1, 0.02, 0.95, 0.3);
+  const State<double> near = settled(scene, Restitution{}, two_impact_orbits(scene).at(0).state, 40);
+  const Orbit orbit = find_orbit(scene, Restitution{}, 1, near);
+  REQUIRE(orbit.end == OrbitEnd::converged);
+  REQUIRE(orbit.sticking > 0);
+  CHECK(orbit.residual() < 1e-12);
+  CHECK(orbit.multipliers[1].modulus() > 1e-3);
+  CHECK(orbit.multipliers[2].modulus() < 1e-12);
+  CHECK(orbit.multipliers[3].modulus() < 1e-12);
+  // Followed, it sticks on, from a phase 0 in flight to one on a wall or the other way round.
+  const Branch branch = follow(orbit, Parameter::force_amplitude, {.least = 0.25, .most = 0.5});
+  CHECK(branch.orbits.size() > 5);
+  for (const Orbit& at : branch.orbits) {
+    const State<double> s = state_of_scene(at.scene);
+    CHECK(apart(settled(at.scene, Restitution{}, s, 1), s) < 1e-8);
+  }
+}
+
+TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip one of twice the period") {
+  Scene scene = forced(0.02, 0.02, 0.9, 0.06);
+  const Orbit symmetric = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  CHECK(symmetric.symmetric);
+  CHECK(!symmetric.stable());
+  State<double> start = two_impact_orbits(scene).at(0).state;
+  start.w += 1e-3;
+  const Orbit one = find_orbit(scene, Restitution{}, 1, settled(scene, Restitution{}, start, 3000));
+  REQUIRE(one.end == OrbitEnd::converged);
+  CHECK(!one.symmetric);
+  CHECK(!one.half_multipliers);
+  CHECK(one.stable());
+  CHECK(one.periods == 1);
+  // Sought with two periods it is found as one of a single period.
+  CHECK(find_orbit(scene, Restitution{}, 2, state_of_scene(one.scene)).periods == 1);
+
+  // Downwards it ends where it branched off: there the closed form loses its symmetry.
+  const Branch down = follow(one, Parameter::force_amplitude,
+                             {.least = 0.05, .most = 0.07, .upwards = false, .max_points = 200});
+  const BranchEvent* joined = first_of(down, BranchEventKind::symmetry_breaking);
+  REQUIRE(joined);
+  const Orbit below = find_orbit(forced(0.02, 0.02, 0.9, 0.05), Restitution{}, 1,
+                                 two_impact_orbits(forced(0.02, 0.02, 0.9, 0.05)).at(0).state);
+  const Branch main = follow(below, Parameter::force_amplitude, {.least = 0.04, .most = 0.07});
+  const BranchEvent* left = first_of(main, BranchEventKind::symmetry_breaking);
+  REQUIRE(left);
+  CHECK(std::fabs(joined->parameter - left->parameter) < 1e-10);
+
+  const Branch up = follow(one, Parameter::force_amplitude, {.least = 0.05, .most = 0.2});
+  const BranchEvent* flip = first_of(up, BranchEventKind::flip);
+  REQUIRE(flip);
+  double nearest = 1;
+  for (const Multiplier& m : flip->orbit.multipliers) nearest = std::min(nearest, std::hypot(m.re + 1, m.im));
+  CHECK(nearest < 1e-8);
+  scene.force_amplitude = flip->parameter * (1 + 1e-3);
+  State<double> beside = state_of_scene(flip->orbit.scene);
+  beside.w += 1e-3;
+  const Orbit doubled = find_orbit(scene, Restitution{}, 2, settled(scene, Restitution{}, beside, 4000));
+  REQUIRE(doubled.end == OrbitEnd::converged);
+  CHECK(doubled.periods == 2);
+  CHECK(doubled.stable());
+}
+
+TEST_CASE("what cannot be followed or found says so") {
+  const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  const Orbit none = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.max_iterations = 1});
+  CHECK(none.end == OrbitEnd::no_convergence);
+  CHECK(follow(none, Parameter::force_amplitude, {.least = 0.01, .most = 1}).end == BranchEnd::not_an_orbit);
+  CHECK(find_orbit(scene, Restitution{.budget = {.max_impacts = 0}}, 1, {3, 0, 0.5, 0}).end ==
+        OrbitEnd::run_stopped);
+  CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 0, {}), InvalidArguments);
+  CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 2, {}, {.symmetric = true}), InvalidArguments);
+  CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 1, {}, {.tolerance = 0}), InvalidArguments);
+  CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0, .most = 1}), InvalidArguments);
+  CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = std::nan("")}),
+                  InvalidArguments);
+}
