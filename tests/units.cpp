@@ -81,8 +81,8 @@ TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced a
 }
 
 TEST_CASE("a motion in units obeys the equations with their units") {
-  // Until the loose mass meets a wall the primary mass is alone: M x'' + C x' + K x = F sin(2 pi f t). Its
-  // closed form in millimetres and seconds, from rest, against the run of the dimensionless scene.
+  // Until the secondary mass meets a wall the primary mass is alone: M x'' + C x' + K x = F sin(2 pi f t).
+  // Its closed form in millimetres and seconds, from rest, against the run of the dimensionless scene.
   SceneInUnits given = mast();
   given.clearance = 1000;
   given.secondary_displacement = 500;

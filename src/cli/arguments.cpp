@@ -1,18 +1,8 @@
 #include "arguments.hpp"
 
-#include <CLI/App.hpp>
-
 #include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper::cli {
-
-bool Arguments::given(const std::string& option) const { return app_.count(option) > 0; }
-
-std::vector<std::string> Arguments::texts(const std::string& option) const {
-  return app_.get_option(option)->results();
-}
-
-std::vector<std::string> Arguments::more() const { return app_.remaining(); }
 
 std::optional<std::string> Arguments::text(const std::string& option) const {
   if (!given(option)) return std::nullopt;

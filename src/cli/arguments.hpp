@@ -1,24 +1,22 @@
 // What was given on the command line, checked: every problem is found and named in one go.
 //
-// The parser only takes text apart: its own conversion lets nan pass and saturates large integers. Values are
-// converted here.
+// The parser (main.cpp) only takes text apart: its own conversion lets nan pass and saturates large integers.
+// Values are converted here.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
-
-namespace CLI {  // NOLINT(readability-identifier-naming): the parser's
-class App;
-}
 
 namespace impact_damper::cli {
 
@@ -30,11 +28,14 @@ class UsageError : public InvalidArguments {
 
 class Arguments {
  public:
-  explicit Arguments(const CLI::App& app) : app_(app) {}
+  // Each option of the command by its long name, "--output", with the texts given for it, none if it was not
+  // given; a flag's is "true". `more` stand behind those that are named.
+  Arguments(std::map<std::string, std::vector<std::string>> options, std::vector<std::string> more)
+      : options_(std::move(options)), more_(std::move(more)) {}
 
   // Absent if the option was not given, or was given and is not valid: then it is noted for finish().
   std::optional<std::string> text(const std::string& option) const;
-  std::vector<std::string> texts(const std::string& option) const;
+  const std::vector<std::string>& texts(const std::string& option) const { return options_.at(option); }
   std::optional<std::string> file(const std::string& option);  // its name
   std::optional<double> number(const std::string& option, NumberRange range = {});
   std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
@@ -47,9 +48,9 @@ class Arguments {
     const std::optional<std::size_t> index = word(option, words);
     return index ? allowed.begin()[*index] : otherwise;
   }
-  bool given(const std::string& option) const;
-  std::vector<std::string> more() const;  // arguments behind those that are named
-  bool flag(const std::string& option);   // given, once and without a value
+  bool given(const std::string& option) const { return !texts(option).empty(); }
+  const std::vector<std::string>& more() const { return more_; }
+  bool flag(const std::string& option);  // given, once and without a value
   // Rejects an output that is one of these files, which would be lost with it.
   void reject_overwriting(const std::string& option, const std::optional<std::string>& output,
                           const std::vector<std::filesystem::path>& inputs);
@@ -60,7 +61,8 @@ class Arguments {
   void finish() const;
 
  private:
-  const CLI::App& app_;
+  std::map<std::string, std::vector<std::string>> options_;
+  std::vector<std::string> more_;
   std::vector<Problem> problems_;
 };
 

@@ -1,8 +1,8 @@
 // The program's subcommands: one function and one file each.
 //
-// A command says what it is as data: name, options and what it does with them. Only main.cpp and
-// arguments.cpp see the parser, CLI11, whose headers take ten seconds to compile in each file that includes
-// them. To add a command: declare it here, list it in main.cpp, add its file to CMakeLists.txt.
+// A command says what it is as data: name, options and what it does with them. Only main.cpp sees the parser,
+// CLI11, whose headers take seconds to compile in each file that includes them. To add a command: declare it
+// here, list it in main.cpp, add its file to CMakeLists.txt.
 #pragma once
 
 #include <functional>
@@ -42,6 +42,7 @@ Command figures_command();
 // `program`: what is said above the subcommands. Both must live as long as the command.
 Command generate_command(const Command& program, const Commands& commands);
 Command report_command();
+Command response_command();
 Command run_command();
 Command scenes_command();
 Command series_command();
@@ -50,7 +51,5 @@ Command verify_command();
 // Options that several commands have.
 Option threads_option();
 Option scenes_option();  // where the scenes are that runs are named after
-Options scene_options();
-Options engine_options();
 
 }  // namespace impact_damper::cli

@@ -22,7 +22,7 @@ class DrawingBoard {
   DrawingBoard(const DrawingBoard&) = delete;
   DrawingBoard& operator=(const DrawingBoard&) = delete;
 
-  // The drawing as SVG. Throws IoError if there is no room for it, NumericalError if gnuplot fails.
+  // The drawing as SVG. Throws IoError if there is no space for it, NumericalError if gnuplot fails.
   std::string draw(const Drawing& drawing);
 
  private:

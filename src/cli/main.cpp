@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -80,6 +81,13 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
   return arguments;
 }
 
+// What the parser found for one subcommand.
+cli::Arguments found_for(const CLI::App& command) {
+  std::map<std::string, std::vector<std::string>> options;
+  for (const CLI::Option* option : command.get_options()) options[option->get_name()] = option->results();
+  return {std::move(options), command.remaining()};
+}
+
 // Options without a value that took the option behind them for it (--x0 --y0 1).
 std::vector<Problem> swallowed_options(const CLI::App& command) {
   const std::vector<const CLI::Option*> options = command.get_options();
@@ -141,9 +149,9 @@ void add_options(CLI::App& app, const cli::Command& command) {
 int main(int argc, char** argv) {
   cli::end_cleanly();
   const cli::Command about = whole_program();
-  cli::Commands commands{cli::run_command(),    cli::report_command(), cli::scenes_command(),
-                         cli::verify_command(), cli::series_command(), cli::figures_command(),
-                         cli::check_command(),  cli::cite_command()};
+  cli::Commands commands{cli::run_command(),     cli::report_command(), cli::response_command(),
+                         cli::scenes_command(),  cli::verify_command(), cli::series_command(),
+                         cli::figures_command(), cli::check_command(),  cli::cite_command()};
   commands.push_back(cli::generate_command(about, commands));
   for (cli::Command& command : commands)
     command.options.insert(command.options.begin(), about.options.front());
@@ -181,7 +189,7 @@ int main(int argc, char** argv) {
     for (const cli::Command& command : commands) {
       if (command_of().get_name() != command.name) continue;
       require_arithmetic();  // tables and verdicts are computed as well, without an engine
-      cli::Arguments arguments(command_of());
+      cli::Arguments arguments = found_for(command_of());
       return command.act(arguments);
     }
     throw cli::UsageError({Problem{"", "a subcommand must be given, see impact-damper --help"}});

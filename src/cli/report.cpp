@@ -1,11 +1,6 @@
 // `report`: a page about one scene of the user's own.
-#include <chrono>
-#include <condition_variable>
 #include <filesystem>
-#include <iostream>
 #include <map>
-#include <mutex>
-#include <thread>
 
 #include "commands.hpp"
 #include "drawing.hpp"
@@ -13,43 +8,13 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/report/page.hpp"
 #include "interruption.hpp"
+#include "progress.hpp"
 #include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What is being done, told on stderr: nothing in the first two seconds, then once a second if it has changed,
-// and every ten seconds that it goes on. A thread of its own tells it, so a long simulation is not silent.
-class ProgressOnStderr {
- public:
-  void operator()(const std::string& doing) {
-    const std::lock_guard lock(mutex_);
-    doing_ = doing;
-  }
-
- private:
-  void tell(const std::stop_token& stop) {
-    using namespace std::chrono_literals;
-    constexpr int first = 2, at_least_every = 10;  // seconds
-    std::string told;
-    std::unique_lock lock(mutex_);
-    for (int second = 1, last = 0; !ended_.wait_for(lock, stop, 1s, [&] { return stop.stop_requested(); });
-         ++second) {
-      if (second < first || doing_.empty() || (doing_ == told && second - last < at_least_every)) continue;
-      std::cerr << "report: " << doing_
-                << (doing_ == told ? ", " + std::to_string(second) + " s since the start" : "") << std::endl;
-      told = doing_;
-      last = second;
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable_any ended_;
-  std::string doing_;
-  std::jthread teller_{[this](const std::stop_token& stop) { tell(stop); }};  // ends before what it uses
-};
 
 std::string page_of(const Findings& findings, const std::vector<Drawing>& drawings,
                     const std::map<std::string, std::string>& svgs) {
@@ -84,7 +49,7 @@ int report(Arguments& arguments) {
 
   const Subject subject{scene_name.empty() ? "a scene" : fs::path(scene_name).stem().string(),
                         file.description, file.scene, file.scales, engine};
-  ProgressOnStderr progress;
+  ProgressOnStderr progress("report");
   const Findings findings = saying_options(
       [&] { return examine(subject, ensemble, [&](const std::string& doing) { progress(doing); }); });
   warn_of_early_end("impact-damper report", findings.run, file.scales);

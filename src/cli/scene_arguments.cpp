@@ -40,10 +40,17 @@ std::string type_of(const OptionInfo& option) {
   return type;
 }
 
-// First those that only some engines have.
-std::vector<OfferedOption> offered_options() {
+std::vector<std::string_view> names_of(const std::vector<Engine>& engines) {
+  std::vector<std::string_view> names;
+  names.reserve(engines.size());
+  for (const Engine& engine : engines) names.push_back(name_of(engine));
+  return names;
+}
+
+// First those that only some of the engines have.
+std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
   std::vector<OfferedOption> offered;
-  for (const Engine& engine : default_engines()) {
+  for (const Engine& engine : engines) {
     for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
       const auto is_it = [&](const OfferedOption& each) { return each.info.name == option.name; };
       auto found = std::ranges::find_if(offered, is_it);
@@ -56,17 +63,16 @@ std::vector<OfferedOption> offered_options() {
                                                          : std::string(option.otherwise));
     });
   }
-  const auto of_some = [](const OfferedOption& each) {
-    return each.engines.size() < default_engines().size();
-  };
+  const auto of_some = [&](const OfferedOption& each) { return each.engines.size() < engines.size(); };
   std::stable_partition(offered.begin(), offered.end(), of_some);
   // How a speed is chosen without a number: the one option that is no member of an engine.
   const auto speed =
       std::ranges::find_if(offered, [](const auto& each) { return each.info.name == "stuck_speed"; });
+  if (speed == offered.end()) return offered;
   speed->defaults = {number_text(usual_stuck_speed)};
   offered.insert(
       speed, {{.name = "stuck",
-               .meaning = "a mass that sticks is in a contact that lasts (contact), or both masses are one "
+               .meaning = "a mass that sticks is in a sustained contact (contact), or both masses are one "
                           "as in the paper, by equation (9) with the force divided by 1 + nu, until x'' "
                           "changes its sign"},
               "contact|paper",
@@ -76,8 +82,9 @@ std::vector<OfferedOption> offered_options() {
 }
 
 // With an engine that does not have it an option would be ignored, so it is rejected.
-void reject_foreign_options(Arguments& arguments, std::string_view engine) {
-  for (const OfferedOption& offered : offered_options()) {
+void reject_foreign_options(Arguments& arguments, const std::vector<Engine>& engines,
+                            std::string_view engine) {
+  for (const OfferedOption& offered : offered_options(engines)) {
     const std::string option = option_of(offered.info.name);
     if (arguments.given(option) && std::ranges::count(offered.engines, engine) == 0)
       arguments.reject(option, "is an option of --engine " + listed(offered.engines, "or") +
@@ -121,10 +128,9 @@ std::string in_lines(const std::string& text, std::size_t most) {
 }
 
 // What it is, what is allowed and what is taken otherwise.
-std::string help_of(const OfferedOption& offered) {
+std::string help_of(const OfferedOption& offered, std::size_t engines) {
   const OptionInfo& info = offered.info;
-  const std::vector<std::string_view> engines = engine_names();
-  std::string text = offered.engines.size() < engines.size() ? listed(offered.engines, "and") + ": " : "";
+  std::string text = offered.engines.size() < engines ? listed(offered.engines, "and") + ": " : "";
   text += info.meaning;
   if (offered.type.empty()) return text;
   if (!info.symbol.empty())
@@ -139,7 +145,7 @@ std::string help_of(const OfferedOption& offered) {
 
 }  // namespace
 
-SceneFile scene_of(Arguments& arguments) {
+SceneFile scene_of(Arguments& arguments, Stops stops) {
   const std::optional<std::string> name = arguments.file("--scene");
   SceneFile file = name ? read_scene_file(*name) : SceneFile{};
   Scene& scene = file.scene;
@@ -150,8 +156,13 @@ SceneFile scene_of(Arguments& arguments) {
     if (!value && arguments.given(option_of(field))) all_read = false;
   };
   for (const SceneField& field : scene_fields) override_with(field.name, scene.*field.member);
-  override_with("until_time", scene.until_time);
-  override_with("until_amplitude", scene.until_amplitude);
+  if (stops == Stops::ignored) {
+    scene.until_time = 1;  // a scene needs one
+    scene.until_amplitude.reset();
+  } else {
+    override_with("until_time", scene.until_time);
+    override_with("until_amplitude", scene.until_amplitude);
+  }
   if (!scene.until_time && !scene.until_amplitude) {
     if (all_read)
       arguments.reject("--until-time",
@@ -163,11 +174,11 @@ SceneFile scene_of(Arguments& arguments) {
   return file;
 }
 
-Engine engine_of(Arguments& arguments) {
-  const std::optional<std::size_t> chosen = arguments.word("--engine", engine_names());
+Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines) {
+  const std::optional<std::size_t> chosen = arguments.word("--engine", names_of(engines));
   if (!chosen && arguments.given("--engine")) return {};  // rejected; which options belong to it is unknown
-  Engine engine = default_engines()[chosen.value_or(0)];
-  reject_foreign_options(arguments, name_of(engine));
+  Engine engine = engines[chosen.value_or(0)];
+  reject_foreign_options(arguments, engines, name_of(engine));
   for_each_option(engine,
                   [&](const OptionInfo& option, auto& value) { read_option(arguments, option, value); });
   if (Cem* const cem = std::get_if<Cem>(&engine)) read_sticking(arguments, *cem);
@@ -223,7 +234,7 @@ Option scenes_option() {
   return {"--scenes", "FOLDER", "folder of the scenes that runs are named after; default data/scenes"};
 }
 
-Options scene_options() {
+Options scene_options(Stops stops) {
   Options options;
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
     options.push_back({name, type, help, "Scene"});
@@ -237,6 +248,7 @@ Options scene_options() {
         std::string(field.meaning) + ";\n" + range_of(field).describe("a number") + ", default " +
             number_text(defaults.*field.member));
   }
+  if (stops == Stops::ignored) return options;
   add("--until-time", "T", "stop at this time; a number > 0");
   add("--until-amplitude", "A",
       "stop at the end of the first half cycle below this amplitude;\n"
@@ -244,10 +256,10 @@ Options scene_options() {
   return options;
 }
 
-Options engine_options() {
+Options engine_options(const std::vector<Engine>& engines) {
   Options options;
   Option engine{"--engine", "", "", "Engine"};
-  for (const Engine& each : default_engines()) {
+  for (const Engine& each : engines) {
     const std::string name(name_of(each));
     engine.help += (engine.type.empty() ? name + " (default)" : ";\n" + name) + ": ";
     engine.help += std::visit([](const auto& chosen) { return chosen.meaning; }, each);
@@ -255,9 +267,9 @@ Options engine_options() {
   }
   options.push_back(engine);
   constexpr std::size_t width = 66;
-  for (const OfferedOption& each : offered_options())
-    options.push_back({option_of(each.info.name), each.type, in_lines(help_of(each), width), "Engine",
-                       each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
+  for (const OfferedOption& each : offered_options(engines))
+    options.push_back({option_of(each.info.name), each.type, in_lines(help_of(each, engines.size()), width),
+                       "Engine", each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
   return options;
 }
 

@@ -11,8 +11,14 @@ namespace impact_damper::cli {
 
 // The scene of --scene and the options beside it, which win; what is not valid is noted in `arguments`.
 // Throws InputError and IoError about the file.
-SceneFile scene_of(Arguments& arguments);
-Engine engine_of(Arguments& arguments);
+// A command for which a scene's stops mean nothing neither offers them nor reads those of the file.
+enum class Stops { needed, ignored };
+SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
+Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());
+
+// The options that these two read.
+Options scene_options(Stops stops = Stops::needed);
+Options engine_options(const std::vector<Engine>& engines = default_engines());
 
 // A line on stderr, "COMMAND: warning: ...", for each of cautions_of() the scene.
 void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales);

@@ -266,10 +266,13 @@ int verify(Arguments& arguments) {
   std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
   for (const Claim& claim : claims)
     for (const std::string& scene : scenes_of(claim)) {
-      const fs::path run = folders.file_of(scene);
-      inputs.push_back(run);
-      for (std::int64_t member = 2; member <= most_members; ++member)
-        inputs.push_back(member_file(run, member));
+      std::vector<fs::path> runs{folders.file_of(scene)};
+      for (const Engine& engine : default_engines()) runs.push_back(file_by(runs_folder, scene, engine));
+      for (const fs::path& run : runs) {
+        inputs.push_back(run);
+        for (std::int64_t member = 2; member <= most_members; ++member)
+          inputs.push_back(member_file(run, member));
+      }
     }
   arguments.reject_overwriting("--output", verdicts_file, inputs);
   arguments.reject_overwriting("--markdown", markdown_file, inputs);
@@ -325,7 +328,8 @@ Command verify_command() {
       {"--claims", "FILE", "what the paper reports; default data/claims.json"},
       {"--runs", "FOLDER",
        "folder of run files, SCENE.json each, with the other members of\n"
-       "its ensemble (run --members); default build/runs/exact"},
+       "its ensemble (run --members), and SCENE.ENGINE.json where a\n"
+       "measure compares with that engine; default build/runs/exact"},
       scenes_option(),
       {.name = "--power",
        .help =

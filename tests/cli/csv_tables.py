@@ -67,7 +67,7 @@ seen = set()
 for figure in catalogue["figures"]:
     if figure["table"] == "drawing":
         continue
-    stem = "fig" + figure["figure"].zfill(2)
+    stem = pathlib.Path(figure["script"]).stem
     text = (folder / f"tables/{stem}.dat").read_text(encoding="utf-8")
     wanted = [row for block in gnuplot_blocks(text) for row in wanted_rows(figure["table"], *block)]
     with open(folder / f"tables/{stem}.csv", newline="", encoding="utf-8") as file:
@@ -81,8 +81,8 @@ for figure in catalogue["figures"]:
     for cells in given:
         seen.add("".join("-" if cell == "" else "n" for cell in cells[2:]))
         list(map(float, filter(None, cells[2:])))
-# Values, bands, a value with its band, gaps: each kind is there.
-if seen != {"nn--", "n-nn", "nnnn", "----"}:
+# Values, bands, a value with its band: each kind is there. Gaps depend on a chaotic decay; tests/series.cpp has one.
+if seen - {"----"} != {"nn--", "n-nn", "nnnn"}:
     faults.append(f"kinds of rows: {sorted(seen)}")
 for fault in faults:
     print(fault[:600], file=sys.stderr)

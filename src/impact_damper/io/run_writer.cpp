@@ -2,7 +2,7 @@
 
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
-#include "impact_damper/io/json_writer.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -11,25 +11,6 @@ namespace impact_damper {
 namespace {
 
 using Layout = JsonWriter::Layout;
-
-template <class Value>
-void write_option(JsonWriter& out, const OptionInfo& option, const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    out.field(option.name, name_of(value));
-  } else {
-    if constexpr (std::is_same_v<Value, std::optional<double>>)
-      if (!value && !option.in_every_file) return;
-    out.field(option.name, value);
-  }
-}
-
-void write(JsonWriter& out, const Engine& engine) {
-  out.open_object("engine", Layout::one_line);
-  out.field("name", name_of(engine));
-  for_each_option(engine,
-                  [&](const OptionInfo& option, const auto& value) { write_option(out, option, value); });
-  out.close();
-}
 
 std::vector<std::int64_t> numbers_of(const std::vector<Wall>& walls) {
   std::vector<std::int64_t> numbers;
@@ -76,19 +57,39 @@ void write(JsonWriter& out, const History& history) {
              "w", history.w);
 }
 
-void write(JsonWriter& out, const SiUnits& units) {
+template <class Value>
+void write_option(JsonWriter& out, const OptionInfo& option, const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    out.field(option.name, name_of(value));
+  } else {
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
+      if (!value && !option.in_every_file) return;
+    out.field(option.name, value);
+  }
+}
+
+}  // namespace
+
+void write_engine(JsonWriter& out, const Engine& engine) {
+  out.open_object("engine", Layout::one_line);
+  out.field("name", name_of(engine));
+  for_each_option(engine,
+                  [&](const OptionInfo& option, const auto& value) { write_option(out, option, value); });
+  out.close();
+}
+
+void write_units(JsonWriter& out, const SiUnits& units) {
   out.open_object("units", Layout::one_line);
   for (const SiUnit& unit : si_units) out.field(unit.name, units.*unit.member);
   out.close();
 }
 
-void write(JsonWriter& out, const Provenance& made_by) {
+void write_provenance(JsonWriter& out) {
+  const Provenance& made_by = provenance();
   out.open_object("provenance", Layout::one_line);
   out.fields("version", made_by.version, "commit", made_by.commit, "compiler", made_by.compiler, "build_type",
              made_by.build_type, "flags", made_by.flags, "system", made_by.system);
 }
-
-}  // namespace
 
 std::string sealed(std::string text) {
   const std::string digest = sha256(text);
@@ -102,16 +103,16 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   out.open_object("scene", Layout::one_line);
   write_scene_fields(out, run.scene);
   out.close();
-  write(out, run.engine);
+  write_engine(out, run.engine);
   out.field("stop_reason", name_of(run.stop_reason));
   out.field("end_time", run.end_time);
-  if (scales) write(out, si_units_of(*scales));
+  if (scales) write_units(out, si_units_of(*scales));
   if (run.half_cycles) write(out, *run.half_cycles);
   if (run.impacts) write(out, *run.impacts);
   if (run.contacts) write(out, *run.contacts);
   if (run.energy) write(out, *run.energy);
   if (run.history) write(out, *run.history);
-  write(out, provenance());
+  write_provenance(out);
   return sealed(out.finish());
 }
 

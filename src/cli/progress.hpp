@@ -1,0 +1,47 @@
+// What a command that takes long says of itself.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <iostream>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace impact_damper::cli {
+
+// What is being done, told on stderr: nothing in the first two seconds, then once a second if it has changed,
+// and every ten seconds that it goes on. A thread of its own tells it, so a long simulation is not silent.
+class ProgressOnStderr {
+ public:
+  explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {}
+  void operator()(const std::string& doing) {
+    const std::lock_guard lock(mutex_);
+    doing_ = doing;
+  }
+
+ private:
+  void tell(const std::stop_token& stop) {
+    using namespace std::chrono_literals;
+    constexpr int first = 2, at_least_every = 10;  // seconds
+    std::string told;
+    std::unique_lock lock(mutex_);
+    for (int second = 1, last = 0; !ended_.wait_for(lock, stop, 1s, [&] { return stop.stop_requested(); });
+         ++second) {
+      if (second < first || doing_.empty() || (doing_ == told && second - last < at_least_every)) continue;
+      std::cerr << command_ << ": " << doing_
+                << (doing_ == told ? ", " + std::to_string(second) + " s since the start" : "") << std::endl;
+      told = doing_;
+      last = second;
+    }
+  }
+
+  std::string command_;
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::string doing_;
+  std::jthread teller_{[this](const std::stop_token& stop) { tell(stop); }};  // ends before what it uses
+};
+
+}  // namespace impact_damper::cli
