@@ -1,4 +1,4 @@
-# The loose mass as its cavity sees it, and below it what the cavity does meanwhile.
+# The secondary mass as its cavity sees it, and below it what the cavity does meanwhile.
 load folder."/own.gp"
 eval require("motion", 10)
 stats table index "motion" using 1 name "time" nooutput
@@ -44,7 +44,7 @@ stuck = !has("stuck") ? "" : \
   ', table index "stuck" using ($1*unit_x):($3*unit_y):(($2-$1)*unit_x):(0) with vectors nohead lc rgb orange lw 6 title "stuck"'
 impacts = !has("impacts") ? "" : \
   ', table index "impacts" using ($1*unit_x):($2*unit_y) with points pt 7 ps 0.45 lc rgb vermillion title "impacts"'
-eval 'plot table index "motion" using ($1*unit_x):($5*unit_y) with lines lc rgb blue lw 1.6 title "loose mass"'.stuck.impacts
+eval 'plot table index "motion" using ($1*unit_x):($5*unit_y) with lines lc rgb blue lw 1.6 title "secondary mass"'.stuck.impacts
 eval axes(name_x, in_units ? name_y : "y", "")
 
 unset key

@@ -1,4 +1,4 @@
-# The amplitude under a force over its frequency: with the damper, with the loose mass locked to its box, with the box empty.
+# The amplitude under a force over its frequency: with the damper, with the secondary mass locked to its box, with the box empty.
 load folder."/own.gp"
 eval require("curve", 3)
 eval look("curve", 1)

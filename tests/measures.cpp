@@ -257,6 +257,58 @@ TEST_CASE("without a folder an ensemble is simulated") {
     CHECK(simulated[member].half_cycles->amplitude == read.ensemble("short")[member].half_cycles->amplitude);
 }
 
+TEST_CASE("the ensemble by another engine is read from its files, and simulated without a folder") {
+  const ShortEnsemble files;
+  const Scene& scene = files.first.scene;
+  const auto file = file_by(files.folder, "short", Restitution{});
+  CHECK(file == files.folder / "short.restitution.json");
+  Runs runs(files.folder, {.members = 1});
+  const auto complaint = [&] {
+    try {
+      runs.ensemble_by("short", Restitution{});
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK(
+      complaint().find("made by: impact-damper run --scene short.json --engine restitution --members 1 -o " +
+                       file.string()) != std::string::npos);
+  const auto becomes = [&](const Scene& of, const Engine& engine) {
+    files.write(file, simulate(of, engine, Record{}));
+    return complaint();
+  };
+  CHECK(becomes(scene, Exact{}).find("/engine: must be restitution with its default options, got exact") !=
+        std::string::npos);
+  CHECK(becomes(scene, Restitution{.accumulation_tolerance = 1e-6}).find("/engine") != std::string::npos);
+  Scene other = scene;
+  other.restitution = 0.7;
+  CHECK(becomes(other, Restitution{}).find("/scene/restitution: must be 0.6") != std::string::npos);
+  CHECK(becomes(scene, Restitution{}) == "nothing");
+
+  // What the file holds counts: with the times doubled nothing is saved any more.
+  Run slow = simulate(scene, Restitution{}, Record{});
+  for (auto* column : {&slow.half_cycles->zero_crossing, &slow.half_cycles->peak_time})
+    for (double& time : *column) time *= 2;
+  slow.end_time *= 2;
+  const MeasureCall saved{"time_saved_percent", {"short"}, {{"amplitude", 5.6}}};
+  const double as_simulated = measure(runs, saved).median;
+  files.write(file, slow);
+  CHECK(measure(runs, saved).median == doctest::Approx(50 + as_simulated / 2).epsilon(1e-12));
+
+  CHECK(complaint() == "nothing");
+  Runs three(files.folder, {.members = 3});
+  CHECK_THROWS_AS(three.ensemble_by("short", Restitution{}), IoError);  // its other members are missing
+  Runs without(std::nullopt, {.members = 3});
+  without.put("short", files.first);
+  const std::vector<Run> simulated = without.ensemble_by("short", Restitution{});
+  REQUIRE(simulated.size() == 3);
+  for (std::size_t member = 0; member < 3; ++member) {
+    CHECK(simulated[member].scene == ensemble_of(scene)[member]);
+    CHECK(std::holds_alternative<Restitution>(simulated[member].engine));
+  }
+}
+
 TEST_CASE("a member that is missing, of another release or engine, or contradicts itself is rejected") {
   const ShortEnsemble files;
   const std::filesystem::path third = member_file(files.run_file(), 3);

@@ -8,12 +8,14 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
+#include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -61,6 +63,9 @@ void add_stuck(Run& run, std::size_t row, double from, double to) {
   run.contacts->wall.push_back(Wall::left);
 }
 
+const std::set<std::string> compared_with_rigid_walls{"mixed_share_ratio", "models_difference_percent",
+                                                      "time_saved_percent"};
+
 double measured(const std::string& name, std::map<std::string, double> numbers,
                 const std::vector<Run>& scenes) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
@@ -70,6 +75,9 @@ double measured(const std::string& name, std::map<std::string, double> numbers,
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     call.scenes.push_back("scene" + std::to_string(i));
     write_file(folder / (call.scenes.back() + ".json"), run_text(scenes[i]));
+    if (compared_with_rigid_walls.contains(name))
+      write_file(file_by(folder, call.scenes.back(), Restitution{}),
+                 run_text(simulate(scenes[i].scene, Restitution{}, Record{})));
   }
   Runs runs(folder, {.members = 1});
   const Spread spread = measure(runs, call);

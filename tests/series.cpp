@@ -129,6 +129,12 @@ TEST_CASE("the project's catalogue has Figures 1 to 15, A and B, from eight dist
   CHECK(find_figure(catalogue, "B") != nullptr);
   for (const Figure& figure : catalogue.figures) CHECK(fs::exists(source / "figures" / figure.script));
 
+  // The one that measures compare with.
+  REQUIRE(catalogue.runs.size() == 1);
+  CHECK(catalogue.runs[0].scene == "nu2-e06");
+  CHECK(std::holds_alternative<Restitution>(catalogue.runs[0].engine));
+  CHECK(catalogue.runs[0].record.half_cycles);
+
   REQUIRE(catalogue.scenes.size() == 8);
   std::set<std::string> distinct;
   for (const CatalogueScene& scene : catalogue.scenes) {
@@ -137,14 +143,14 @@ TEST_CASE("the project's catalogue has Figures 1 to 15, A and B, from eight dist
   CHECK(distinct.size() == 8);
 }
 
-TEST_CASE("a figure's files are named after its number") {
+TEST_CASE("a figure's files are named after its script") {
   Figure figure;
-  figure.number = "8";
+  figure.script = "fig08.gp";
   CHECK(file_stem(figure) == "fig08");
-  figure.number = "15";
-  CHECK(file_stem(figure) == "fig15");
-  figure.number = "A";
-  CHECK(file_stem(figure) == "figA");
+  figure.script = "loss.2.gp";
+  CHECK(file_stem(figure) == "loss.2");
+  figure.script = "decay";
+  CHECK(file_stem(figure) == "decay");
 }
 
 TEST_CASE("a catalogue that does not hold together is rejected at the place that is wrong") {
@@ -165,6 +171,17 @@ TEST_CASE("a catalogue that does not hold together is rejected at the place that
   rejected(R"("down_to": 0.1)", R"("down_to": -1)", "/figures/0/down_to");
   rejected(R"("down_to": 0.1,)", R"("down_to": 0.1, "varied": "mass_ratio",)", "/figures/0/varied");
   rejected(R"("title")", R"("titel")", "titel");
+  const auto with_runs = [&](const std::string& runs, const std::string& at) {
+    rejected(R"("figures")", R"("runs": [)" + runs + R"(], "figures")", at);
+  };
+  const std::string run = R"({"scene": "a", "engine": "restitution", "record": ["half_cycles"]})";
+  with_runs(run, "not rejected");
+  with_runs(run + ", " + run, "/runs/1/engine");
+  with_runs(replaced(run, R"("a")", R"("b")"), "/runs/0/scene");
+  with_runs(replaced(run, "restitution", "rigid"), "/runs/0/engine");
+  rejected(R"("fig08.gp"})",
+           R"("fig08.gp"}, {"figure": "9", "title": "t", "table": "drawing", "script": "fig08.plt"})",
+           "/figures/1/script");
 }
 
 TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for the impacts") {

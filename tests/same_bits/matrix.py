@@ -114,8 +114,7 @@ def build(work: Path, compiler: str, name: str) -> Path:
     if compiler == "clang++" and name.endswith("LTO"):
         options.append("-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld")
     call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={compiler}",
-          "-DCMAKE_BUILD_TYPE=None",
-          f"-DCMAKE_PROJECT_INCLUDE={HERE}/fewer_units.cmake", *options])
+          "-DCMAKE_BUILD_TYPE=None", *options])
     call(["cmake", "--build", folder, "--target", "impact-damper", "-j1"])
     say(f"built with {compiler} {name}")
     return folder / "src" / "impact-damper"

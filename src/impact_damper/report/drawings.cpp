@@ -168,7 +168,7 @@ std::optional<Drawing> response(const Findings& findings) {
     }
     drawing.table.blocks.push_back(std::move(block));
   };
-  linear("locked", "loose mass locked", 1 + scene.mass_ratio);
+  linear("locked", "secondary mass locked", 1 + scene.mass_ratio);
   linear("empty", "box empty", 1);
   drawing.table.blocks.push_back(
       {.name = "given",

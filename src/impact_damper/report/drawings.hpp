@@ -29,7 +29,7 @@ struct Drawing {
 //   begin, best  as the table of a figure of motion
 //   prediction   "curve" (time, spread of the ensemble's amplitudes in percent)
 //
-// A scene in units has "scales" (s by 1/Omega_n, mm by epsilon, Hz by Omega_n) beside these.
+// A scene in units has "scales" (s in 1/Omega_n, mm in epsilon, Hz in Omega_n) beside these.
 std::vector<Drawing> drawings_of(const Findings& findings);
 
 }  // namespace impact_damper

@@ -29,25 +29,25 @@ struct Subject {
 struct Fall {
   double part = 0;
   double amplitude = 0;         // part times the first amplitude
-  double time = 0;              // of that peak, by 1/Omega_n
+  double time = 0;              // of that peak, in units of 1/Omega_n
   std::optional<Spread> times;  // over the ensemble; absent where some member does not get there
 };
 
 struct BestDamping {
   double eta = 0;                          // largest local loss factor before impact failure, per radian
   double amplitude = 0;                    // at which it is met, divided by epsilon
-  double time = 0;                         // when, by 1/Omega_n
+  double time = 0;                         // when, in units of 1/Omega_n
   std::optional<Spread> etas, amplitudes;  // over the ensemble
 };
 
-// What the box and the loose mass have to bear.
+// What the box and the secondary mass have to bear.
 struct Loads {
   double speed = 0;              // largest relative speed of an impact, divided by epsilon Omega_n
   double impacts = 0, time = 0;  // how many there are in which time: of a forced motion its last quarter
   std::optional<ShortContact> contact;  // of that impact; absent for rigid walls and for soft ones
   double initial_force = 0;             // of the wall in which the scene begins, divided by K epsilon
 };
-// A contact that lasts longer, by 1/Omega_n, is not short beside the primary mass's period.
+// A contact that lasts longer, in units of 1/Omega_n, is not short beside the primary mass's period.
 inline constexpr double longest_short_contact = 0.15;
 
 // A stretch of the recorded history: its samples, both included.
@@ -74,7 +74,7 @@ struct Findings {
   std::optional<BestDamping> best;
 
   std::optional<double> sticking_ends;  // amplitude, end of bounce-down
-  double stuck_time = 0;                // in all, by 1/Omega_n
+  double stuck_time = 0;                // in all, in units of 1/Omega_n
   std::vector<RegularWindow> windows;   // the longest of each number of impacts, most impacts first
   ImpactFailure failure;
   std::int64_t most_impacts = 0;  // in one half cycle

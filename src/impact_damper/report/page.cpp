@@ -27,14 +27,14 @@ std::string caption_of(const std::string& name) {
   if (name == "response")
     return "The amplitude under the same force over its frequency: each dot is a run with the damper. "
            "Dashed: the "
-           "loose mass locked to its box, and the box empty. Upright: the frequency given.";
+           "secondary mass locked to its box, and the box empty. Upright: the frequency given.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "
            "half cycle.";
   if (name == "prediction")
     return "Greatest less least amplitude of all releases, in percent of their median.";
-  return "Above, the loose mass between the walls of its cavity; below, the displacement of the cavity.";
+  return "Above, the secondary mass between the walls of its cavity; below, the displacement of the cavity.";
 }
 
 // A picture as part of a page: without what a file of its own needs, and with a name for those who cannot see

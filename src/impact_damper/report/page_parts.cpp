@@ -102,7 +102,7 @@ std::string theory_sentences(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const double e = scene.restitution;
   if (e == 1)
-    return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the loose mass and back.";
+    return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the secondary mass and back.";
   if (e == 0)
     return "With <i>e</i> = 0 there is no rebound, and the closed forms drawn for other restitutions do not "
            "hold.";
@@ -119,7 +119,7 @@ std::string theory_sentences(const Findings& findings) {
     text += "Where this run is damped best it gives η = " +
             number_html(motion->loss * scene.mass_ratio + 2 * scene.damping_ratio) + " in place of " +
             number_html(best.eta) +
-            ": it holds for a steady amplitude, behind which a heavier loose mass lags. ";
+            ": it holds for a steady amplitude, behind which a heavier secondary mass lags. ";
   return text + "The best amplitude is " + percent_html(peak_loss_amplitude(e) / fold_amplitude(e) - 1) +
          " above " + quantities.length(fold_amplitude(e)) +
          ", where this motion ceases: below, impacts fail and only the primary mass's own damping is left.";
@@ -180,12 +180,12 @@ std::string summary_html(const Findings& findings) {
     const double force = scene.force_amplitude, zeta = scene.damping_ratio;
     const double locked = 1 + scene.mass_ratio;
     const ResponsePoint& worst = findings.response.worst();
-    text += "With the loose mass locked to its box it would be " +
+    text += "With the secondary mass locked to its box it would be " +
             amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) +
             ". At its worst frequency, " + quantities.frequency(worst.frequency) + ", the same force " +
             (worst.amplitude.settled ? "holds" : "drives") + " the damped mass at " +
             (worst.amplitude.settled ? "" : "an amplitude that is not settled yet, ") +
-            quantities.length(worst.amplitude.mean) + "; with the loose mass locked the worst is " +
+            quantities.length(worst.amplitude.mean) + "; with the secondary mass locked the worst is " +
             amplitude_or_none(quantities, worst_linear_response(force, locked, zeta).amplitude) + ". ";
   }
   if (findings.best)
@@ -296,11 +296,12 @@ std::string response_html(const Findings& findings) {
                           amplitude_or_none(quantities, most.amplitude),
                           quantities.frequency(most.frequency)});
   };
-  linear("the loose mass locked to its box", 1 + scene.mass_ratio);
+  linear("the secondary mass locked to its box", 1 + scene.mass_ratio);
   linear("the box empty", 1);
   std::string text =
-      "The loose mass also weighs on the primary one and shifts its resonance. What the impacts do is the "
-      "difference to the loose mass locked to its box, over all frequencies; at a single frequency most of "
+      "The secondary mass also weighs on the primary one and shifts its resonance. What the impacts do is "
+      "the difference to the secondary mass locked to its box, over all frequencies; at a single frequency "
+      "most of "
       "it may be "
       "the shift. ";
   std::string made =
@@ -323,7 +324,7 @@ std::string loads_html(const Findings& findings) {
     return paragraph_html("There is no impact in this run, so there is nothing for the walls to bear.");
   const Loads& loads = *findings.loads;
   const auto& scales = findings.subject.scales;
-  HtmlTable table{.caption = "Loads of the box and of the loose mass in this run",
+  HtmlTable table{.caption = "Loads of the box and of the secondary mass in this run",
                   .heads = {"What", "how much"},
                   .rows = {}};
   const auto row = [&](const std::string& what, const std::string& value) {

@@ -39,8 +39,8 @@ std::string regime_table(const Findings& findings) {
 
 std::string sticking_sentence(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
-  if (!(findings.stuck_time > 0)) return "The loose mass never sticks to a wall. ";
-  std::string share = "The loose mass is stuck to a wall for " +
+  if (!(findings.stuck_time > 0)) return "The secondary mass never sticks to a wall. ";
+  std::string share = "The secondary mass is stuck to a wall for " +
                       percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
   if (findings.forced()) return share;
   if (findings.sticking_ends)
@@ -73,8 +73,8 @@ std::string strikes(const Findings& findings, const MotionWindow& window) {
   const std::vector<double>& impacts = findings.run.impacts->time;
   const auto count = std::ranges::upper_bound(impacts, time[window.last]) -
                      std::ranges::lower_bound(impacts, time[window.first]);
-  if (count == 0) return "the loose mass does not strike a wall. ";
-  return "the loose mass strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
+  if (count == 0) return "the secondary mass does not strike a wall. ";
+  return "the secondary mass strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
 }
 
 }  // namespace
@@ -98,7 +98,8 @@ std::string regimes_html(const Findings& findings) {
                           impacts_counted(findings) + ".");
   if (findings.run.impacts->time.empty())
     return paragraph_html(
-        "The loose mass never strikes a wall: the primary mass moves too little for that, or too slowly.");
+        "The secondary mass never strikes a wall: the primary mass moves too little for that, or too "
+        "slowly.");
   std::string text = sticking_sentence(findings);
   text += findings.most_impacts == 1
               ? "No half cycle has more than one impact. "

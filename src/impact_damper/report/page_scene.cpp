@@ -50,14 +50,14 @@ std::string scene_table(const Subject& subject) {
   table.scale("Primary mass", "M", scales.mass, "kg");
   table.scale("Stiffness", "K", scales.stiffness, "N/m");
   table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
-  table.scale("Clearance of the loose mass", "ε", scales.length, "mm");
-  table.row("Loose mass", "ν", scene.mass_ratio, scales.mass, "kg");
+  table.scale("Clearance of the secondary mass", "ε", scales.length, "mm");
+  table.row("Secondary mass", "ν", scene.mass_ratio, scales.mass, "kg");
   table.row("Restitution", "e", scene.restitution, 1, "");
   table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
   if (!rigid) table.row("Stiffness of the walls", "k", scene.wall_stiffness, scales.stiffness, "N/m");
   table.row("Initial displacement", "x", scene.x0, scales.length, "mm");
   table.row("Initial velocity", "x′", scene.v0, scales.velocity(), "mm/s");
-  table.row("Loose mass, from the left wall", "y", scene.y0, scales.length, "mm");
+  table.row("Secondary mass, from the left wall", "y", scene.y0, scales.length, "mm");
   table.row("Its velocity in the cavity", "y′", scene.w0, scales.velocity(), "mm/s");
   if (scene.force_amplitude != 0) {
     table.row("Exciting force, amplitude", "f", scene.force_amplitude, scales.force(), "N");
@@ -151,7 +151,8 @@ std::string scene_html(const Findings& findings) {
             "clearance ε, times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
             "εΩ, "
             "energies in units of Kε².</p>\n"
-          : "<p>Lengths are in units of the clearance ε of the loose mass, times <i>t</i> in units of 1/Ω, Ω "
+          : "<p>Lengths are in units of the clearance ε of the secondary mass, times <i>t</i> in units of "
+            "1/Ω, Ω "
             "= √(K/M) "
             "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
             "Kε². A "

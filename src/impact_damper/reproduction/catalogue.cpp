@@ -11,7 +11,7 @@
 namespace impact_damper {
 namespace {
 
-constexpr TextRule a_number{1, 8, true};           // of a figure: its files are called after it
+constexpr TextRule a_number{1, 8, true};           // of a figure
 constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
 constexpr auto ordinates = {LossOrdinate::eta,
                             LossOrdinate::specific,
@@ -140,12 +140,35 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
   }
 }
 
+CatalogueRun read_run_entry(ObjectReader& item, const Catalogue& catalogue) {
+  CatalogueRun run;
+  if (item.required("scene", run.scene, a_name) && !find_scene(catalogue, run.scene))
+    item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(run.scene));
+  item.require("engine");
+  const std::optional<std::size_t> engine = item.word("engine", engine_names());
+  if (engine) run.engine = default_engines()[*engine];
+  run.record = read_record(item);
+  const auto is_same = [&](const CatalogueRun& other) {
+    return other.scene == run.scene && other.engine.index() == run.engine.index();
+  };
+  if (engine && std::ranges::any_of(catalogue.runs, is_same))
+    item.reject("engine", "must be given once, got the string " + in_quotes(name_of(run.engine)) +
+                              " for the scene " + run.scene + " again");
+  return run;
+}
+
 Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   Figure figure;
   if (item.required("figure", figure.number, a_number) && find_figure(catalogue, figure.number))
     item.reject("figure", "must be given once, got the string " + in_quotes(figure.number));
   item.required("title", figure.title, some_text);
-  item.required("script", figure.script, a_name);
+  if (item.required("script", figure.script, a_name) &&
+      std::ranges::find(catalogue.figures, file_stem(figure), file_stem) != catalogue.figures.end()) {
+    item.reject("script",
+                "must differ from the scripts before it but for its ending, as tables and pictures have its "
+                "name, got the string " +
+                    in_quotes(figure.script));
+  }
   item.optional("claims", figure.claims, a_name, 100);
   if (!item.required("table", figure.table,
                      {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
@@ -193,6 +216,8 @@ Catalogue read_whole(JsonDocument document) {
     scene.record = read_record(item);
     catalogue.scenes.push_back(scene);
   }
+  for (ObjectReader item : root.optional_objects("runs", 1000))
+    catalogue.runs.push_back(read_run_entry(item, catalogue));
   for (ObjectReader item : root.required_objects("figures", 1000)) {
     catalogue.figures.push_back(read_figure(item, catalogue));
   }
@@ -265,10 +290,7 @@ const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {
   return found == catalogue.figures.end() ? nullptr : &*found;
 }
 
-std::string file_stem(const Figure& figure) {
-  const bool one_digit = figure.number.size() == 1 && figure.number[0] >= '0' && figure.number[0] <= '9';
-  return (one_digit ? "fig0" : "fig") + figure.number;
-}
+std::string file_stem(const Figure& figure) { return std::filesystem::path(figure.script).stem().string(); }
 
 std::vector<std::string> scenes_of(const Figure& figure) {
   std::vector<std::string> scenes;

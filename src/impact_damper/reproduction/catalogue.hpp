@@ -6,6 +6,7 @@
 //    "members": 16,
 //    "scenes":  [{"scene": "nu2-e06", "record": ["half_cycles", "impacts"],
 //                 "history_below": [{"amplitude": 5.6, "length": 12.6, "count": 2001}]}],
+//    "runs":    [{"scene": "nu2-e06", "engine": "restitution", "record": ["half_cycles"]}],
 //    "figures": [{"figure": "8", "title": "...", "table": "loss_factor", "ordinate": "eta",
 //                 "varied": "mass_ratio", "curves": [{"scene": "nu2-e06", "half_cycles": 10}],
 //                 "down_to": 0.1, "script": "fig08.gp", "claims": ["..."]}]}
@@ -44,6 +45,14 @@ struct CatalogueScene {
   Record record;
 };
 
+// A scene's run by an engine of its own, for measures that compare with that: beside the runs of whichever
+// engine the figures are made with, and an ensemble as these are (scene_runs.hpp).
+struct CatalogueRun {
+  std::string scene;  // one of the catalogue's
+  Engine engine;      // with its default options
+  Record record;
+};
+
 struct FigureCurve {
   std::string scene;
   // loss_factor tables only:
@@ -62,13 +71,14 @@ struct Figure {
   std::optional<double> window;     // motion tables: the amplitude of one of the scene's history windows
   std::optional<double> down_to;    // amplitude that every curve must reach, or its run is short
   std::vector<double> range;        // loss_factor: amplitudes over which the spread is shown; empty or two
-  std::string script;               // beside the catalogue
+  std::string script;               // beside the catalogue; each once, without its ending too
   std::vector<std::string> claims;  // ids in data/claims.json
 };
 
 struct Catalogue {
   std::int64_t members = 1;  // of each scene's ensemble that are run, the scene itself among them; 1 to 100
   std::vector<CatalogueScene> scenes;
+  std::vector<CatalogueRun> runs;
   std::vector<Figure> figures;
 };
 
@@ -82,7 +92,7 @@ Catalogue parse_catalogue(const std::string& name, const std::string& text);
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
 
-// "fig08" for figure 8, "figA" for figure A: the stem of its table and pictures.
+// The name of its table and pictures without their endings: its script's, "fig08" for fig08.gp.
 std::string file_stem(const Figure& figure);
 
 // The scenes of a figure, each once, in the order of its curves.

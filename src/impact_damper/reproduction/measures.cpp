@@ -56,6 +56,14 @@ const std::vector<Run>& Runs::ensemble(const std::string& scene) {
   return runs;
 }
 
+std::vector<Run> Runs::ensemble_by(const std::string& scene, const Engine& engine) {
+  const Scene& same = file(scene).scene;
+  if (!folder_) return simulated_ensemble(same, engine, Record{});
+  std::vector<Run> runs = read_ensemble_by(*folder_, scene, same, engine, options_);
+  for (Run& run : runs) run = as_recorded(std::move(run));
+  return runs;
+}
+
 void Runs::put(const std::string& scene, Run run) {
   std::vector<Run>& runs = ensembles_[scene];
   runs.clear();

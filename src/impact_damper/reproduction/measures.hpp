@@ -59,6 +59,9 @@ class Runs {
   void put(const std::string& scene, Run run);
   // The run file, then the other members; throws what read_members() throws.
   const std::vector<Run>& ensemble(const std::string& scene);
+  // The ensemble of the same scene by that engine with its default options: the run files SCENE.ENGINE.json
+  // (scene_runs.hpp); without a folder simulated.
+  std::vector<Run> ensemble_by(const std::string& scene, const Engine& engine);
   // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if
   // none was or if they are of several.
   std::string engine() const;

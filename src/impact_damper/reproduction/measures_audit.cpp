@@ -78,7 +78,7 @@ Spread impact_energy_with_wall(Runs& runs, const MeasureCall& call) {
 }
 
 // A forced plastic scene of heavy secondary mass between compliant walls, finely sampled. The engine knows no
-// stuck motion: a mass that sticks is a contact that lasts, and obeys the equations of contact.
+// stuck motion: a mass that sticks is a sustained contact, and obeys the equations of contact.
 Run stuck_run(const Runs& runs, const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");
@@ -118,7 +118,7 @@ Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
 }
 
 // zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck motion by
-// least squares: a mass pressed to the wall at rest moves with it, in a contact that lasts.
+// least squares: a mass pressed to the wall at rest moves with it, in a sustained contact.
 Spread stuck_damping(Runs&, const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");
@@ -143,7 +143,7 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
   return once(products / squares);
 }
 
-// How far the stuck mass moves from its wall, by how far y'' = -x'' would carry it.
+// How far the stuck mass moves from its wall, divided by how far y'' = -x'' would carry it.
 Spread stuck_drift(Runs& runs, const MeasureCall& call) {
   const Run run = stuck_run(runs, call);
   const History& h = *run.history;
@@ -166,13 +166,13 @@ std::vector<Measure> audit_measures() {
        0,
        {"damping_ratio"},
        viscous_loss,
-       "averaged loss factor of viscous damping alone, by 2 zeta"},
+       "averaged loss factor of viscous damping alone, divided by 2 zeta"},
       {"viscous_loss_per_cycle",
        0,
        0,
        {"damping_ratio"},
        viscous_loss_per_cycle,
-       "2 dx/x over one cycle of viscous damping alone, by 2 zeta"},
+       "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta"},
       {"paper_energy_drift_percent",
        0,
        0,
@@ -214,7 +214,7 @@ std::vector<Measure> audit_measures() {
        0,
        {"mass_ratio"},
        stuck_drift,
-       "how far a stuck mass leaves its wall, by how far y'' = -x'' would carry it"},
+       "how far a stuck mass leaves its wall, divided by how far y'' = -x'' would carry it"},
   };
 }
 

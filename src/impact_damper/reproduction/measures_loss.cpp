@@ -390,7 +390,7 @@ std::vector<Measure> loss_measures() {
        2,
        {"from", "to"},
        product_ratio,
-       "mean A eta_s / nu of the first scene by the second's"},
+       "mean A eta_s / nu of the first scene, divided by the second's"},
       {"loss_ratio_exponent",
        2,
        2,
@@ -408,13 +408,13 @@ std::vector<Measure> loss_measures() {
        1,
        {"last"},
        tail_loss_ratio,
-       "median of the last so many values of eta, by the largest"},
+       "median of the last so many values of eta, divided by the largest"},
       {"smoothing_ratio",
        1,
        1,
        {},
        smoothing_ratio,
-       "largest eta averaged over 18 half cycles, by that over 10"},
+       "largest eta averaged over 18 half cycles, divided by that over 10"},
       {"smoothing_width_ratio",
        1,
        1,
@@ -428,7 +428,7 @@ std::vector<Measure> loss_measures() {
        1,
        {},
        single_impact_advantage,
-       "largest eta in and below the window of single impacts, by the largest above it"},
+       "largest eta in and below the window of single impacts, divided by the largest above it"},
   };
 }
 

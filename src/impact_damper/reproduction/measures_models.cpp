@@ -42,7 +42,7 @@ Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs
 Spread models_difference(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  const std::vector<Run> theirs = runs.ensemble_by(call.scenes.front(), Restitution{});
   return curves_apart(ours, theirs, runs.analysis(), from, to);
 }
 
@@ -50,7 +50,7 @@ Spread time_saved(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
   std::vector<double> theirs;
-  for (const Run& run : again(runs, ours.front().scene, Restitution{}))
+  for (const Run& run : runs.ensemble_by(call.scenes.front(), Restitution{}))
     theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
   std::vector<double> values;
@@ -102,7 +102,7 @@ double mixed_share(const Run& run, const RegimeOptions& regimes, double from, do
 Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  const std::vector<Run> theirs = again(runs, ours.front().scene, Restitution{});
+  const std::vector<Run> theirs = runs.ensemble_by(call.scenes.front(), Restitution{});
   std::vector<double> values;
   values.reserve(ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i)
@@ -264,7 +264,7 @@ std::vector<Measure> model_measures() {
        1,
        {"x0", "amplitude"},
        later_release,
-       "time from x0 down to an amplitude, by that from the scene's own release"},
+       "time from x0 down to an amplitude, divided by that from the scene's own release"},
       {"later_release_difference_percent",
        1,
        1,
@@ -290,13 +290,13 @@ std::vector<Measure> model_measures() {
        0,
        {"mass_ratio", "restitution"},
        wall_restitution,
-       "relative speed after one impact of the exact engine, by that before"},
+       "relative speed after one impact of the exact engine, divided by that before"},
       {"contact_frequency",
        0,
        0,
        {"mass_ratio", "restitution"},
        contact_frequency,
-       "frequency of one contact of the exact engine, by the root of k"},
+       "frequency of one contact of the exact engine, divided by the root of k"},
       {"wall_overlap", 1, 1, {}, wall_overlap, "largest deformation of the wall, in units of the clearance"},
       {"step_limit",
        0,
@@ -309,7 +309,7 @@ std::vector<Measure> model_measures() {
        1,
        {"steps_per_contact", "factor"},
        step_refinement,
-       "error of the component element method by its error with a smaller step"},
+       "error of the component element method, divided by its error with a smaller step"},
   };
 }
 

@@ -114,6 +114,27 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
   return others;
 }
 
+fs::path file_by(const fs::path& folder, const std::string& scene, const Engine& engine) {
+  return folder / (scene + '.' + std::string(name_of(engine)) + ".json");
+}
+
+std::vector<Run> read_ensemble_by(const fs::path& folder, const std::string& name, const Scene& scene,
+                                  const Engine& engine, const EnsembleOptions& options) {
+  const fs::path file = file_by(folder, name, engine);
+  const std::string words(name_of(engine));
+  const Run first = read_or_name_command(file, "impact-damper run --scene " + name + ".json --engine " +
+                                                   words + " --members " + std::to_string(options.members) +
+                                                   " -o " + file.string());
+  require_scene(first, file, scene, (folder / (name + ".json")).string());
+  if (without_defaults_by_scene(first.engine) != without_defaults_by_scene(engine))
+    throw InputError(file.string(), {{"/engine", "must be " + words + " with its default options, got " +
+                                                     std::string(name_of(first.engine))}});
+  require_consistent(first, file);
+  std::vector<Run> runs = read_members(first, file, options);
+  runs.insert(runs.begin(), first);
+  return runs;
+}
+
 Run SceneRuns::read(const std::string& scene) const {
   const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
   Run run =

@@ -41,6 +41,14 @@ Record record_of_member(Record record);
 std::vector<Run> read_members(const Run& first, const std::filesystem::path& run_file,
                               const EnsembleOptions& options = {});
 
+// The run of a scene by an engine of its own, with its default options, whichever engine the others are by.
+std::filesystem::path file_by(const std::filesystem::path& folder, const std::string& scene,
+                              const Engine& engine);  // FOLDER/SCENE.ENGINE.json
+// Its ensemble: runs of `scene`, which is called `name`, and of its other members. Throws as read_members().
+std::vector<Run> read_ensemble_by(const std::filesystem::path& folder, const std::string& name,
+                                  const Scene& scene, const Engine& engine,
+                                  const EnsembleOptions& options = {});
+
 // Where runs and the scenes that they are of are kept.
 struct SceneRuns {
   std::filesystem::path runs, scenes;

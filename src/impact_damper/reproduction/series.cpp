@@ -86,7 +86,7 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
     text += "; " + equation(runs[i]->run.scene, *figure.varied) + " averaged over " + std::to_string(span) +
             " half cycles";
   }
-  // The exact engine is the house's own answer; a figure made with another one says so.
+  // The exact engine is the default; a figure made with another one says so.
   if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
     text += "; " + std::visit(EngineWords{runs}, runs[0]->run.engine);
   }
@@ -112,8 +112,8 @@ void add_decay_block(const Figure& figure, const FigureRun& source, const std::s
   const HalfCycles& rows = half_cycles_of(figure, source);
   table.blocks.push_back(
       {.name = "curve-" + number,
-       .columns = {{"time", "time of the peak, by 1/Omega_n", rows.peak_time},
-                   {legend, "peak amplitude of the half cycle, by epsilon", rows.amplitude}}});
+       .columns = {{"time", "time of the peak, in units of 1/Omega_n", rows.peak_time},
+                   {legend, "peak amplitude of the half cycle, divided by the clearance", rows.amplitude}}});
 }
 
 // With A eta / nu constant the amplitude falls on a straight line, dA/dt = -rate nu. The rate of each curve
@@ -141,11 +141,12 @@ void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& s
   }
   for (double* sum : {&begin, &amplitude, &rate}) *sum /= static_cast<double>(sources.size());
   table.blocks.push_back(std::move(law));
-  table.blocks.push_back(
-      {.name = "line",
-       .notes = {"dA/dt = -rate nu with the mean of the rates"},
-       .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
-                   {"dA/dt = −" + rounded_text(rate, 2) + " ν", "amplitude, by epsilon", {amplitude, 0}}}});
+  table.blocks.push_back({.name = "line",
+                          .notes = {"dA/dt = -rate nu with the mean of the rates"},
+                          .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
+                                      {"dA/dt = −" + rounded_text(rate, 2) + " ν",
+                                       "amplitude, divided by the clearance",
+                                       {amplitude, 0}}}});
 }
 
 }  // namespace

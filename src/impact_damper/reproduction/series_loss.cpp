@@ -26,11 +26,11 @@ std::string meaning(LossOrdinate which) {
     case LossOrdinate::specific_secondary:
       return "(eta - 2 zeta) / nu";
     case LossOrdinate::amplitude_times:
-      return "A (eta - 2 zeta) / nu, A by epsilon";
+      return "A (eta - 2 zeta) / nu, A divided by the clearance";
     case LossOrdinate::by_restitution:
-      return "A (eta - 2 zeta) / (nu (1 - e)), A by epsilon";
+      return "A (eta - 2 zeta) / (nu (1 - e)), A divided by the clearance";
     case LossOrdinate::carried:
-      return "A (eta - 2 zeta / (1 + nu)) / nu, A by epsilon";
+      return "A (eta - 2 zeta / (1 + nu)) / nu, A divided by the clearance";
   }
   return "";
 }
@@ -103,7 +103,7 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
   for (double& eta : form.eta) eta *= scene.mass_ratio;
   return {.name = name,
           .notes = {"closed form for nu -> 0, zeta = 0"},
-          .columns = {{"amplitude", "peak amplitude A, by epsilon", form.amplitude},
+          .columns = {{"amplitude", "peak amplitude A, divided by the clearance", form.amplitude},
                       {legend, meaning(which), ordinate(form, scene, which)}}};
 }
 
@@ -122,7 +122,7 @@ void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& r
       .name = "band-" + number,
       .notes = {count + " releases of scene " + curve.scene + ", x0 shifted by up to " +
                 std::to_string(options.most_steps) + " times " + number_text(options.step) + " of it"},
-      .columns = {{"amplitude", "peak amplitude A, by epsilon", {}},
+      .columns = {{"amplitude", "peak amplitude A, divided by the clearance", {}},
                   {"least", "ordinate of the ensemble", {}, Ordinate::low},
                   {count + " releases", "greatest ordinate", {}, Ordinate::high}}};
   const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
@@ -174,12 +174,12 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
   const auto block = [&, &loss = loss, &values = values](const std::string& block_name,
                                                          const std::string& note, std::size_t from,
                                                          std::size_t to) {
-    table.blocks.push_back(
-        {.name = block_name,
-         .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) + " half cycles" +
-                   note},
-         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, from, to)},
-                     {legend, meaning(*figure.ordinate), part(values, from, to)}}});
+    table.blocks.push_back({.name = block_name,
+                            .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) +
+                                      " half cycles" + note},
+                            .columns = {{"amplitude", "peak amplitude A, averaged, divided by the clearance",
+                                         part(loss.amplitude, from, to)},
+                                        {legend, meaning(*figure.ordinate), part(values, from, to)}}});
   };
   block("curve-" + number, "", 0, kept);
   if (kept < values.size())
@@ -188,7 +188,8 @@ void add_loss_block(const Figure& figure, const FigureCurve& curve, const Figure
     table.blocks.push_back(
         {.name = "second-" + number,
          .notes = {"scene " + curve.scene + ", the same curve in the second panel's ordinate"},
-         .columns = {{"amplitude", "peak amplitude A, averaged, by epsilon", part(loss.amplitude, 0, kept)},
+         .columns = {{"amplitude", "peak amplitude A, averaged, divided by the clearance",
+                      part(loss.amplitude, 0, kept)},
                      {legend, meaning(*figure.second_ordinate),
                       part(ordinate(loss, source.run.scene, *figure.second_ordinate), 0, kept)}}});
   }
@@ -223,7 +224,7 @@ void add_spread_block(const Figure& figure, Table& table) {
                           .notes = {"middle, least and greatest ordinate of all curves over the amplitudes "
                                     "of its two rows, but for each "
                                     "curve's first point, which the release enters"},
-                          .columns = {{"amplitude", "by epsilon", figure.range},
+                          .columns = {{"amplitude", "divided by the clearance", figure.range},
                                       {"least", "of all curves", {least, least}, Ordinate::low},
                                       {"most", "of all curves", {most, most}, Ordinate::high},
                                       {legend, "half way between least and most", {middle, middle}}}});

@@ -47,15 +47,17 @@ void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table
 
   TableBlock motion{
       .name = "motion",
-      .columns = {{"time", "by 1/Omega_n", {}},
-                  {"left wall", "x, absolute displacement of the left cavity wall, by epsilon", {}},
-                  {"right wall", "x + 1, that of the right wall less the width of the mass", {}},
-                  {"secondary mass", "z = x + y, absolute, by epsilon", {}},
-                  {"relative", "y, secondary mass from the left wall, by epsilon", {}}}};
-  TableBlock impacts{.name = "impacts",
-                     .columns = {{"time", "by 1/Omega_n", {}},
-                                 {"wall", "0 left, 1 right: y at the impact", {}},
-                                 {"impacts", "absolute displacement of that wall, by epsilon", {}}}};
+      .columns = {
+          {"time", "in units of 1/Omega_n", {}},
+          {"left wall", "x, absolute displacement of the left cavity wall, divided by the clearance", {}},
+          {"right wall", "x + 1, that of the right wall less the width of the mass", {}},
+          {"secondary mass", "z = x + y, absolute, divided by the clearance", {}},
+          {"relative", "y, secondary mass from the left wall, divided by the clearance", {}}}};
+  TableBlock impacts{
+      .name = "impacts",
+      .columns = {{"time", "in units of 1/Omega_n", {}},
+                  {"wall", "0 left, 1 right: y at the impact", {}},
+                  {"impacts", "absolute displacement of that wall, divided by the clearance", {}}}};
   const auto add_motion = [&](double time, double x, double y) {
     const double row[] = {time, x, x + 1, x + y, y};
     for (std::size_t c = 0; c < 5; ++c) motion.columns[c].values.push_back(row[c]);
@@ -77,7 +79,7 @@ void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table
 
   const Contacts contacts = stuck_contacts(run);
   TableBlock stuck{.name = "stuck",
-                   .columns = {{"begin", "of a stuck interval, by 1/Omega_n", {}},
+                   .columns = {{"begin", "of a stuck interval, in units of 1/Omega_n", {}},
                                {"end", "of it", {}},
                                {"wall", "0 left, 1 right", {}}}};
   for (std::size_t i = 0; i < contacts.begin.size(); ++i) {

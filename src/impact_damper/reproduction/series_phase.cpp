@@ -13,7 +13,9 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr int theory_points = 120;
 
-TableColumn amplitude_column() { return {"amplitude", "peak amplitude of the half cycle, by epsilon", {}}; }
+TableColumn amplitude_column() {
+  return {"amplitude", "peak amplitude of the half cycle, divided by the clearance", {}};
+}
 
 TableBlock impacts_block(const Impacts& impacts) {
   TableBlock block{
@@ -52,10 +54,11 @@ TableBlock stuck_block(const HalfCycles& rows, const StuckPhases& stuck) {
 // The longest regular window of each count of impacts.
 TableBlock windows_block(const Run& run) {
   const std::vector<RegularWindow> windows = regular_windows(run);
-  TableBlock block{.name = "windows",
-                   .columns = {{"impacts", "per half cycle, throughout the window", {}},
-                               {"upper", "amplitude at which the window begins, by epsilon", {}},
-                               {"lower", "amplitude at which it ends", {}}}};
+  TableBlock block{
+      .name = "windows",
+      .columns = {{"impacts", "per half cycle, throughout the window", {}},
+                  {"upper", "amplitude at which the window begins, divided by the clearance", {}},
+                  {"lower", "amplitude at which it ends", {}}}};
   for (std::int64_t impacts = 6; impacts >= 1; --impacts) {
     const auto window = longest_window(windows, impacts);
     if (!window) continue;

@@ -1,2 +1,0 @@
-// The library's own source, with other flags.
-#include "impact_damper/simulate.cpp"
