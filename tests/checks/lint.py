@@ -5,8 +5,8 @@
 
 BUILD is the build folder, whose compile_commands.json says how each source is compiled. clang-tidy's checks are those
 of .clang-tidy, with the reason for each that is left out; cppcheck's are below and in cppcheck.txt. Headers are
-looked at with the sources that include them. clang-tidy spends its time on the headers of others, so sources that can
-be compiled as one are looked at as one, by groups.txt.
+looked at with the sources that include them. clang-tidy spends its time on the headers of others, so sources that are
+compiled as one are looked at as one.
 
 Exit code 1: something was found, 2: a tool or the build is missing.
 """
@@ -22,7 +22,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-GROUPS = SOURCE / "tests/same_bits/groups.txt"
 CPPCHECK = ["cppcheck", "--enable=warning,style,performance,portability", "--std=c++20", "--error-exitcode=1", "--quiet",
             "--inline-suppr", "--suppressions-list=tests/checks/cppcheck.txt", "--template={file}:{line}: {message} [{id}]",
             "-Isrc", "src"]
@@ -33,34 +32,26 @@ def missing(text):
     sys.exit(2)
 
 
-def grouped(build):
-    """Groups of sources, name to list, each with the options that its first is compiled with."""
+def compiled(build):
+    """What is compiled as one (src/CMakeLists.txt): its name, its sources, the file that includes them, the options."""
     database = build / "compile_commands.json"
     if not database.exists():
         missing(f"{database} is missing: make build")
-    commands = {Path(entry["file"]): entry["command"] for entry in json.loads(database.read_text())}
-    left = [file for file in sorted(commands) if SOURCE / "src" in file.parents]
-    groups = {}
-    lines = [line.split(": ") for line in GROUPS.read_text().splitlines() if line and not line.startswith("#")]
-    for name, patterns in lines:
-        wanted = {file for pattern in patterns.split() for file in (SOURCE / "src").glob(pattern)}
-        groups[name] = [file for file in left if file in wanted]
-        left = [file for file in left if file not in wanted]
-        if not groups[name]:
-            missing(f"no source of the group {name} is compiled in {build}: mend {GROUPS}")
-    groups |= {file.stem: [file] for file in left}
-    # Where it is included from, its own folder is not looked in by itself.
-    # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
-    return [(name, files, [word for word in shlex.split(commands[files[0]])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
-                           not word.startswith("-") and "/include" in word and not word.endswith(".o")] +
-             [f"-I{folder}" for folder in {file.parent for file in files}]) for name, files in groups.items()]
+    seen = set()
+    for entry in json.loads(database.read_text()):
+        file = Path(entry["file"])
+        sources = re.findall('#include "(.*[.]cpp)"', file.read_text()) if "Unity" in file.parts else [str(file)]
+        if seen.issuperset(sources) or any(SOURCE / "src" not in Path(source).parents for source in sources):
+            continue  # a second library of them; generated
+        seen.update(sources)
+        # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
+        yield file.stem, sources, file, [
+            word for word in shlex.split(entry["command"])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
+            not word.startswith("-") and "/include" in word and not word.endswith(".o")]
 
 
-def tidy(build, name, files, options):
-    together = build / "lint" / f"{name}.cpp"
-    together.parent.mkdir(exist_ok=True)
-    together.write_text("".join(f'#include "{file}"\n' for file in files))
-    done = subprocess.run(["clang-tidy", "--quiet", f"--config-file={SOURCE}/.clang-tidy", str(together), "--", *options],
+def tidy(name, file, options):
+    done = subprocess.run(["clang-tidy", "--quiet", f"--config-file={SOURCE}/.clang-tidy", str(file), "--", *options],
                           capture_output=True, text=True, cwd=SOURCE)
     found = [text for text in re.split(r"^(?=/\S+:\d+:\d+: (?:warning|error): )", done.stdout, flags=re.MULTILINE)
              if text.strip()]
@@ -80,10 +71,9 @@ def main():
         if not shutil.which(tool):
             missing(f"{tool} is missing: make deps-check installs it")
     build, words = Path(sys.argv[1]).resolve(), sys.argv[2:]
-    groups = [group for group in grouped(build)
-              if not words or any(word in str(text) for word in words for text in (group[0], *group[1]))]
-    jobs = [(f"clang-tidy, {name} ({len(files)} sources)", lambda group=(name, files, options): tidy(build, *group))
-            for name, files, options in groups] + [("cppcheck, src", cppcheck)]
+    groups = [group for group in compiled(build) if not words or any(word in str(group[:2]) for word in words)]
+    jobs = [(f"clang-tidy, {name} ({len(sources)} sources)", lambda each=(name, file, options): tidy(*each))
+            for name, sources, file, options in groups] + [("cppcheck, src", cppcheck)]
     begin, ended, findings = time.monotonic(), [], set()
 
     def look(job):
@@ -99,7 +89,7 @@ def main():
         list(pool.map(look, jobs))
     for text in sorted(findings):
         print(text.rstrip())
-    count = sum(len(files) for _, files, _ in groups)
+    count = sum(len(sources) for _, sources, _, _ in groups)
     print(f"lint: {count} sources, {len(findings)} findings, {time.monotonic() - begin:.0f} s")
     sys.exit(1 if findings else 0)
 

@@ -56,7 +56,8 @@ def make_tree(folder, program, figures=None):
         catalogue = json.loads(file.read_text())
         catalogue["figures"] = [each for each in catalogue["figures"] if each["figure"] in figures]
         drawn = {curve["scene"] for each in catalogue["figures"] for curve in each.get("curves", [])}
-        catalogue["scenes"] = [each for each in catalogue["scenes"] if each["scene"] in drawn]
+        for runs in ("scenes", "runs"):
+            catalogue[runs] = [each for each in catalogue[runs] if each["scene"] in drawn]
         file.write_text(json.dumps(catalogue))
     (folder / "build" / "src").mkdir(parents=True)
     shutil.copy(program, folder / "build" / "src" / "impact-damper")

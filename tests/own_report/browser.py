@@ -64,7 +64,7 @@ class Report(unittest.TestCase):
         told = self.page.does('document.querySelector("#figure-decay .reading").textContent')
         self.assertRegex(told, r"time in s = [\d.]+, peak amplitude in mm = [\d.]+")
         names = self.page.does('[...document.querySelectorAll(".switches button")].map(b => b.textContent)')
-        self.assertIn("loose mass", names)
+        self.assertIn("secondary mass", names)
         self.assertEqual([name for name in names if re.match("gnuplot", name)], [])
 
     def test_dark_pages_are_dark(self):

@@ -209,7 +209,7 @@ class TheAppendix(unittest.TestCase):
         self.assertIn("::: {#M2.1 .equation}", appendix(values, Html(values)))
         for old, new, said in ((r" \tag{M4.1}", "", "has no number"), (r"\tag{M2.2}", r"\tag{M2.1}", "M2.1 stands twice"),
                                ("by (M3.2)", "by (M3.9)", "M3.9 leads nowhere"), ("Lemma L1.", "Lemma L7.", "L7 leads nowhere"),
-                               ("[3]", "[9]", r"[9] leads nowhere"), ("chapter 5.3", "chapter 5.9", "chapter 5.9 leads nowhere"),
+                               ("[3]", "[0]", r"[0] leads nowhere"), ("chapter 5.3", "chapter 5.9", "chapter 5.9 leads nowhere"),
                                ("Figure 12", "Figure 77", "no figure is called 77"), ("`collapse-carried`", "`collapse`", "no claim is called"),
                                ("(cascade.svg)", "(casacde.svg)", "there is no file casacde.svg"),
                                ("results/results.md", "results/result.md", "there is no file")):
