@@ -88,7 +88,7 @@ def scenes_of(figure: dict) -> list:
 
 def table_of(values: Values, number: str):
     """The file of a figure's table, for whoever wants its numbers; None for a drawing."""
-    file = values.build / f"series/exact/{stem_of(number)}.csv"
+    file = values.build / f"series/exact/{stem_of(values.figures[number])}.csv"
     return file if values.figures[number]["table"] != "drawing" else None
 
 
@@ -193,7 +193,7 @@ class Html(Form):
 
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
-        svg = (values.build / f"figures/{stem_of(number)}.svg").read_text(encoding="utf-8")
+        svg = (values.build / f"figures/{stem_of(figure)}.svg").read_text(encoding="utf-8")
         rows = "".join(
             f'<tr><td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
             f'<td data-head="ours">{self.words(ours)}</td><td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
@@ -204,8 +204,8 @@ class Html(Form):
         claims = f"""<div class="wide rows"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th>
 <th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
 <tbody>{rows}</tbody></table></div>""" if rows else ""
-        return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(number)}.svg">
-<div class="drawing">{picture_html(svg, stem_of(number), figure['title'])}</div>{data}
+        return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(figure)}.svg">
+<div class="drawing">{picture_html(svg, stem_of(figure), figure['title'])}</div>{data}
 <figcaption>""") + f"\n\n**Figure {number}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
 </figcaption>
 {claims}
@@ -258,7 +258,7 @@ class Latex(Form):
 
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
-        picture = values.build / f"figures/{stem_of(number)}.pdf"
+        picture = values.build / f"figures/{stem_of(figure)}.pdf"
         rows = "\n\n".join(rf"\claim{{{self.words(statement)}}}{{{self.words(paper)}}}{{{self.words(ours)}}}{{{verdict}}}"
                            for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
         made = made_from(values, number).replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")

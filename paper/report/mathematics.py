@@ -27,7 +27,7 @@ CHAPTERS = re.compile(r"\b(chapters?\s+)(\d+(?:\.\d+)?)(?:( and )(\d+(?:\.\d+)?)
 def appendix(values, form) -> str:
     """Markdown for pandoc."""
     text = (values.source / FILE).read_text(encoding="utf-8")
-    text, _, literature = text.partition("\n## 14. ")
+    text, _, literature = text.partition("\n## 15. ")
     anchors = {}  # what the text calls a place -> its anchor
 
     def anchor(called: str, name: str) -> str:
@@ -80,7 +80,7 @@ def appendix(values, form) -> str:
 
     # First all anchors, then all links, which may lead forwards, then the blocks, which hold no more links.
     text = text.replace("# The mathematics\n", "# Appendix: the mathematics {#mathematics .unnumbered}\n", 1)
-    text += "\n## 14. " + WORK.sub(lambda m: f"{m[0]}[]{{{anchor(f'[{m[1]}]', f'literature-{m[1]}')}}}", literature)
+    text += "\n## 15. " + WORK.sub(lambda m: f"{m[0]}[]{{{anchor(f'[{m[1]}]', f'literature-{m[1]}')}}}", literature)
     text = CHAPTER.sub(lambda m: f"{m[1]} {m[2]}{m[3]} {m[4]} "
                                  f"{{{anchor(f'chapter {m[2]}', f'mathematics-{m[2]}')} .unnumbered}}", text)
     text = LEMMA.sub(lambda m: f"[]{{{anchor(m[1], m[1])}}}", text)

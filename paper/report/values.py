@@ -143,7 +143,7 @@ class Values:
                            f"run.{each['scene']}.impacts": sum(run["half_cycles"]["impacts"]),
                            f"run.{each['scene']}.end_time": run["end_time"]}
         for number, figure in self.figures.items():
-            stem = stem_of(number)
+            stem = stem_of(figure)
             table = build / f"series/exact/{stem}.dat"
             stamped = source / "figures" / figure["script"] if figure["table"] == "drawing" else table
             if not stamped.exists():
@@ -185,5 +185,6 @@ class Values:
         return significant(float(value), int(how or 4))
 
 
-def stem_of(number: str) -> str:
-    return f"fig{number:0>2}" if number.isdigit() else f"fig{number}"
+def stem_of(figure: dict) -> str:
+    """The name of its table and pictures without their endings."""
+    return Path(figure["script"]).stem
