@@ -47,7 +47,7 @@ const Reference& reference_for(const BenchScene& scene, Walls walls, Findings& f
   tell(scene.name + " reference");
   Reference reference = reference_of(scene, walls);
   if (walls == scene.walls && !scene.chaotic) {
-    const auto independent = independent_amplitudes(scene.scene, walls);
+    const auto independent = independent_amplitudes(compared_part(scene), walls);
     if (independent) reference.from_independent = amplitude_error(*independent, reference.amplitude);
   }
   return found.references.emplace_back(std::move(reference));
@@ -167,7 +167,11 @@ int bench(const Arguments& arguments) {
 int main(int count, char** arguments) {
   const auto read = impact_damper::bench::read_arguments({arguments + 1, arguments + count});
   if (!read) {
-    std::fprintf(stderr, "usage: %s FOLDER [--quick] [--only S1|S2|S3|S4|S5]...\n", arguments[0]);
+    std::fprintf(stderr, "usage: %s FOLDER [--quick] [--only SCENE]...\nscenes:", arguments[0]);
+    for (const auto& scene : impact_damper::bench::bench_scenes()) {
+      std::fprintf(stderr, " '%s'", scene.name.c_str());
+    }
+    std::fputs("\n", stderr);
     return 2;
   }
   try {

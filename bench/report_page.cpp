@@ -79,6 +79,10 @@ void add_times(std::string& page, const Findings& found) {
       "At that error two rates are held against the fixed step of the paper, which does not locate events.\n";
   for (const BenchScene& scene : found.scenes) {
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
+    if (scene.compared_until) {
+      page += "Amplitudes are compared up to t = " + printed("%g", *scene.compared_until) +
+              ": from there on a shift of the release grows. Times are those of the whole run.\n\n";
+    }
     const double errors[] = {scene.chaotic ? 0.03 : 1e-6, scene.chaotic ? 0.005 : 1e-9};
     PageTable table(page, {"", "for " + rounded(errors[0]), "for " + rounded(errors[1]), "smallest error",
                            "in", "at", "repeats"});

@@ -37,13 +37,31 @@ void measure_error(const Findings& found, const std::string& scene, Result& resu
   result.note = "in " + digits(exact->finest().timing.seconds.median * 1e3) + " ms";
 }
 
-void measure_cost(const Findings& found, const std::string& engine, Result& result) {
-  const Curve* curve = found.curve("S5", engine);
+void measure_cost(const Findings& found, const std::string& scene, const std::string& engine,
+                  Result& result) {
+  const Curve* curve = found.curve(scene, engine);
   if (!curve || curve->points.empty()) return;
   const Point& point = curve->finest();
   result.measured = point.timing.reference_operations.median / double(point.impacts);
   result.note =
       std::to_string(point.impacts) + " impacts in " + digits(point.timing.seconds.median * 1e3) + " ms";
+}
+
+// What an impact costs under a slow and a fast force, and a whole period of one so fast that impacts are rare.
+void measure_frequencies(const Findings& found, Result& result) {
+  std::vector<double> costs;
+  for (const char* name : {"S8 slow", "S8 fast", "S8 very fast"}) {
+    const auto scene = std::ranges::find(found.scenes, name, &BenchScene::name);
+    const Curve* curve = found.curve(name, "exact");
+    if (scene == found.scenes.end() || !curve || curve->points.empty()) return;
+    const double omega = scene->scene.force_frequency;
+    const double periods = *scene->scene.until_time * omega / (2 * std::acos(-1.0));
+    const Point& point = curve->finest();
+    costs.push_back(point.timing.reference_operations.median / (omega < 10 ? double(point.impacts) : periods));
+    result.note += (result.note.empty() ? "" : ", ") + digits(costs.back(), "%.1f") + " at " + digits(omega);
+  }
+  const auto [least, most] = std::ranges::minmax_element(costs);
+  result.measured = *most / *least;
 }
 
 // How much longer the fastest of `peers` takes for `error` than the exact engine does for its own.
@@ -180,16 +198,32 @@ std::vector<Result> results_of(const Findings& found) {
 
   add(at_most("exact: error on S1", 1e-11), [&](Result& t) { measure_error(found, "S1", t); });
   add(at_most("exact: error on S3", 1e-12), [&](Result& t) { measure_error(found, "S3", t); });
+  for (const std::string scene : {"S4", "S7", "S8 slow", "S8 fast", "S8 very fast"}) {
+    add(at_most("exact: error on " + scene + ", forced", 1e-12),
+        [&](Result& t) { measure_error(found, scene, t); });
+  }
   add(at_most("exact: time per impact on S5, everything included, in reference operations", 15),
-      [&](Result& t) { measure_cost(found, "exact", t); });
+      [&](Result& t) { measure_cost(found, "S5", "exact", t); });
   add(at_most("restitution: time per impact on S5, in reference operations", 8),
-      [&](Result& t) { measure_cost(found, "restitution", t); });
+      [&](Result& t) { measure_cost(found, "S5", "restitution", t); });
+  for (const std::string scene : {"S4", "S7"}) {
+    add(at_most("exact: time per impact on " + scene + ", forced, in reference operations", 20),
+        [&](Result& t) { measure_cost(found, scene, "exact", t); });
+    add(at_most("restitution: time per impact on " + scene + ", forced, in reference operations", 12),
+        [&](Result& t) { measure_cost(found, scene, "restitution", t); });
+  }
+  add(at_most("exact: time per impact, at 50 per period, on S8, largest by smallest", 3, "x"),
+      [&](Result& t) { measure_frequencies(found, t); });
 
   const std::vector<std::string> odeint{"odeint fehlberg78", "odeint dopri5"};
   add(at_least("exact against the best odeint at 1e-9, S1", 10),
       [&](Result& t) { measure_against(found, "S1", odeint, 1e-9, t); });
   add(at_least("exact against the best odeint at 1e-9, S3", 15),
       [&](Result& t) { measure_against(found, "S3", odeint, 1e-9, t); });
+  add(at_least("exact against the best odeint at 1e-9, S4", 25),
+      [&](Result& t) { measure_against(found, "S4", odeint, 1e-9, t); });
+  add(at_least("exact against the best odeint at 1e-6, S4", 15),
+      [&](Result& t) { measure_against(found, "S4", odeint, 1e-6, t); });
   add(at_least("exact against CVODE at 1e-9, S1", 300),
       [&](Result& t) { measure_against(found, "S1", {"CVODE"}, 1e-9, t); });
   add(at_least("exact against fixed-step central differences at 1e-3, S3", 100),

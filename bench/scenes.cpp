@@ -13,13 +13,47 @@ std::vector<BenchScene> bench_scenes() {
        .with_others = true},
       {.name = "S4",
        .what = "forced and damped to t = 100",
-       .scene = {.damping_ratio = 0.01, .x0 = 6, .force_amplitude = 0.05, .until_time = 100}},
+       .scene = {.damping_ratio = 0.01, .x0 = 6, .force_amplitude = 0.05, .until_time = 100},
+       .with_others = true},
       {.name = "S5",
        .what = "the whole decay, 6 to 0.03",
        .scene = {.x0 = 6, .until_amplitude = 0.03},
        .with_others = true,
        .chaotic = true},
+      {.name = "S7",
+       .what = "forced near resonance, undamped, to t = 2000",
+       .scene = {.x0 = 1, .force_amplitude = 0.006, .force_frequency = 0.988, .until_time = 2000},
+       .with_others = true,
+       .compared_until = 60},
+      {.name = "S8 slow",
+       .what = "a force of frequency 0.2 to t = 400",
+       .scene = {.x0 = 0.1, .force_amplitude = 1, .force_frequency = 0.2, .until_time = 400},
+       .compared_until = 100},
+      {.name = "S8 fast",
+       .what = "a force of frequency 5 to t = 100",
+       .scene = {.damping_ratio = 0.01,
+                 .x0 = 0.1,
+                 .v0 = -5,
+                 .force_amplitude = 24,
+                 .force_frequency = 5,
+                 .until_time = 100},
+       .compared_until = 12},
+      {.name = "S8 very fast",
+       .what = "a force of frequency 50 to t = 20",
+       .scene = {.damping_ratio = 0.01,
+                 .x0 = 0.1,
+                 .v0 = -50,
+                 .force_amplitude = 2499,
+                 .force_frequency = 50,
+                 .until_time = 20},
+       .compared_until = 1},
   };
+}
+
+Scene compared_part(const BenchScene& scene) {
+  Scene part = scene.scene;
+  if (scene.compared_until) part.until_time = scene.compared_until;
+  return part;
 }
 
 bool takes_part(const Contender& contender, bool ours, const BenchScene& scene) {

@@ -17,13 +17,14 @@ Reference reference_of(const BenchScene& scene, Walls walls) {
     reference.loss_curve = ensemble_curve(scene.scene, engine);
     return reference;
   }
+  const Scene compared = compared_part(scene);
   std::vector<double> in_long_double;
   if (walls == Walls::compliant) {
-    reference.amplitude = reference_amplitudes(scene.scene, Exact{});
-    in_long_double = long_double_amplitudes(scene.scene, Exact{});
+    reference.amplitude = reference_amplitudes(compared, Exact{});
+    in_long_double = long_double_amplitudes(compared, Exact{});
   } else {
-    reference.amplitude = reference_amplitudes(scene.scene, Restitution{});
-    in_long_double = long_double_amplitudes(scene.scene, Restitution{});
+    reference.amplitude = reference_amplitudes(compared, Restitution{});
+    in_long_double = long_double_amplitudes(compared, Restitution{});
   }
   // Where the reference is long double itself there is nothing to hold it against.
   if (reference_scalar() != "long double") {
@@ -37,7 +38,11 @@ namespace {
 // The error of a run whose rows are at hand; where the scene is chaotic, of many more releases instead.
 std::optional<double> error_of_setting(const BenchScene& scene, const Contender& contender, double setting,
                                        const Rows& own, const Reference& reference) {
-  if (!scene.chaotic) return amplitude_error(own.amplitude, reference.amplitude);
+  if (!scene.chaotic) {
+    std::vector<double> compared = own.amplitude;
+    if (scene.compared_until) compared.resize(std::min(compared.size(), reference.amplitude.size()));
+    return amplitude_error(compared, reference.amplitude);
+  }
   // Not the releases that the reference is made of.
   const std::vector<Scene> ensemble = ensemble_of(scene.scene, {.members = releases, .seed = 2});
   std::vector<std::optional<std::vector<double>>> found(ensemble.size());
