@@ -216,6 +216,47 @@ TEST_CASE("all engines run a scene to within their settings' errors of the refer
   }
 }
 
+TEST_CASE("amplitudes are compared up to the scene's time and no further") {
+  BenchScene scene{.name = "S7", .scene = tiny, .compared_until = 10};
+  const auto rows_of = [](double shift_before, double shift_after) {
+    return [=](const Scene& part, double) {
+      Rows rows;
+      const Run run = simulate(part, Exact{}, {.half_cycles = true});
+      for (std::size_t i = 0; i < run.half_cycles->amplitude.size(); ++i) {
+        const bool before = run.half_cycles->peak_time[i] < 5;
+        rows.amplitude.push_back(run.half_cycles->amplitude[i] + (before ? shift_before : shift_after));
+      }
+      return rows;
+    };
+  };
+  const auto error_of = [&](double shift_before, double shift_after) {
+    const Contender contender{.name = "shifted",
+                              .settings = [](const Scene&) { return std::vector<double>{0}; },
+                              .run = rows_of(shift_before, shift_after)};
+    const Reference reference = reference_of(scene, Walls::compliant);
+    const Told silent{[](const std::string&) {}, [](const Curve&, const Point&) {}};
+    return *measure_curve(scene, contender, true, reference, Limits{.repeats = 1}, silent).points.at(0).error;
+  };
+  CHECK(error_of(0.5, 0) == Approx(0.5));
+  CHECK(error_of(0, 0.5) == Approx(0.5));
+  scene.compared_until = 4;  // the first half cycle only
+  CHECK(error_of(0, 0.5) < 1e-12);
+}
+
+TEST_CASE("a very fast force is held against a slow one by its periods") {
+  Findings found;
+  for (const BenchScene& scene : bench_scenes()) {
+    if (!scene.name.starts_with("S8")) continue;
+    found.scenes.push_back(scene);
+    found.curves.push_back(curve_of(scene.name, "exact", {{0, 1e-13, 3000}}));
+  }
+  REQUIRE(found.scenes.size() == 3);
+  // 100 impacts each: 30 operations an impact. At 50 t / 2 pi = 159.2 periods: 18.85 operations each.
+  const Scene& fast = found.scenes.back().scene;
+  REQUIRE(*fast.until_time * fast.force_frequency == 1000);
+  CHECK(*find(results_of(found), "time per impact, at 50").measured == Approx(30 / (3000 * 2 * std::acos(-1.0) / 1000)));
+}
+
 TEST_CASE("a peer that does not reach the error has no ratio, and how far it came is said") {
   Findings found;
   found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));

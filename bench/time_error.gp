@@ -11,7 +11,7 @@ stats table index "S5-scatter" using 3 nooutput; high = STATS_max
 eval canvas(1180, 1320)
 set output output
 set multiplot layout 3,3 title "Run time against error\n{/*0.82 ".parameters."}" font ",15" offset 0,-0.2 \
-  margins 0.065,0.985,0.165,0.915 spacing 0.055,0.08
+  margins 0.065,0.985,0.145,0.925 spacing 0.055,0.08
 set logscale xy
 set format "10^{%T}"
 set yrange [1e2:2e8]
@@ -57,7 +57,7 @@ do for [panel=1:9] {
   unset object 1
 }
 
-set lmargin at screen 0.065; set rmargin at screen 0.985; set bmargin at screen 0.005; set tmargin at screen 0.115
+set lmargin at screen 0.05; set rmargin at screen 0.9; set bmargin at screen 0.005; set tmargin at screen 0.095
 set title ""
 unset xlabel
 unset ylabel
@@ -75,5 +75,5 @@ do for [i=1:13] {
     command = command.sprintf("1/0 with linespoints %s title '%s', ", styles[i], spelled(name))
   }
 }
-eval command."1/0 with boxes fc rgb pale fs solid title 'the ensemble''s own scatter'"
+eval command."1/0 with boxes fc rgb pale fs solid title 'scatter of the ensemble'"
 unset multiplot

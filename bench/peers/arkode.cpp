@@ -12,7 +12,7 @@ using namespace sundials;
 
 class Arkode {
  public:
-  Arkode(Problem& problem, N_Vector u, SUNContext context, double tolerance)
+  Arkode(Problem& problem, N_Vector u, SUNContext context, double tolerance, double radian)
       : memory_(ERKStepCreate(derivative, 0, u, context)) {
     // What it says on stderr of two roots near each other, see advance.
     require(ERKStepSetErrHandlerFn(
@@ -24,7 +24,7 @@ class Arkode {
     require(ERKStepSetInterpolantType(memory_, ARK_INTERP_HERMITE), "ERKStepSetInterpolantType");
     require(ERKStepSetInterpolantDegree(memory_, 5), "ERKStepSetInterpolantDegree");
     require(ERKStepSetMaxNumSteps(memory_, 100'000'000), "ERKStepSetMaxNumSteps");
-    require(ERKStepSetMaxStep(memory_, 0.25), "ERKStepSetMaxStep");
+    require(ERKStepSetMaxStep(memory_, 0.25 * radian), "ERKStepSetMaxStep");
     require(ERKStepRootInit(memory_, System::events, events), "ERKStepRootInit");
     int ways[System::events];
     std::copy(std::begin(directions), std::end(directions), ways);

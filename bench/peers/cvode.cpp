@@ -13,15 +13,14 @@ using namespace sundials;
 
 class Cvode {
  public:
-  Cvode(Problem& problem, N_Vector u, SUNContext context, double tolerance)
+  Cvode(Problem& problem, N_Vector u, SUNContext context, double tolerance, double radian)
       : memory_(CVodeCreate(CV_ADAMS, context)), solver_(SUNNonlinSol_FixedPoint(u, 0, context)) {
     require(CVodeInit(memory_, derivative, 0, u), "CVodeInit");
     require(CVodeSetUserData(memory_, &problem), "CVodeSetUserData");
     require(CVodeSStolerances(memory_, tolerance, tolerance), "CVodeSStolerances");
     require(CVodeSetNonlinearSolver(memory_, solver_), "CVodeSetNonlinearSolver");
     require(CVodeSetMaxNumSteps(memory_, 100'000'000), "CVodeSetMaxNumSteps");
-    // Roots are looked for at the ends of steps only.
-    require(CVodeSetMaxStep(memory_, 0.1), "CVodeSetMaxStep");
+    require(CVodeSetMaxStep(memory_, 0.1 * radian), "CVodeSetMaxStep");
     require(CVodeRootInit(memory_, System::events, events), "CVodeRootInit");
     int ways[System::events];
     std::copy(std::begin(directions), std::end(directions), ways);

@@ -4,6 +4,7 @@
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -58,7 +59,8 @@ struct Vector {
   Vector(const Vector&) = delete;
 };
 
-// Solver(problem, u, context, tolerance), with restart(u) at its time 0, advance(end, u, t) that says whether
+// Solver(problem, u, context, tolerance, time by radian of the fastest motion), with restart(u) at its time 0,
+// advance(end, u, t) that says whether
 // it stopped at an event, and found(events).
 template <class Solver>
 Rows run(const Scene& scene, Walls walls, double tolerance) {
@@ -66,7 +68,9 @@ Rows run(const Scene& scene, Walls walls, double tolerance) {
   Problem problem{System(scene, walls)};
   const Vector vector(problem.system.state, context.context);
   N_Vector u = vector.vector;
-  Solver solver(problem, u, context.context, tolerance);
+  // Roots are looked for at the ends of steps only, whose length is bounded by the shorter of the two periods.
+  const double radian = scene.force_amplitude != 0 ? 1 / std::max(1.0, scene.force_frequency) : 1;
+  Solver solver(problem, u, context.context, tolerance, radian);
 
   RowBook rows(scene.x0, scene.until_amplitude);
   const double end = scene.until_time ? *scene.until_time : 1e6;

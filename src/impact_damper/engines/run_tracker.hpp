@@ -175,6 +175,14 @@ template <class Real, class Force, class Observer>
 [[gnu::always_inline]] inline std::optional<Wall> pass_flight(const System<Real, Force>& system,
                                                               RunTracker<Real, Force, Observer>& tracker,
                                                               State<Real>& state, bool released) {
+  if constexpr (!ForcedMotion<Real, Force>::forced) {  // one piece: without the loop a decay takes 2 % less
+    const Flight<Real, Force> flight(system, tracker.now(), state);
+    const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.search())
+                              : flight.next_wall(tracker.remaining(), tracker.search());
+    if (met) state = copied(met->state);
+    tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
+    return tracker.stopped() ? std::nullopt : std::optional(met->wall);
+  }
   FlightStart<Real> start(state);
   for (;;) {
     const Flight<Real, Force> flight(system, tracker.now(), start);
