@@ -42,7 +42,8 @@ def interrupt(name, command, folder, files, code, wait, check):
     check(not scratch.unfinished_in(folder), f"{name}: unfinished files remain: {scratch.unfinished_in(folder)}")
     if process.returncode in (0, 1):  # done before
         return False
-    lines = [line for line in error.splitlines() if not line.startswith("verify: ")]  # its progress
+    # But for its progress, and complaints about counts of lines that another interrupt has cut off.
+    lines = [line for line in error.splitlines() if not line.startswith(("verify: ", "profiling: "))]
     check(process.returncode == 128 + code, f"{name}: exit code {process.returncode}: {error}")
     check(len(lines) == 1 and lines[0].startswith("impact-damper: interrupted: "), f"{name}: says {error!r}")
     whole = {file for file in files if (folder / file).exists() and before[file] is None}
@@ -149,6 +150,7 @@ def main():
     print(f"seed {seed}", flush=True)
     moments = random.Random(seed)
     folder = scratch.make_folder(options.folder)
+    scratch.count_lines_in(folder)
     check = scratch.Check()
     tree = scratch.make_tree(folder / "tree", options.program, options.figures)
     if not set(options.parts) <= {"run", "ensemble"}:

@@ -154,6 +154,7 @@ def main():
     random_moments = random.Random(seed)
     scratch.adopt_orphans()
     folder = scratch.make_folder(options.folder)
+    scratch.count_lines_in(folder)
     check = scratch.Check()
 
     tree = scratch.make_tree(folder / "tree", options.program.resolve(), options.figures)

@@ -37,6 +37,12 @@ def arguments(description):
     return parser
 
 
+def count_lines_in(folder):
+    """Where the program counts the lines it runs (tests/checks/coverage): one that is killed as it writes its counts
+    leaves a file that every later program complains of on stderr. So it is none of the build's."""
+    ENVIRONMENT["GCOV_PREFIX"] = str(folder / "counts")
+
+
 def make_folder(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
