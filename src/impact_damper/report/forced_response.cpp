@@ -16,9 +16,12 @@ namespace {
 using Way = ArrivedMotion ResponsePoint::*;
 constexpr std::array<Way, 2> both_ways{&ResponsePoint::rising, &ResponsePoint::falling};
 
+// Of a steady motion's power (M12.9). Over 500 periods the energy of a chaotic one may differ at both ends.
+constexpr double largest_imbalance = 0.2;
+
 // Whether two amplitudes differ by more than can be seen and than they scatter (M12.8).
 bool amplitudes_differ(const ArrivedMotion& a, double amplitude, const ArrivedMotion& b) {
-  constexpr double visible = 0.01, deviations = 4;
+  constexpr double visible = 0.01, deviations = 3;
   const double sa = a.steady.amplitude_scatter, sb = b.steady.amplitude_scatter;
   return std::abs(amplitude - b.amplitude()) >
          std::max(visible * std::max(amplitude, b.amplitude()), deviations * square_root(sa * sa + sb * sb));
@@ -38,15 +41,19 @@ Engine bounded(const Engine& engine) {
       engine);
 }
 
-// Some periods of the force, but not many more than it takes to count `impacts_of_a_motion`.
-SteadyRule rule_for(double impacts) {
+// Fewer periods of the force where they have many impacts, and without viscous damping: what impacts do not
+// end soon, nothing ends.
+SteadyRule rule_for(const Scene& scene, double impacts) {
   constexpr double natural_period = 2 * std::numbers::pi, impacts_of_a_motion = 20'000;
+  constexpr std::int64_t least = 500, hundred = 100;
   SteadyRule rule;
   rule.tolerance = 1e-7;
-  if (impacts > 0)
-    rule.max_periods = std::clamp(static_cast<std::int64_t>(impacts_of_a_motion / (impacts * natural_period)),
-                                  std::int64_t(500), rule.max_periods);
-  rule.mean_periods = 200;
+  if (scene.damping_ratio == 0) rule.max_periods = least;
+  if (impacts > 0) {
+    const double periods =
+        std::min(double(rule.max_periods), impacts_of_a_motion / (impacts * natural_period));
+    rule.max_periods = std::max(least, static_cast<std::int64_t>(periods) / hundred * hundred);
+  }
   return rule;
 }
 
@@ -131,26 +138,31 @@ class Sweeper {
   }
 
   // Motions that are not periodic, and on which much rests, are followed once more: where the two ways
-  // differ, and at the largest amplitude. A transient may only have been long.
+  // differ, and at the largest amplitude, which then may be another one. A transient may only have been long.
   void confirm() {
-    std::vector<ArrivedMotion*> open;
-    std::vector<double> frequencies;
-    const auto largest = response_.largest();
-    for (ResponsePoint& point : response_.points) {
-      if (!point.has_two_motions() && !(largest && point.frequency == largest->frequency)) continue;
-      for (const Way way : both_ways) {
-        if (!(point.*way).is_known() || (point.*way).is_periodic()) continue;
-        open.push_back(&(point.*way));
-        frequencies.push_back(point.frequency);
+    constexpr int rounds = 4;
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<ArrivedMotion*> open;
+      std::vector<double> frequencies;
+      const auto largest = response_.largest();
+      for (ResponsePoint& point : response_.points) {
+        if (!point.has_two_motions() && !(largest && point.frequency == largest->frequency)) continue;
+        for (const Way way : both_ways) {
+          ArrivedMotion& motion = point.*way;
+          if (!motion.is_known() || motion.is_periodic() || motion.earlier_amplitude) continue;
+          open.push_back(&motion);
+          frequencies.push_back(point.frequency);
+        }
       }
+      if (open.empty()) return;
+      for_each_index(std::ssize(open), threads_, [&](std::int64_t i) {
+        const auto n = static_cast<std::size_t>(i);
+        ArrivedMotion& motion = *open[n];
+        const SteadyState later = along({frequencies[n]}, motion.steady.state).front();
+        if (!later.period) motion.earlier_amplitude = motion.amplitude();
+        motion.steady = later;
+      });
     }
-    for_each_index(std::ssize(open), threads_, [&](std::int64_t i) {
-      const auto n = static_cast<std::size_t>(i);
-      ArrivedMotion& motion = *open[n];
-      const SteadyState later = along({frequencies[n]}, motion.steady.state).front();
-      if (!later.period) motion.earlier_amplitude = motion.amplitude();
-      motion.steady = later;
-    });
   }
 
  private:
@@ -170,7 +182,11 @@ class Sweeper {
 }  // namespace
 
 bool ArrivedMotion::changes() const {
-  return earlier_amplitude && is_known() && amplitudes_differ(*this, *earlier_amplitude, *this);
+  if (!is_known() || is_periodic()) return false;
+  const SteadyMeans& means = *steady.means;
+  const double lost = means.viscous_power + means.impact_power;
+  if (std::abs(means.power - lost) > largest_imbalance * std::max(means.power, lost)) return true;
+  return earlier_amplitude && amplitudes_differ(*this, *earlier_amplitude, *this);
 }
 
 bool ResponsePoint::has_two_motions() const {
@@ -210,7 +226,7 @@ std::vector<PointRange> ForcedResponse::two_motions() const {
 ForcedResponse forced_response(const Scene& scene, const Engine& engine, double impacts,
                                const Threads& threads,
                                const std::function<void(std::int64_t done)>& progress) {
-  Sweeper sweeper(scene, engine, rule_for(impacts), threads, progress);
+  Sweeper sweeper(scene, engine, rule_for(scene, impacts), threads, progress);
   sweeper.sweep_through(frequencies_for(scene, engine));
   for (int round = 0; round < 2; ++round) sweeper.refine();
   sweeper.confirm();

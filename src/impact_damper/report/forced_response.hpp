@@ -23,7 +23,9 @@ struct ArrivedMotion {
   bool is_known() const { return steady.means.has_value(); }
   bool is_periodic() const { return steady.period.has_value(); }
   double amplitude() const { return steady.means->amplitude; }  // largest |x|; only if known
-  bool changes() const;  // between its two amplitudes by more than they scatter
+  // Not periodic, and not steady either: the force puts in another power than is lost (M12.9), or the two
+  // amplitudes differ by more than they scatter (M12.8).
+  bool changes() const;
 };
 
 struct ResponsePoint {

@@ -169,8 +169,8 @@ std::string summary_html(const Findings& findings) {
     text = fall_in_short(findings);
   else if (findings.steady)
     text = "Under the exciting force the amplitude is in the end " +
-           quantities.length(findings.steady->mean) + " on average. ";
-  if (findings.steady) text += response_in_short(findings);
+           quantities.length(findings.steady->mean) + " on average, " +
+           quantities.length(findings.steady->greatest) + " at most. " + response_in_short(findings);
   if (findings.best)
     text += "It is damped best at an amplitude of " + quantities.length(findings.best->amplitude) +
             ", as by " + as_viscous(findings.best->eta) + ". ";

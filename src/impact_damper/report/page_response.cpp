@@ -59,38 +59,48 @@ const ResponsePoint* most_different(const ForcedResponse& response) {
   return most;
 }
 
+bool repeats(const ResponsePoint& point) { return point.rising.is_periodic() && point.falling.is_periodic(); }
+
 std::string two_motions_sentences(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const ForcedResponse& response = findings.response;
   const ResponsePoint* const most = most_different(response);
   if (!most)
-    return "Rising or falling, the frequency leads to the same amplitudes. A motion that neither way meets "
-           "is "
-           "still possible, from another release. ";
+    return "Rising or falling, the frequency leads to the same amplitudes where the motions are steady" +
+           std::string(std::ranges::all_of(response.points, repeats)
+                           ? ""
+                           : ", within the scatter of those that do not repeat") +
+           ". A motion that neither way meets is still possible, from another release. ";
   std::string text = "Two steady motions are possible " + ranges_in_words(quantities, response) +
                      ": which of them appears depends on how one arrives. At " +
                      quantities.frequency(most->frequency) + " the amplitude is " +
                      quantities.length(most->rising.amplitude()) +
                      " if the frequency has risen to there, and " +
                      quantities.length(most->falling.amplitude()) + " if it has fallen. ";
-  const bool all_repeat = std::ranges::all_of(response.points, [](const ResponsePoint& point) {
-    return !point.has_two_motions() || (point.rising.is_periodic() && point.falling.is_periodic());
-  });
-  if (!all_repeat)
+  if (std::ranges::any_of(response.points, [](const ResponsePoint& point) {
+        return point.has_two_motions() && !repeats(point);
+      }))
     text +=
-        "Of the two one at least does not repeat, there or elsewhere in these ranges: it kept its amplitude "
-        "when followed as long again, but it may pass over to the other later. ";
+        "Some of these motions do not repeat: they kept their amplitude when followed as long again, but may "
+        "pass over to the other one later. ";
   return text;
+}
+
+// The amplitude of a motion, and what is to be known of it.
+std::string amplitude_cell(const Quantities& quantities, const ArrivedMotion& motion) {
+  if (!motion.is_known()) return "given up";
+  return quantities.length(motion.amplitude()) + (motion.changes() ? ", not steady yet" : "");
 }
 
 std::string method_sentences(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const ForcedResponse& response = findings.response;
-  std::int64_t open = 0, ended = 0;
+  std::int64_t open = 0, changing = 0, ended = 0;
   for (const ResponsePoint& point : response.points) {
     for (const ArrivedMotion* motion : {&point.rising, &point.falling}) {
       ended += !motion->is_known();
       open += motion->is_known() && !motion->is_periodic();
+      changing += motion->changes();
     }
   }
   const std::int64_t motions = 2 * std::ssize(response.points);
@@ -98,29 +108,37 @@ std::string method_sentences(const Findings& findings) {
                      count_html(std::ssize(response.points)) + " values from " +
                      quantities.frequency(response.points.front().frequency) + " to " +
                      quantities.frequency(response.points.back().frequency) +
-                     ", and falls again; the motion goes on from each to the next, until it repeats. ";
+                     ", and falls again; at each the motion of the one before goes on until it repeats. ";
   if (open > 0)
     text += "Of " + count_html(motions) + " motions " + count_html(open) +
             (open == 1 ? " does not repeat" : " do not repeat") + " within " +
             count_html(response.rule.max_periods) +
             " periods of the force; the amplitude is then the largest in " +
             count_html(response.rule.mean_periods) + " further periods. ";
+  if (changing > 0)
+    text += count_html(changing) + " of these " + (changing == 1 ? "is" : "are") +
+            " not steady yet: the force puts in another power than is lost, or the amplitude has changed "
+            "from one "
+            "such time to the next. ";
   if (ended > 0)
     text += count_html(ended) + (ended == 1 ? " motion was" : " motions were") +
             " given up, because of too many impacts or steps in a period, and is not counted. ";
-  return text;
+  return text + "Other frequencies, and longer, are for <code>impact-damper response sweep</code>. ";
 }
 
 std::string largest_sentence(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const ArrivedMotion motion = findings.response.largest()->motion;
-  if (!motion.earlier_amplitude) return "";
-  const std::string earlier = quantities.length(*motion.earlier_amplitude),
-                    later = quantities.length(motion.amplitude());
-  return "At its worst frequency the motion does not repeat. It was followed twice as long: first it has an "
-         "amplitude of " +
-         earlier + ", then of " + later + ". " +
-         (motion.changes() ? "So it is not steady yet: do not rely on that number. " : "");
+  std::string text;
+  if (motion.earlier_amplitude)
+    text =
+        "At its worst frequency the motion does not repeat. It was followed twice as long: its largest "
+        "amplitude "
+        "is first " +
+        quantities.length(*motion.earlier_amplitude) + ", then " + quantities.length(motion.amplitude()) +
+        ". ";
+  if (motion.changes()) text += "The largest amplitude is not steady yet: do not rely on that number. ";
+  return text;
 }
 
 }  // namespace
@@ -165,10 +183,9 @@ std::string response_html(const Findings& findings) {
       .heads = {"", "at " + quantities.frequency(given), "at its worst frequency", "that is at"},
       .rows = {}};
   const auto damped = [&](const std::string& what, ArrivedMotion ResponsePoint::*way) {
-    const ArrivedMotion& there = response.points[response.given].*way;
     const auto worst = response.largest(way);
-    table.rows.push_back({what, there.is_known() ? quantities.length(there.amplitude()) : "given up",
-                          worst ? quantities.length(worst->motion.amplitude()) : "given up",
+    table.rows.push_back({what, amplitude_cell(quantities, response.points[response.given].*way),
+                          worst ? amplitude_cell(quantities, worst->motion) : "given up",
                           worst ? quantities.frequency(worst->frequency) : ""});
   };
   damped("with the damper, the frequency rising", &ResponsePoint::rising);
