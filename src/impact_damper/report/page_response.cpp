@@ -14,6 +14,16 @@ std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
   return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
 }
 
+bool is_given_up(const ArrivedMotion& motion) { return !motion.is_known(); }
+bool is_open(const ArrivedMotion& motion) { return motion.is_known() && !motion.is_periodic(); }
+bool is_changing(const ArrivedMotion& motion) { return motion.changes(); }
+
+std::int64_t count_of(const ForcedResponse& response, bool (*counts)(const ArrivedMotion&)) {
+  std::int64_t count = 0;
+  for (const ResponsePoint& point : response.points) count += counts(point.rising) + counts(point.falling);
+  return count;
+}
+
 // What the impacts do to the largest amplitude over all frequencies, once there is one to compare with.
 std::string reduction_sentence(const Findings& findings) {
   const ArrivedMotion motion = findings.response.largest()->motion;
@@ -24,7 +34,10 @@ std::string reduction_sentence(const Findings& findings) {
   const double part = motion.amplitude() / locked;
   return "The impacts " +
          (part < 1 ? "take " + percent_html(1 - part) + " off" : "add " + percent_html(part - 1) + " to") +
-         " the largest amplitude. ";
+         " the largest amplitude. " +
+         (count_of(findings.response, is_given_up) > 0
+              ? "Motions that were given up are not in this comparison. "
+              : "");
 }
 
 // "between 3.05 Hz and 3.09 Hz, at 3.2 Hz and in 2 more ranges up to 3.3 Hz"
@@ -95,14 +108,8 @@ std::string amplitude_cell(const Quantities& quantities, const ArrivedMotion& mo
 std::string method_sentences(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const ForcedResponse& response = findings.response;
-  std::int64_t open = 0, changing = 0, ended = 0;
-  for (const ResponsePoint& point : response.points) {
-    for (const ArrivedMotion* motion : {&point.rising, &point.falling}) {
-      ended += !motion->is_known();
-      open += motion->is_known() && !motion->is_periodic();
-      changing += motion->changes();
-    }
-  }
+  const std::int64_t open = count_of(response, is_open), changing = count_of(response, is_changing),
+                     ended = count_of(response, is_given_up);
   const std::int64_t motions = 2 * std::ssize(response.points);
   std::string text = "With the damper the frequency rises through " +
                      count_html(std::ssize(response.points)) + " values from " +
@@ -122,7 +129,7 @@ std::string method_sentences(const Findings& findings) {
             "such time to the next. ";
   if (ended > 0)
     text += count_html(ended) + (ended == 1 ? " motion was" : " motions were") +
-            " given up, because of too many impacts or steps in a period, and is not counted. ";
+            " given up, because of too many impacts or steps in a period. ";
   return text + "Other frequencies, and longer, are for <code>impact-damper response sweep</code>. ";
 }
 
