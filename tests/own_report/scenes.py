@@ -36,6 +36,8 @@ SCENES = {
                          {"response": "were given up, because of too many impacts|not in this comparison"}, ["decay", "response", "begin", "best", "prediction"]),
     "two motions": (["--scene", "wind.json"], {"header": "Two steady motions are possible", "response": "depends on how one arrives|do not repeat"},
                     ["decay", "response", "phase", "begin", "best", "prediction"]),
+    "worst not periodic": (["--scene", "gale.json"], {"response": "At its worst frequency the motion does not repeat"},
+                           ["decay", "response", "phase", "begin", "best", "prediction"]),
     "overdamped": (["--damping-ratio", "3", "--until-time", "50"], {"decay": "not one whole half cycle",
                    "loss": "Without half cycles", "prediction": "no amplitude", "header": "times critically"}, ["begin"]),
     "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound", "loads": "rigid"},
@@ -227,10 +229,11 @@ def response(page, text, run, scales):
     words = page.words["response"]
     for mass in (1 + scene["mass_ratio"], 1):
         given = linear_amplitude(scene, mass, scene["force_frequency"])
-        if math.isfinite(given):
-            holds(page, "response", given * length, f"amplitude with the mass {mass}")
-        if scene["damping_ratio"]:
-            holds(page, "response", worst_linear(scene, mass) * length, f"worst amplitude with the mass {mass}", 1e-6)
+        for section in ("header", "response") if mass > 1 else ("response",):
+            if math.isfinite(given):
+                holds(page, section, given * length, f"amplitude with the mass {mass}")
+            if scene["damping_ratio"]:
+                holds(page, section, worst_linear(scene, mass) * length, f"worst amplitude with the mass {mass}", 1e-6)
     drawn = marks(text)
     count = len(sum((drawn[way][True] + drawn[way][False] for way in drawn), []))
     given_up = re.search(r"(\d+) motions? (was|were) given up", words)
@@ -290,7 +293,7 @@ def response(page, text, run, scales):
         frequency = float(at[1]) * x_unit
         for end in re.findall(r"(?:between|and|at) ([\d.]+).(?:Hz|Ω)", ranges[1]):
             pair = [min(every[way], key=lambda mark: abs(mark[0] - float(end) * x_unit)) for way in every]
-            check(not near(pair[0][1], pair[1][1], 0.01), f"{name}: the two ways do not differ at {end}")
+            check(not near(pair[0][1], pair[1][1], 0.05), f"{name}: the two ways do not differ at {end}")
         for way, told in zip(("rising", "falling"), at.groups()[2:]):
             there = min(every[way], key=lambda mark: abs(mark[0] - frequency))
             check(near(there[1] / y_unit, float(told), 0.01), f"{name}: {way}, the amplitude drawn at {frequency} is {there[1]}, not {told}")
@@ -408,7 +411,8 @@ given = json.loads(example.read_text())
 forced = {**given, "exciting_force": 10, "exciting_frequency": 3.18, "until_seconds": 60}
 del forced["until_millimetres"]
 (folder / "forced.json").write_text(json.dumps(forced))
-(folder / "wind.json").write_text(json.dumps({**forced, "exciting_force": 2, "exciting_frequency": 3.15, "initial_displacement": 0}))
+for wind, newtons in {"wind": 2, "gale": 2.4}.items():
+    (folder / f"{wind}.json").write_text(json.dumps({**forced, "exciting_force": newtons, "exciting_frequency": 3.15, "initial_displacement": 0}))
 for name in sys.argv[4:] or SCENES:
     options, words, drawn = SCENES[name]
     file = folder / f"{name.replace(' ', '-').replace(chr(39), '')}.html"
@@ -420,7 +424,7 @@ for name in sys.argv[4:] or SCENES:
     page = Page(text)
     for fault in page.faults:
         check(False, f"{name}: {fault}")
-    forced = "--force-amplitude" in options or options[-1] in ("forced.json", "wind.json")
+    forced = "--force-amplitude" in options or options[-1] in ("forced.json", "wind.json", "gale.json")
     sections = ["response" if forced and each == "loss" else each for each in SECTIONS]
     check([s for s in page.numbers if s] == sections, f"{name}: sections {list(page.numbers)}")
     check(page.figures == [f"figure-{each}" for each in drawn], f"{name}: figures {page.figures}")
