@@ -29,7 +29,7 @@ Scene mast(double force, double frequency) {
 }
 
 ForcedResponse response_of(const Scene& scene, const Engine& engine = Exact{}, const Threads& threads = 2) {
-  return forced_response(scene, engine, 0, threads, [](std::int64_t) {});
+  return forced_response(scene, engine, threads, [](std::int64_t) {});
 }
 
 // The scene at a point, from the end of one of its motions on, at phase 0 of the force.
@@ -255,7 +255,7 @@ TEST_CASE("the response is the same by any number of threads, and progress count
   const ForcedResponse all = response_of(scene, Restitution{}, 3);
   std::int64_t most = 0;
   const ForcedResponse alone =
-      forced_response(scene, Restitution{}, 0, 1, [&](std::int64_t done) { most = std::max(most, done); });
+      forced_response(scene, Restitution{}, 1, [&](std::int64_t done) { most = std::max(most, done); });
   REQUIRE(all.points.size() == alone.points.size());
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     CHECK(all.points[i].frequency == alone.points[i].frequency);

@@ -234,11 +234,9 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
       same_walls.calibration = calibration_of(engine);
       engine = same_walls;
     }
-    const double impacts = findings.loads ? findings.loads->impacts / findings.loads->time : 0;
-    findings.response =
-        forced_response(subject.scene, engine, impacts, ensemble.threads, [&](std::int64_t done) {
-          progress("simulating other frequencies, " + std::to_string(done) + " motions done");
-        });
+    findings.response = forced_response(subject.scene, engine, ensemble.threads, [&](std::int64_t done) {
+      progress("simulating other frequencies, " + std::to_string(done) + " motions done");
+    });
   }
 
   progress("recording the motion");

@@ -41,30 +41,43 @@ Engine bounded(const Engine& engine) {
       engine);
 }
 
-// Fewer periods of the force where they have many impacts, and without viscous damping: what impacts do not
-// end soon, nothing ends.
-SteadyRule rule_for(const Scene& scene, double impacts) {
-  constexpr double natural_period = 2 * std::numbers::pi, impacts_of_a_motion = 20'000;
-  constexpr std::int64_t least = 500, hundred = 100;
-  SteadyRule rule;
-  rule.tolerance = 1e-7;
-  if (scene.damping_ratio == 0) rule.max_periods = least;
-  if (impacts > 0) {
-    const double periods =
-        std::min(double(rule.max_periods), impacts_of_a_motion / (impacts * natural_period));
-    rule.max_periods = std::max(least, static_cast<std::int64_t>(periods) / hundred * hundred);
-  }
-  return rule;
-}
-
 Scene at_frequency(Scene scene, double frequency) {
   scene.force_frequency = frequency;
   return scene;
 }
 
+double locked_resonance(const Scene& scene) { return 1 / square_root(1 + scene.mass_ratio); }
+
+// Impacts in a period of the force, at the resonances from the release on, where there are more.
+double impacts_in_a_period(const Scene& scene, const Engine& engine) {
+  constexpr std::int64_t periods = 100;
+  double most = 0;
+  for (const double resonance : {locked_resonance(scene), 1.0}) {
+    const auto watched =
+        ForcedScene(at_frequency(scene, resonance), engine).watch(release_of(scene), periods);
+    most = std::max(most, double(watched.impacts[0] + watched.impacts[1]) / double(periods));
+  }
+  return most;
+}
+
+// Fewer periods of the force where they have many impacts, and without viscous damping: what impacts do not
+// end soon, nothing ends.
+SteadyRule rule_for(const Scene& scene, const Engine& engine) {
+  constexpr double impacts_of_a_motion = 20'000;
+  constexpr std::int64_t least = 500, hundred = 100;
+  SteadyRule rule;
+  rule.tolerance = 1e-7;
+  if (scene.damping_ratio == 0) rule.max_periods = least;
+  if (const double impacts = impacts_in_a_period(scene, engine); impacts > 0) {
+    const double periods = std::min(double(rule.max_periods), impacts_of_a_motion / impacts);
+    rule.max_periods = std::max(least, static_cast<std::int64_t>(periods) / hundred * hundred);
+  }
+  return rule;
+}
+
 std::vector<double> frequencies_for(const Scene& scene, const Engine& engine) {
   constexpr double distinct = 5e-4;  // relative; closer ones are one
-  const double locked = 1 / square_root(1 + scene.mass_ratio), given = scene.force_frequency;
+  const double locked = locked_resonance(scene), given = scene.force_frequency;
   std::vector<double> all{0.97 * given, 1.03 * given};
   for (const double resonance : {locked, 1.0})
     for (const double away : {0.0, 0.002, 0.004, 0.007, 0.012, 0.02, 0.03, 0.045, 0.06, 0.08, 0.11, 0.15})
@@ -223,10 +236,9 @@ std::vector<PointRange> ForcedResponse::two_motions() const {
   return ranges;
 }
 
-ForcedResponse forced_response(const Scene& scene, const Engine& engine, double impacts,
-                               const Threads& threads,
+ForcedResponse forced_response(const Scene& scene, const Engine& engine, const Threads& threads,
                                const std::function<void(std::int64_t done)>& progress) {
-  Sweeper sweeper(scene, engine, rule_for(scene, impacts), threads, progress);
+  Sweeper sweeper(scene, engine, rule_for(scene, bounded(engine)), threads, progress);
   sweeper.sweep_through(frequencies_for(scene, engine));
   for (int round = 0; round < 2; ++round) sweeper.refine();
   sweeper.confirm();

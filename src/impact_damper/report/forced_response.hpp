@@ -61,11 +61,9 @@ struct ForcedResponse {
 
 // The scene under its force at some 60 frequencies, closest near the resonances of the empty box and of the
 // locked mass; more about the largest amplitude. The way up begins with the scene's release at the lowest
-// frequency. `impacts` is about how many there are in a time of 1/Omega_n: where there are many, motions are
-// followed for fewer periods of the force. The scene must have a force; the engine is exact or restitution
+// frequency. The scene must have a force; the engine is exact or restitution
 // (problems_of). `progress` is called with the number of motions that are done. Equal for all `threads`.
-ForcedResponse forced_response(const Scene& scene, const Engine& engine, double impacts,
-                               const Threads& threads,
+ForcedResponse forced_response(const Scene& scene, const Engine& engine, const Threads& threads,
                                const std::function<void(std::int64_t done)>& progress);
 
 }  // namespace impact_damper
