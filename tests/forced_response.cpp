@@ -176,14 +176,14 @@ TEST_CASE("where the two ways differ each motion keeps its own amplitude in a fu
   }
 }
 
-TEST_CASE("two motions differ by more than a hundredth and by more than three times their scatter") {
+TEST_CASE("two motions differ by more than a twentieth and by more than three times their scatter") {
   const auto differ = [](const ArrivedMotion& a, const ArrivedMotion& b) {
     const bool there = ResponsePoint{1, a, b}.has_two_motions();
     CHECK(ResponsePoint{1, b, a}.has_two_motions() == there);
     return there;
   };
-  CHECK(differ(made_up(1), made_up(0.98)));
-  CHECK_FALSE(differ(made_up(1), made_up(0.995)));
+  CHECK(differ(made_up(1), made_up(0.94)));
+  CHECK_FALSE(differ(made_up(1), made_up(0.96)));
   CHECK(differ(made_up(1), made_up(0.8, 0.066)));
   CHECK_FALSE(differ(made_up(1), made_up(0.8, 0.067)));
   CHECK_FALSE(differ(made_up(1, 0.048), made_up(0.8, 0.048)));

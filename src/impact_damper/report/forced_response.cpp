@@ -19,12 +19,14 @@ constexpr std::array<Way, 2> both_ways{&ResponsePoint::rising, &ResponsePoint::f
 // Of a steady motion's power (M12.9). Over 500 periods the energy of a chaotic one may differ at both ends.
 constexpr double largest_imbalance = 0.2;
 
-// Whether two amplitudes differ by more than can be seen and than they scatter (M12.8).
+// Whether two amplitudes differ by more than visible_difference, of the larger one, and than they scatter
+// (M12.8).
 bool amplitudes_differ(const ArrivedMotion& a, double amplitude, const ArrivedMotion& b) {
-  constexpr double visible = 0.01, deviations = 3;
+  constexpr double deviations = 3;
   const double sa = a.steady.amplitude_scatter, sb = b.steady.amplitude_scatter;
   return std::abs(amplitude - b.amplitude()) >
-         std::max(visible * std::max(amplitude, b.amplitude()), deviations * square_root(sa * sa + sb * sb));
+         std::max(visible_difference * std::max(amplitude, b.amplitude()),
+                  deviations * square_root(sa * sa + sb * sb));
 }
 
 // Each run is of eight periods of the force or of a tenth of `mean_periods`: what needs more than these is

@@ -13,6 +13,9 @@
 
 namespace impact_damper {
 
+// Motions whose amplitudes differ by less, relative to the larger one, count as the same (M12.8).
+inline constexpr double visible_difference = 0.05;
+
 // The motion at one frequency, arrived at in one of the two ways.
 struct ArrivedMotion {
   SteadyState steady;  // without means if a budget of the engine has ended it
@@ -32,7 +35,7 @@ struct ResponsePoint {
   double frequency = 0;
   ArrivedMotion rising, falling;
 
-  // Both are known, neither changes, and their amplitudes differ by more than they scatter.
+  // Both are known, neither changes, and their amplitudes differ (M12.8).
   bool has_two_motions() const;
 };
 

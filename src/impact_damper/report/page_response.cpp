@@ -79,10 +79,11 @@ std::string two_motions_sentences(const Findings& findings) {
   const ForcedResponse& response = findings.response;
   const ResponsePoint* const most = most_different(response);
   if (!most)
-    return "Rising or falling, the frequency leads to the same amplitudes where the motions are steady" +
+    return "Rising or falling, the frequency leads to the same amplitudes within " +
+           percent_html(visible_difference) + ", where the motions are steady" +
            std::string(std::ranges::all_of(response.points, repeats)
                            ? ""
-                           : ", within the scatter of those that do not repeat") +
+                           : ", and within the scatter of those that do not repeat") +
            ". A motion that neither way meets is still possible, from another release. ";
   std::string text = "Two steady motions are possible " + ranges_in_words(quantities, response) +
                      ": which of them appears depends on how one arrives. At " +
