@@ -94,7 +94,7 @@ TEST_CASE("what a scene has nothing of is not drawn") {
         std::vector<std::string>{"decay", "response", "phase", "begin", "best", "prediction"});
 }
 
-TEST_CASE("the response is drawn from the runs, the closed forms beside it where they are finite") {
+TEST_CASE("each motion of the response is drawn once, the closed forms beside it where they are finite") {
   Scene forced;
   forced.x0 = 0;
   forced.force_amplitude = 0.1;
@@ -102,12 +102,23 @@ TEST_CASE("the response is drawn from the runs, the closed forms beside it where
   forced.until_time = 200;
   const Findings findings = examined(forced);
   const std::vector<Drawing> drawings = drawings_of(findings);
-  const TableBlock& curve = block(drawings, "response", "curve");
-  REQUIRE(curve.columns[0].values.size() == findings.response.points.size());
-  for (std::size_t i = 0; i < findings.response.points.size(); ++i) {
-    CHECK(curve.columns[0].values[i] == findings.response.points[i].frequency);
-    CHECK(curve.columns[1].values[i] == findings.response.points[i].amplitude.mean);
+  const auto response = std::ranges::find(drawings, "response", &Drawing::name);
+  REQUIRE(response != drawings.end());
+  std::size_t drawn = 0;
+  for (const TableBlock& each : response->table.blocks) {
+    const bool rises = each.name.starts_with("rising"), falls = each.name.starts_with("falling");
+    if (!rises && !falls) continue;
+    const bool is_open = each.name.ends_with("-open");
+    for (std::size_t i = 0; i < each.columns[0].values.size(); ++i, ++drawn) {
+      const auto point =
+          std::ranges::find(findings.response.points, each.columns[0].values[i], &ResponsePoint::frequency);
+      REQUIRE(point != findings.response.points.end());
+      const SteadyState& steady = (rises ? point->rising : point->falling).steady;
+      CHECK(each.columns[1].values[i] == steady.means->amplitude);
+      CHECK(is_open == !steady.period);
+    }
   }
+  CHECK(drawn == 2 * findings.response.points.size());
   for (const auto& [name, mass] : {std::pair{"locked", 1.02}, std::pair{"empty", 1.0}}) {
     const TableBlock& form = block(drawings, "response", name);
     REQUIRE(form.columns[0].values.size() > 100);

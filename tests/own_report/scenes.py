@@ -28,10 +28,16 @@ SCENES = {
                   "phase": "no impact lies between", "loads": "no impact", "energy": "There are no impacts", "loss": "viscous damping alone"},
                   ["decay", "begin", "prediction"]),
     "forced from rest": (["--x0", "0", "--force-amplitude", "0.05", "--until-time", "600"],
-                         {"response": "without bound|locked to its box|over the last quarter", "header": "At its worst frequency"},
+                         {"response": "without bound|locked to its box|not steady yet", "header": "At its worst frequency"},
                          ["decay", "response", "phase", "begin", "best", "prediction"]),
-    "forced in units": (["--scene", "forced.json"], {"header": "locked to its box", "response": "Hz", "loads": "in an hour|an assumption"},
+    "forced in units": (["--scene", "forced.json"], {"header": "locked to its box", "response": "Hz|the same amplitudes", "loads": "in an hour|an assumption"},
                         ["decay", "response", "phase", "begin", "best", "prediction"]),
+    "forced, given up": (["--x0", "0.3", "--force-amplitude", "0.01", "--damping-ratio", "0.01", "--until-time", "100", "--max-impacts", "20"],
+                         {"response": "were given up, because of too many impacts|not in this comparison"}, ["decay", "response", "begin", "best", "prediction"]),
+    "two motions": (["--scene", "wind.json"], {"header": "Two steady motions are possible", "response": "depends on how one arrives|do not repeat"},
+                    ["decay", "response", "phase", "begin", "best", "prediction"]),
+    "worst not periodic": (["--scene", "gale.json"], {"response": "At its worst frequency the motion does not repeat"},
+                           ["decay", "response", "phase", "begin", "best", "prediction"]),
     "overdamped": (["--damping-ratio", "3", "--until-time", "50"], {"decay": "not one whole half cycle",
                    "loss": "Without half cycles", "prediction": "no amplitude", "header": "times critically"}, ["begin"]),
     "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound", "loads": "rigid"},
@@ -179,19 +185,118 @@ def loads(page, run, scales):
     holds(page, "loads", largest * (scales[2] / scales[1] * 1000 if scales else 1), "largest force", 1e-3)
 
 
-def response(page, run, scales):
-    """The amplitudes of the two linear oscillators, by solving for their complex amplitude and trying frequencies."""
+def linear_amplitude(scene, mass, omega):
+    stiffness = complex(1 - mass * omega * omega, 2 * scene["damping_ratio"] * omega)
+    return scene["force_amplitude"] / abs(stiffness) if stiffness else math.inf
+
+
+def worst_linear(scene, mass):
+    """The largest amplitude, by trying frequencies about the resonance."""
+    if not scene["damping_ratio"]:
+        return math.inf
+    return max(linear_amplitude(scene, mass, mass ** -0.5 * (1 + 1e-6 * i)) for i in range(-2000, 2001))
+
+
+def marks(text):
+    """The triangles of the response's drawing, (frequency, amplitude) as its axes measure them: by way, and whether open."""
+    drawing = re.search(r'id="figure-response">(.*?)</figure>', text, re.S)[1]
+    axes, = json.loads(html.unescape(re.search(r"<metadata>(.*?)</metadata>", drawing)[1]))["axes"]
+    height = float(re.search(r'viewBox="0 0 \S+ (\S+)"', drawing)[1])
+
+    def value(axis, at, is_logarithmic):
+        _, low, high, begin, end = axis
+        part = (at - begin) / (end - begin)
+        return low * (high / low) ** part if is_logarithmic else low + part * (high - low)
+
+    found = {"rising": {False: [], True: []}, "falling": {False: [], True: []}}
+    kinds = {"8": ("rising", False), "7": ("rising", True), "10": ("falling", False), "9": ("falling", True)}
+    for group in re.findall(r'<g id="[^"]*gnuplot_plot_[^>]*>(.*?)(?=<g id="[^"]*gnuplot_plot_|\Z)', drawing, re.S):
+        uses = re.findall(r"""<use xlink:href='#[^']*gpPt(\d+)' transform='translate\(([\d.]+),([\d.]+)\)""", group)
+        for kind, x, y in uses[:-1] if group.startswith("<title>") else uses:  # the last is the legend's
+            way, is_open = kinds[kind]
+            found[way][is_open].append((value(axes["x"], float(x), False), value(axes["y"], height - float(y), "y" in axes["log"])))
+    return found
+
+
+def ranges_told(words):
+    return re.search(r"Two steady motions are possible (.*?): which", words)
+
+
+def response(page, text, run, scales):
+    """The amplitudes of the two linear oscillators, by solving for their complex amplitude; those with the damper as they
+    are drawn, as far as they can be read off; the largest, by a long run there."""
     scene, length = run["scene"], scales[1] if scales else 1
+    words = page.words["response"]
     for mass in (1 + scene["mass_ratio"], 1):
-        def amplitude(omega):
-            stiffness = complex(1 - mass * omega * omega, 2 * scene["damping_ratio"] * omega)
-            return scene["force_amplitude"] / abs(stiffness) if stiffness else math.inf
-        given = amplitude(scene["force_frequency"])
-        if math.isfinite(given):
-            holds(page, "response", given * length, f"amplitude with the mass {mass}")
-        if scene["damping_ratio"]:
-            around = [mass ** -0.5 * (1 + 1e-6 * i) for i in range(-2000, 2001)]
-            holds(page, "response", max(map(amplitude, around)) * length, f"worst amplitude with the mass {mass}", 1e-6)
+        given = linear_amplitude(scene, mass, scene["force_frequency"])
+        for section in ("header", "response") if mass > 1 else ("response",):
+            if math.isfinite(given):
+                holds(page, section, given * length, f"amplitude with the mass {mass}")
+            if scene["damping_ratio"]:
+                holds(page, section, worst_linear(scene, mass) * length, f"worst amplitude with the mass {mass}", 1e-6)
+    drawn = marks(text)
+    count = len(sum((drawn[way][True] + drawn[way][False] for way in drawn), []))
+    given_up = re.search(r"(\d+) motions? (was|were) given up", words)
+    holds(page, "response", (count + int(given_up[1] if given_up else 0)) / 2, "number of frequencies")
+    unsteady = re.search(r"(\d+) of these (is|are) not steady yet", words)
+    not_periodic = len(drawn["rising"][True]) + len(drawn["falling"][True])
+    check(("do not repeat within" in words) == (not_periodic > 1), f"{name}: {not_periodic} motions are drawn as not periodic")
+    if not_periodic > 1:
+        holds(page, "response", not_periodic, "number of motions that do not repeat")
+    check(not unsteady or 0 < int(unsteady[1]) <= not_periodic, f"{name}: more are not steady than do not repeat")
+    every = {way: sorted(drawn[way][False] + drawn[way][True]) for way in drawn}
+    x_unit, y_unit = 1, 1
+    if scales:
+        told = json.loads(html.unescape(re.search(r'id="figure-response">.*?<metadata>(.*?)</metadata>', text, re.S)[1]))["axes"][0]
+        x_unit, y_unit = (UNITS[told[axis][0].rpartition(" in ")[2]] for axis in "xy")
+    pixel = 0.004  # of an amplitude, on the logarithmic axis
+    largest = {way: max(amplitude for _, amplitude in every[way]) / y_unit for way in every}
+    for way in every:
+        holds(page, "response", largest[way], f"largest amplitude drawn, the frequency {way}", pixel)
+        given = scene["force_frequency"] * (x_unit / scales[0] / 2 / math.pi if scales else 1)
+        at = min(every[way], key=lambda mark: abs(mark[0] - given))
+        if near(at[0], given, 1e-3):
+            holds(page, "response", at[1] / y_unit, f"amplitude at the frequency given, {way}", pixel)
+        else:
+            check(given_up, f"{name}: {way}, there is no mark at the frequency given")
+    worst = max(largest.values())
+    holds(page, "header", worst, "largest amplitude", pixel)
+    twice = re.search(r"its largest amplitude is first ([\d.]+).*?, then ([\d.]+)", words)
+    if twice:
+        check(near(float(twice[2]), worst, 0.01), f"{name}: followed again, {twice[2]} is not the largest amplitude {worst}")
+        check("not rely" in words or near(float(twice[1]), worst, 0.4), f"{name}: from {twice[1]} to {twice[2]}, and it counts as steady")
+    locked = worst_linear(scene, 1 + scene["mass_ratio"])
+    if math.isfinite(locked) and "not rely" not in words:
+        shown = next((number for number in page.numbers["header"] if near(number, worst, pixel)), math.nan)
+        for section in ("header", "response"):
+            holds(page, section, 100 * abs(1 - shown / (locked * length)), "reduction of the largest amplitude", 1e-6)
+            check(("off the largest" if shown < locked * length else "to the largest") in page.words[section], f"{name}: {section}: larger or smaller?")
+    # A long run from the scene's own release, at the worst frequency: its last 500 periods.
+    if scene["damping_ratio"] and not given_up:
+        number = r"[\d.]+"
+        told = re.search(f"At its worst frequency, ({number})" + (f".Hz \\(({number})" if scales else ""), page.words["header"])
+        omega = min(page.numbers["header"], key=lambda number: abs(number - float(told[told.lastindex])))  # with all its digits
+        periods = 4000
+        long = json.loads(call("run", *options, "--force-frequency", repr(omega), "--until-time", repr(periods * 2 * math.pi / omega),
+                               "--max-half-cycles", "1000000", "--max-impacts", "1000000").stdout)["half_cycles"]
+        last = max(a for t, a in zip(long["peak_time"], long["amplitude"]) if t > (periods - 500) * 2 * math.pi / omega) * length
+        repeats = any(near(mark[1] / y_unit, worst, pixel) for way in drawn for mark in drawn[way][False])
+        check(near(last, worst, 0.01 if repeats else 0.2) or ranges_told(words) and last < worst,
+              f"{name}: at the worst frequency a long run has {last}, not {worst}")
+    # Where both motions repeat and differ the page says so, and its range reaches there.
+    ranges = ranges_told(words)
+    differ = [a[0] for a, b in zip(sorted(drawn["rising"][False]), sorted(drawn["falling"][False]))
+              if drawn["rising"][True] == drawn["falling"][True] == [] and not near(a[1], b[1], 0.06)]
+    check(bool(ranges) or not differ, f"{name}: the two ways differ at {differ}, and the page does not say so")
+    if ranges:
+        at = re.search(r"At ([\d.]+)\D*(?:\(([\d.]+)\D*\))? the amplitude is ([\d.]+).*? if the frequency has risen to there, and ([\d.]+)", words)
+        frequency = float(at[1]) * x_unit
+        for end in re.findall(r"(?:between|and|at) ([\d.]+).(?:Hz|Ω)", ranges[1]):
+            pair = [min(every[way], key=lambda mark: abs(mark[0] - float(end) * x_unit)) for way in every]
+            check(not near(pair[0][1], pair[1][1], 0.045), f"{name}: the two ways do not differ at {end}")
+        for way, told in zip(("rising", "falling"), at.groups()[2:]):
+            there = min(every[way], key=lambda mark: abs(mark[0] - frequency))
+            check(near(there[1] / y_unit, float(told), 0.01), f"{name}: {way}, the amplitude drawn at {frequency} is {there[1]}, not {told}")
 
 
 # How many of a unit make a second, a millimetre or a hertz.
@@ -238,7 +343,7 @@ def in_page(length, scales):
     return 1e3 * value if scales and value < 0.1 else value
 
 
-def compare(page, run, scales):
+def compare(page, text, run, scales):
     """The numbers of the page against those of a run, read anew. `scales` are (s, mm, J), or nothing."""
     rows, energy = run["half_cycles"], run["energy"]
     times, amplitudes = rows["peak_time"], rows["amplitude"]
@@ -266,7 +371,7 @@ def compare(page, run, scales):
         for value in shown:
             holds(page, "decay", value * (scales[1] if scales else 1), "amplitude in the last quarter")
         check(len(shown) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
-        response(page, run, scales)
+        response(page, text, run, scales)
         return
     if amplitudes[0] == max(amplitudes[:2]):
         for part in (0.5, 0.1, 0.01):
@@ -306,6 +411,8 @@ given = json.loads(example.read_text())
 forced = {**given, "exciting_force": 10, "exciting_frequency": 3.18, "until_seconds": 60}
 del forced["until_millimetres"]
 (folder / "forced.json").write_text(json.dumps(forced))
+for wind, newtons in {"wind": 2, "gale": 2.4}.items():
+    (folder / f"{wind}.json").write_text(json.dumps({**forced, "exciting_force": newtons, "exciting_frequency": 3.15, "initial_displacement": 0}))
 for name in sys.argv[4:] or SCENES:
     options, words, drawn = SCENES[name]
     file = folder / f"{name.replace(' ', '-').replace(chr(39), '')}.html"
@@ -317,7 +424,7 @@ for name in sys.argv[4:] or SCENES:
     page = Page(text)
     for fault in page.faults:
         check(False, f"{name}: {fault}")
-    forced = "--force-amplitude" in options or "forced.json" in options
+    forced = "--force-amplitude" in options or options[-1] in ("forced.json", "wind.json", "gale.json")
     sections = ["response" if forced and each == "loss" else each for each in SECTIONS]
     check([s for s in page.numbers if s] == sections, f"{name}: sections {list(page.numbers)}")
     check(page.figures == [f"figure-{each}" for each in drawn], f"{name}: figures {page.figures}")
@@ -335,7 +442,7 @@ for name in sys.argv[4:] or SCENES:
         scene = json.loads((folder / options[1]).read_text())
         mass, stiffness, length = scene["mass"], scene["stiffness"], scene["clearance"]
         scales = (math.sqrt(mass / stiffness), length, stiffness * length * length * 1e-6)
-    compare(page, run, scales)
+    compare(page, text, run, scales)
     compare_axes(name, text, run, scales)
 
     before = file.stat().st_mtime_ns

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
-#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
@@ -15,52 +13,10 @@
 namespace impact_damper {
 namespace {
 
-constexpr double natural_period = 2 * std::numbers::pi;
-constexpr std::int64_t impacts_of_one_frequency = 20'000, steps_of_one_frequency = 1'000'000;
-
 double loss_at(double restitution, double amplitude) {
   // At the fold itself rounding decides; a little above there is a motion.
   const auto motion = single_impact(restitution, amplitude * (1 + 1e-12));
   return motion ? motion->loss : 0;
-}
-
-// Long enough for the viscous transient to fall to a hundredth before the last half, within bounds.
-double settling_time(const Scene& scene) {
-  constexpr double least = 200 * natural_period, most = 1000 * natural_period;
-  const double viscous = scene.damping_ratio > 0 ? 10 * (1 + scene.mass_ratio) / scene.damping_ratio : most;
-  return std::max(std::clamp(viscous, least, most), 50 * natural_period / scene.force_frequency);
-}
-
-void sort_frequencies(std::vector<double>& frequencies) {
-  constexpr double distinct = 1e-4;  // relative; closer ones are one
-  std::ranges::sort(frequencies);
-  const auto behind = std::unique(frequencies.begin(), frequencies.end(),
-                                  [](double a, double b) { return b < a * (1 + distinct); });
-  frequencies.erase(behind, frequencies.end());
-}
-
-std::vector<double> first_frequencies(const Scene& scene) {
-  const double locked = 1 / std::sqrt(1 + scene.mass_ratio), given = scene.force_frequency;
-  std::vector<double> frequencies{given, 0.97 * given, 1.03 * given};
-  for (const double resonance : {locked, 1.0})
-    for (const double away : {0.0, 0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0.1, 0.18})
-      for (const double sign : {-1.0, 1.0}) frequencies.push_back(resonance * (1 + sign * away));
-  for (int i = 1; i <= 5; ++i) frequencies.push_back(locked + (1 - locked) * i / 6);
-  sort_frequencies(frequencies);
-  return frequencies;
-}
-
-// Three more on either side of the worst one.
-std::vector<double> closer_frequencies(const FrequencyResponse& response) {
-  const auto worst = static_cast<std::size_t>(&response.worst() - response.points.data());
-  std::vector<double> frequencies;
-  const auto between = [&](std::size_t i) {
-    const double from = response.points[i].frequency, to = response.points[i + 1].frequency;
-    for (int k = 1; k <= 3; ++k) frequencies.push_back(from + (to - from) * k / 4);
-  };
-  if (worst > 0) between(worst - 1);
-  if (worst + 1 < response.points.size()) between(worst);
-  return frequencies;
 }
 
 }  // namespace
@@ -130,45 +86,6 @@ std::optional<SteadyAmplitude> steady_amplitude(const HalfCycles& half_cycles) {
   const auto [least, greatest] = std::minmax_element(all.end() - quarter, all.end());
   const double mean = mean_from(quarter), before = mean_from(2 * quarter);
   return SteadyAmplitude{*least, mean, *greatest, std::abs(mean - before) <= much * std::max(mean, before)};
-}
-
-const ResponsePoint& FrequencyResponse::worst() const {
-  return *std::ranges::max_element(points, {},
-                                   [](const ResponsePoint& point) { return point.amplitude.mean; });
-}
-
-FrequencyResponse frequency_response(const Scene& scene, const Engine& engine, const Threads& threads,
-                                     const std::function<void(std::size_t done)>& progress) {
-  const Engine bounded = std::visit(
-      [](auto each) -> Engine {
-        each.budget.max_impacts = std::min(each.budget.max_impacts, impacts_of_one_frequency);
-        each.max_steps = std::min(each.max_steps, steps_of_one_frequency);
-        return each;
-      },
-      engine);
-  FrequencyResponse response;
-  response.time = settling_time(scene);
-  std::size_t done = 0;
-  const auto add = [&](const std::vector<double>& frequencies) {
-    const auto batch = static_cast<std::size_t>(number_of(threads));
-    for (std::size_t from = 0; from < frequencies.size(); from += batch) {
-      std::vector<Scene> scenes;
-      for (std::size_t i = from; i < std::min(from + batch, frequencies.size()); ++i) {
-        scenes.push_back(scene);
-        scenes.back().force_frequency = frequencies[i];
-        scenes.back().until_time = response.time;
-        scenes.back().until_amplitude.reset();
-      }
-      for (const Run& run : simulate_scenes(scenes, bounded, Record{}, threads))
-        if (const auto amplitude = steady_amplitude(*run.half_cycles))
-          response.points.push_back({run.scene.force_frequency, *amplitude});
-      progress(done += scenes.size());
-    }
-    std::ranges::sort(response.points, {}, &ResponsePoint::frequency);
-  };
-  add(first_frequencies(scene));
-  for (int round = 0; round < 2 && !response.empty(); ++round) add(closer_frequencies(response));
-  return response;
 }
 
 }  // namespace impact_damper

@@ -3,12 +3,8 @@
 // docs/mathematics.md, chapter 12. No function checks its arguments: scenes must be valid (problems_of).
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <optional>
-#include <vector>
 
-#include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -69,24 +65,5 @@ struct SteadyAmplitude {
 };
 // Absent with fewer than 12 half cycles.
 std::optional<SteadyAmplitude> steady_amplitude(const HalfCycles& half_cycles);
-
-struct ResponsePoint {
-  double frequency = 0;
-  SteadyAmplitude amplitude;
-};
-// The scene under its force at about 65 frequencies, in ascending order, each run from the scene's own
-// release. They lie closest near the resonances of the empty box and of the locked mass, near the frequency
-// of the scene and, added last, where the mean amplitude is largest. Each run lasts `time`, but ends earlier
-// at 20 000 impacts or a million steps of the engine, or at a smaller budget of `engine`; its last quarter
-// then ends there. A frequency with fewer than 12 half cycles has no point. `progress` is called with the
-// number of runs that are done. Throws what simulate() throws.
-struct FrequencyResponse {
-  std::vector<ResponsePoint> points;
-  double time = 0;  // length of each run
-  bool empty() const { return points.empty(); }
-  const ResponsePoint& worst() const;  // largest mean amplitude; only if not empty
-};
-FrequencyResponse frequency_response(const Scene& scene, const Engine& engine, const Threads& threads,
-                                     const std::function<void(std::size_t done)>& progress);
 
 }  // namespace impact_damper

@@ -132,7 +132,7 @@ TableBlock loss_band(const Findings& findings) {
 }
 
 // Frequencies at which the closed forms are drawn: the runs' own and some between each two.
-std::vector<double> drawn_frequencies(const FrequencyResponse& response) {
+std::vector<double> drawn_frequencies(const ForcedResponse& response) {
   constexpr int between = 8;
   std::vector<double> frequencies;
   for (std::size_t i = 0; i + 1 < response.points.size(); ++i) {
@@ -143,24 +143,46 @@ std::vector<double> drawn_frequencies(const FrequencyResponse& response) {
   return frequencies;
 }
 
+// The motions of one way that are periodic, or those that are not; absent if there are none.
+std::optional<TableBlock> arrived_block(const ForcedResponse& response, ArrivedMotion ResponsePoint::*way,
+                                        bool is_periodic, const std::string& name,
+                                        const std::string& legend) {
+  TableBlock block{
+      .name = name,
+      .columns = {{"frequency", "of the force, in units of Omega_n", {}},
+                  {legend,
+                   is_periodic ? "largest |x| of the periodic motion, in units of epsilon"
+                               : "largest |x| of a motion that is not periodic, in units of epsilon",
+                   {}}}};
+  for (const ResponsePoint& point : response.points) {
+    const ArrivedMotion& motion = point.*way;
+    if (!motion.is_known() || motion.is_periodic() != is_periodic) continue;
+    block.columns[0].values.push_back(point.frequency);
+    block.columns[1].values.push_back(motion.amplitude());
+  }
+  if (block.columns[0].values.empty()) return std::nullopt;
+  return block;
+}
+
 std::optional<Drawing> response(const Findings& findings) {
-  if (findings.response.points.size() < least_points) return std::nullopt;
+  const ForcedResponse& all = findings.response;
+  if (all.points.size() < least_points || !all.largest()) return std::nullopt;
   const Scene& scene = findings.subject.scene;
   Drawing drawing = drawing_of(findings, "response", "Amplitude over frequency");
-  TableBlock curve{
-      .name = "curve",
-      .columns = {{"frequency", "of the force, in units of Omega_n", {}},
-                  {"with the damper", "mean amplitude in the last quarter, in units of epsilon", {}}}};
-  for (const ResponsePoint& point : findings.response.points) {
-    curve.columns[0].values.push_back(point.frequency);
-    curve.columns[1].values.push_back(point.amplitude.mean);
-  }
-  drawing.table.blocks.push_back(std::move(curve));
+  const auto add = [&](ArrivedMotion ResponsePoint::*way, const std::string& name,
+                       const std::string& legend) {
+    for (const bool is_periodic : {true, false})
+      if (auto block = arrived_block(all, way, is_periodic, is_periodic ? name : name + "-open",
+                                     is_periodic ? legend : legend + ", not periodic"))
+        drawing.table.blocks.push_back(std::move(*block));
+  };
+  add(&ResponsePoint::rising, "rising", "frequency rising");
+  add(&ResponsePoint::falling, "falling", "frequency falling");
   const auto linear = [&](const std::string& name, const std::string& legend, double mass) {
     TableBlock block{.name = name,
                      .columns = {{"frequency", "of the force, in units of Omega_n", {}},
                                  {legend, "amplitude, in units of epsilon", {}}}};
-    for (const double frequency : drawn_frequencies(findings.response)) {
+    for (const double frequency : drawn_frequencies(all)) {
       const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
       if (!std::isfinite(amplitude)) continue;
       block.columns[0].values.push_back(frequency);
@@ -173,9 +195,7 @@ std::optional<Drawing> response(const Findings& findings) {
   drawing.table.blocks.push_back(
       {.name = "given",
        .columns = {{"frequency", "that the scene gives, in units of Omega_n", {scene.force_frequency}},
-                   {"frequency given",
-                    "its amplitude of the damped motion",
-                    {findings.response.worst().amplitude.mean}}}});
+                   {"frequency given", "the largest amplitude drawn", {all.largest()->motion.amplitude()}}}});
   return drawing;
 }
 

@@ -24,8 +24,10 @@ struct Drawing {
 //   loss         as the table of a figure of the loss factor (reproduction/series.hpp) with one curve, that
 //   of the local
 //                loss factor; closed forms are those of zeta = 0, on which 2 zeta is put; "fold" (amplitude)
-//   response     forced motion: "curve" (frequency, amplitude), "locked" and "empty" likewise, "given"
-//   (frequency) phase        as the table of the figure of phases, but for what the scene has nothing of
+//   response     forced motion: "rising" and "falling" (frequency, amplitude) of the motions that are
+//                periodic, "rising-open" and "falling-open" of those that are not, "locked" and "empty"
+//                likewise, "given" (frequency)
+//   phase        as the table of the figure of phases, but for what the scene has nothing of
 //   begin, best  as the table of a figure of motion
 //   prediction   "curve" (time, spread of the ensemble's amplitudes in percent)
 //

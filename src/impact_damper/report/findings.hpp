@@ -12,6 +12,7 @@
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/report/forced_response.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/units.hpp"
 
@@ -65,7 +66,7 @@ struct Findings {
   double first_peak = 0, last_peak = 0;   // their times
   std::vector<Fall> falls;                // free motion: to a half, a tenth, a hundredth, as far as it got
   std::optional<SteadyAmplitude> steady;  // forced motion with enough half cycles
-  FrequencyResponse response;             // forced motion
+  ForcedResponse response;                // forced motion; empty if no half cycle has a peak
   std::optional<Loads> loads;             // if there is an impact
 
   LossFactor loss;                // free motion, before impact failure; empty where it is too short
@@ -92,7 +93,7 @@ struct Findings {
 };
 inline constexpr double lost_spread = 0.01;
 
-// Told now and then what is being done, for whoever waits.
+// Told now and then what is being done, for whoever waits; from any thread.
 using Progress = std::function<void(const std::string& doing)>;
 
 // Simulates the subject, and ensemble.members - 1 others like it. Throws what simulate() throws.

@@ -25,9 +25,11 @@ std::string caption_of(const std::string& name) {
            "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
            "put on. Dashed: where the closed form ends and impacts fail.";
   if (name == "response")
-    return "The amplitude under the same force over its frequency: each dot is a run with the damper. "
-           "Dashed: the "
-           "secondary mass locked to its box, and the box empty. Upright: the frequency given.";
+    return "The largest amplitude under the same force over its frequency. Triangles: with the damper, "
+           "pointing "
+           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
+           "periodic, or not steady yet. Dashed: the secondary mass locked to its box, and the box empty. "
+           "Upright: the frequency given.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "

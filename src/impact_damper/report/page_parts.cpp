@@ -156,11 +156,6 @@ std::string clearance_html(const Findings& findings) {
   return paragraph_html(text) + table_html(table);
 }
 
-// "is 125 mm (12.5 ε)", or that there is no bound.
-std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
-  return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
-}
-
 }  // namespace
 
 std::string summary_html(const Findings& findings) {
@@ -174,20 +169,8 @@ std::string summary_html(const Findings& findings) {
     text = fall_in_short(findings);
   else if (findings.steady)
     text = "Under the exciting force the amplitude is in the end " +
-           quantities.length(findings.steady->mean) + " on average. ";
-  if (findings.steady && !findings.response.empty()) {
-    const Scene& scene = findings.subject.scene;
-    const double force = scene.force_amplitude, zeta = scene.damping_ratio;
-    const double locked = 1 + scene.mass_ratio;
-    const ResponsePoint& worst = findings.response.worst();
-    text += "With the secondary mass locked to its box it would be " +
-            amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) +
-            ". At its worst frequency, " + quantities.frequency(worst.frequency) + ", the same force " +
-            (worst.amplitude.settled ? "holds" : "drives") + " the damped mass at " +
-            (worst.amplitude.settled ? "" : "an amplitude that is not settled yet, ") +
-            quantities.length(worst.amplitude.mean) + "; with the secondary mass locked the worst is " +
-            amplitude_or_none(quantities, worst_linear_response(force, locked, zeta).amplitude) + ". ";
-  }
+           quantities.length(findings.steady->mean) + " on average, " +
+           quantities.length(findings.steady->greatest) + " at most. " + response_in_short(findings);
   if (findings.best)
     text += "It is damped best at an amplitude of " + quantities.length(findings.best->amplitude) +
             ", as by " + as_viscous(findings.best->eta) + ". ";
@@ -275,46 +258,6 @@ std::string energy_html(const Findings& findings) {
                                     ? "All of it adds up, to the last digit."
                                     : "When all are added up, " + number_html(balance.residual) +
                                           " of the energy that went through is left over: rounding."));
-}
-
-std::string response_html(const Findings& findings) {
-  const Quantities quantities(findings.subject.scales);
-  const Scene& scene = findings.subject.scene;
-  if (findings.response.empty())
-    return paragraph_html("There are too few half cycles to speak of a steady motion at any frequency.");
-  const double force = scene.force_amplitude, zeta = scene.damping_ratio, given = scene.force_frequency;
-  const ResponsePoint& worst = findings.response.worst();
-  HtmlTable table{.caption = "Amplitude under the same force, at the frequency given and at the worst one",
-                  .heads = {"", "at " + quantities.frequency(given), "at its worst frequency", "that is at"},
-                  .rows = {}};
-  table.rows.push_back({"with the damper",
-                        findings.steady ? quantities.length(findings.steady->mean) : "too short a run",
-                        quantities.length(worst.amplitude.mean), quantities.frequency(worst.frequency)});
-  const auto linear = [&](const std::string& what, double mass) {
-    const WorstResponse most = worst_linear_response(force, mass, zeta);
-    table.rows.push_back({what, amplitude_or_none(quantities, linear_response(force, mass, zeta, given)),
-                          amplitude_or_none(quantities, most.amplitude),
-                          quantities.frequency(most.frequency)});
-  };
-  linear("the secondary mass locked to its box", 1 + scene.mass_ratio);
-  linear("the box empty", 1);
-  std::string text =
-      "The secondary mass also weighs on the primary one and shifts its resonance. What the impacts do is "
-      "the difference to the secondary mass locked to its box, over all frequencies; at a single frequency "
-      "most of "
-      "it may be "
-      "the shift. ";
-  std::string made =
-      "With the damper each frequency is a run of its own, from the scene's release, of " +
-      quantities.time(findings.response.time) +
-      "; the amplitude is the mean over the last quarter of its half cycles. Another release may "
-      "lead to another steady motion. ";
-  if (worst.amplitude.greatest > 1.02 * worst.amplitude.mean)
-    made += "At the worst frequency the largest half cycle has " +
-            quantities.length(worst.amplitude.greatest) + ". ";
-  if (!worst.amplitude.settled)
-    made += "There the amplitude is not settled within that time: it may become larger, or smaller. ";
-  return paragraph_html(text) + table_html(table) + paragraph_html(made);
 }
 
 std::string loads_html(const Findings& findings) {

@@ -13,6 +13,8 @@ std::string scene_html(const Findings& findings);
 std::string decay_html(const Findings& findings);     // of a forced motion: its amplitudes
 std::string loss_html(const Findings& findings);      // of a free motion
 std::string response_html(const Findings& findings);  // of a forced one
+// The same in a few sentences; nothing if no motion is known.
+std::string response_in_short(const Findings& findings);
 std::string loads_html(const Findings& findings);
 std::string regimes_html(const Findings& findings);
 std::string motion_html(const Findings& findings);

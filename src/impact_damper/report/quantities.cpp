@@ -78,10 +78,11 @@ std::string count_html(std::int64_t count) { return data_html(std::to_string(cou
 
 std::string percent_html(double part) { return number_html(100 * part) + no_break + "%"; }
 
-std::string Quantities::both(double value, double scale, std::string_view unit, std::string_view by) const {
-  std::string plain = number_html(value) + no_break + std::string(by);
+std::string Quantities::both(double value, double scale, std::string_view unit, std::string_view by,
+                             int digits) const {
+  std::string plain = number_html(value, digits) + no_break + std::string(by);
   if (!scales_) return plain;
-  return number_html(value * scale) + no_break + std::string(unit) + " (" + plain + ')';
+  return number_html(value * scale, digits) + no_break + std::string(unit) + " (" + plain + ')';
 }
 
 std::string Quantities::length(double value) const {
@@ -106,7 +107,8 @@ std::string Quantities::force(double value) const {
 }
 
 std::string Quantities::frequency(double value) const {
-  return both(value, scales_ ? scales_->frequency() : 1, "Hz", "Ω");
+  constexpr int digits = 4;  // resonances are narrow
+  return both(value, scales_ ? scales_->frequency() : 1, "Hz", "Ω", digits);
 }
 
 std::string Quantities::duration(double value) const {

@@ -38,7 +38,8 @@ class Quantities {
   std::string duration(double value) const;   // of a contact: "0.32 ms (0.0064 /Ω)"
 
  private:
-  std::string both(double value, double scale, std::string_view unit, std::string_view by) const;
+  std::string both(double value, double scale, std::string_view unit, std::string_view by,
+                   int digits = 3) const;
   std::optional<Scales> scales_;
 };
 

@@ -108,12 +108,6 @@ std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
   return {empty, locked};
 }
 
-std::vector<double> values_of(const Axis& axis) {
-  std::vector<double> values;
-  for (std::int64_t i = 0; i < axis.count; ++i) values.push_back(axis.value(i));
-  return values;
-}
-
 void write_rule(JsonWriter& out, const SteadyRule& rule) {
   out.fields("tolerance", rule.tolerance, "longest_period", rule.longest_period, "max_periods",
              rule.max_periods);
@@ -200,7 +194,7 @@ std::string sweep_text(const Scene& scene, const Engine& engine, const SteadyRul
   out.open_object("axis", Layout::one_line);
   write_axis(out, axis);
   out.close();
-  out.field("values", values_of(axis));
+  out.field("values", axis.values());
   for (const Column& column : linear_columns(scene, axis)) out.field(column.name, column.numbers);
   out.open_array("sweeps", Layout::lines);
   for (const Sweep& sweep : sweeps) {

@@ -1,11 +1,18 @@
 #include "impact_damper/steady/sweep.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 namespace impact_damper {
 
 double Axis::value(std::int64_t i) const {
   return i == count - 1 ? to : from + (to - from) * (double(i) / double(count - 1));
+}
+
+std::vector<double> Axis::values() const {
+  std::vector<double> all;
+  for (std::int64_t i = 0; i < count; ++i) all.push_back(value(i));
+  return all;
 }
 
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
@@ -17,33 +24,41 @@ Scene Axis::at(Scene scene, std::int64_t i) const {
   return scene;
 }
 
+std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
+                                             const std::vector<double>& values, const SteadyRule& rule,
+                                             State<double> state, const std::function<void()>& after_each) {
+  std::vector<SteadyState> all;
+  Scene there = scene;
+  for (const double value : values) {
+    there.*number = value;
+    all.push_back(ForcedScene(there, engine).settle(state, rule));
+    state = all.back().state;
+    after_each();
+  }
+  return all;
+}
+
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
                          const std::vector<State<double>>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress) {
   require_none(problems_of(rule));
-  const auto at = [&](std::int64_t i, const State<double>& start) {
-    return ForcedScene(axis.at(released_from(scene, start), i), engine);
-  };
   // What is not valid throws here, before anything is simulated.
   for (const State<double>& start : starts) require_valid(released_from(scene, start), engine, axis);
 
   progress(0);
+  const std::vector<double> upwards = axis.values(), downwards(upwards.rbegin(), upwards.rend());
   std::vector<Sweep> sweeps(starts.size());
   std::atomic<std::int64_t> done{0};
   for_each_index(std::int64_t(starts.size()), threads, [&](std::int64_t n) {
     Sweep& all = sweeps[static_cast<std::size_t>(n)];
-    const auto count = static_cast<std::size_t>(axis.count);
     all.start = starts[static_cast<std::size_t>(n)];
-    all.up.resize(count);
-    all.down.resize(count);
-    State<double> state = all.start;
-    const auto step = [&](std::vector<SteadyState>& way, std::size_t i) {
-      way[i] = at(std::int64_t(i), all.start).settle(state, rule);
-      state = way[i].state;
-      progress(++done);
+    const auto along = [&](const std::vector<double>& values, const State<double>& from) {
+      return steady_states_along(released_from(scene, all.start), engine, axis.number, values, rule, from,
+                                 [&] { progress(++done); });
     };
-    for (std::size_t i = 0; i < count; ++i) step(all.up, i);
-    for (std::size_t i = count; i-- > 0;) step(all.down, i);
+    all.up = along(upwards, all.start);
+    all.down = along(downwards, all.up.back().state);
+    std::ranges::reverse(all.down);
   });
   return sweeps;
 }

@@ -17,11 +17,19 @@ struct Axis {
   std::int64_t count = 2;
 
   double value(std::int64_t i) const;           // 0 <= i < count
+  std::vector<double> values() const;           // all of them
   Scene at(Scene scene, std::int64_t i) const;  // with that value
 };
 
 // Throws InvalidArguments if the scene is not valid (problems_of) at one of the values.
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
+
+// The steady states at some values of a number of the scene, in the order given: the first is approached from
+// `state`, each other one from the one before. `after_each` is called after each of them. Throws
+// InvalidArguments if the scene is not valid at a value.
+std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
+                                             const std::vector<double>& values, const SteadyRule& rule,
+                                             State<double> state, const std::function<void()>& after_each);
 
 // The values of the axis and what the scene does there.
 struct Sweep {
