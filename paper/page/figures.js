@@ -25,7 +25,7 @@ function rounded(number) {
 }
 
 // What gnuplot draws of a curve: lines as chains of points, marks as chains of one. In a group with a legend entry
-// the first line and the first mark are the legend's sample, which is no value.
+// the first line and the last mark are the legend's sample, which is no value.
 function chains_of(element) {
   if (element.tagName === "use") {
     const place = element.getAttribute("transform")?.match(/translate\(([-\d.]+),([-\d.]+)\)/);
@@ -44,7 +44,8 @@ function curves_of(svg) {
   for (const group of svg.querySelectorAll("g[id*=gnuplot_plot_]")) {
     const name = group.querySelector(":scope > title")?.textContent;
     group.querySelector(":scope > title")?.remove();  // or the browser shows it beside the value
-    const samples = {path: Boolean(group.querySelector("text")), use: Boolean(group.querySelector("text"))};
+    const has_legend = Boolean(group.querySelector("text"));
+    const samples = has_legend ? [group.querySelector("path"), [...group.querySelectorAll("use")].at(-1)] : [];
     for (const element of group.querySelectorAll("path, use, polygon")) {
       const colour = colour_of(element);
       if (!curves.has(colour)) curves.set(colour, {colour, name: "", elements: [], chains: []});
@@ -52,8 +53,7 @@ function curves_of(svg) {
       curve.name ||= name ?? "";
       curve.elements.push(element);
       const chains = chains_of(element);
-      if (samples[element.tagName]) chains.shift();
-      samples[element.tagName] = false;
+      if (samples.includes(element)) chains.shift();
       curve.chains.push(...chains);
     }
   }

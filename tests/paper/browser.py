@@ -175,6 +175,25 @@ class Report(unittest.TestCase):
             if SCREENSHOTS and name == "desk":
                 self.page.screenshot(SCREENSHOTS / "hovered.png", "#figure-8")
 
+    def test_every_mark_is_a_value_and_the_legends_sample_is_none(self):
+        self.page.open(PAGE, WIDTHS["desk"])
+        of_curve = """[...document.querySelectorAll("#figure-15 svg g[id*=gnuplot_plot_]")]
+          .find(group => group.querySelector("text") && group.querySelector("use")).querySelectorAll("use")"""
+        for index, is_value in ((0, True), (-1, False)):
+            x, y, across, up = self.page.does(f"""(() => {{
+              const svg = document.querySelector("#figure-15 svg");
+              svg.scrollIntoView({{block: "center"}});
+              const place = [...{of_curve}].at({index}).getAttribute("transform").match(/translate\\(([-\\d.]+),([-\\d.]+)/);
+              const at = new DOMPoint(...place.slice(1).map(Number)).matrixTransform(svg.getScreenCTM());
+              return [at.x, at.y, Number(place[1]), Number(place[2])];
+            }})()""")
+            self.page.moves(x, y)
+            mark = self.page.does("""(() => {
+              const mark = document.querySelector("#figure-15 svg circle.mark");
+              return ["cx", "cy"].map(name => Number(mark.getAttribute(name)));
+            })()""")
+            self.assertEqual(mark == [across, up], is_value, (mark, across, up))
+
     def test_curves_are_switched(self):
         self.page.open(PAGE, WIDTHS["desk"])
         shown = """[...document.querySelectorAll("#figure-8 svg path[stroke='#d55e00']")]
