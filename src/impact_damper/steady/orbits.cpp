@@ -43,16 +43,6 @@ double largest(const StateVector& s) {
 State<double> state_at(const Point& p) { return {p[0], p[1], p[2], p[3]}; }
 Point point_at(const State<double>& s, double parameter) { return {s.x, s.v, s.y, s.w, parameter}; }
 
-double Scene::*member_of(Parameter parameter) {
-  switch (parameter) {
-    case Parameter::force_frequency:
-      return &Scene::force_frequency;
-    case Parameter::force_amplitude:
-      return &Scene::force_amplitude;
-  }
-  return {};
-}
-
 // The equation H^n(s) - s = 0 for states and values of one parameter.
 struct Equation {
   Scene scene;
@@ -306,6 +296,22 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   return orbit;
 }
 
+// The eigenvector of -1, of length 1, of a matrix that has this eigenvalue nearly; by inverse iteration.
+std::optional<StateVector> reversed_by(StateMatrix a) {
+  constexpr double shift = 1e-9;  // so that the matrix is not singular
+  for (std::size_t i = 0; i < 4; ++i) a[i][i] += 1 + shift;
+  StateVector v{1, 1, 1, 1};
+  for (int pass = 0; pass < 4; ++pass) {
+    const auto next = solution<4>(a, v);
+    if (!next) return {};
+    double size = 0;
+    for (const double entry : *next) size += entry * entry;
+    size = std::sqrt(size);
+    for (std::size_t i = 0; i < 4; ++i) v[i] = (*next)[i] / size;
+  }
+  return v;
+}
+
 std::vector<Problem> problems_of(const OrbitOptions& options) {
   std::vector<Problem> problems;
   if (!(options.tolerance > 0 && options.tolerance <= 1e-3))
@@ -364,6 +370,10 @@ class Follower {
     double step = options_.first_step;
     branch.end = BranchEnd::points;
     while (tangent && int(branch.orbits.size()) < options_.max_points) {
+      // Smaller where the parameter changes more, but not for it alone too small to go on.
+      const double share = std::fabs((*tangent)[at_parameter]);
+      if (step * share > options_.largest_change)
+        step = std::max(options_.largest_change / share, options_.smallest_step);
       if (far_from_grazing(now.image)) {
         anchor_ = now;
         anchor_tangent_ = *tangent;
@@ -380,11 +390,15 @@ class Follower {
         add_grazing_at_end(branch, now);
         return branch;
       }
+      add_events(branch, now, *tangent, step, next);
+      if (branch.end == BranchEnd::joined) {
+        branch.orbits.push_back(branch.events.back().orbit);
+        return branch;
+      }
       if (!in_range(next.point)) {
         finish_at_end_of_range(branch, now, next);
         return branch;
       }
-      add_events(branch, now, *tangent, step, next);
       add(branch, next);
       const bool is_back = branch.orbits.size() > 3 && distance(next.point, origin) < step &&
                            dot(along(origin, -1, now.point), *tangent) > 0;
@@ -438,10 +452,11 @@ class Follower {
     return solve(equation_, now.point, from, {from, normal_at(now, tangent)});
   }
   // Where an orbit that is not symmetric is about to become so, and so to meet the branch of symmetric ones,
-  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it.
+  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it. The same where
+  // an orbit is about to meet the branch of those of half its period.
   Point normal_at(const Solution& now, const Point& tangent) const {
-    if (first_.symmetric || first_.periods % 2 == 0) return tangent;
-    const auto rest = rest_after(equation_, now.point, first_.periods);
+    if (first_.symmetric) return tangent;
+    const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
     if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
     const Point across = normalized(Point{(*rest)[0], (*rest)[1], (*rest)[2], (*rest)[3], 0});
     const double along_tangent = dot(across, tangent);
@@ -449,6 +464,7 @@ class Follower {
     return along_tangent > 0 ? across : along(Point{}, -1, across);
   }
 
+  // Those in the range between two orbits, of which the second may lie beyond it.
   void add_events(Branch& branch, const Solution& now, const Point& tangent, double step,
                   const Solution& next) const {
     if (!of_one_kind(now.image, next.image)) add_grazing(branch, now, tangent, step);
@@ -459,6 +475,7 @@ class Follower {
       return direction ? (*direction)[at_parameter] : 0;
     };
     add_event(branch, now, tangent, step, BranchEventKind::fold, tangent[at_parameter], slope(next), slope);
+    if (branch.end == BranchEnd::joined) return;  // all else that is found would be beyond
     const auto flip = [](const Solution& at) { return products_of(at.image).flip; };
     add_event(branch, now, tangent, step,
               first_.symmetric ? BranchEventKind::symmetry_breaking : BranchEventKind::flip, flip(now),
@@ -472,14 +489,17 @@ class Follower {
                  double before, double after, Test&& test) const {
     if (!(before * after < 0)) return;
     const auto at = root_between(now, tangent, step, before, after, test);
-    if (!at) return;
+    if (!at || !in_range(at->point)) return;
     if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
-    // How far from symmetric the orbit is grows as the root of the distance in the parameter.
+    // How far from symmetric the orbit is, or from one of half the period, grows as the root of the distance
+    // in the parameter.
     constexpr double nearly = 1e-4;
-    if (kind == BranchEventKind::fold && !first_.symmetric && first_.periods % 2 != 0 &&
-        closes_after(equation_, at->point, first_.periods, nearly))
-      kind = BranchEventKind::symmetry_breaking;
-    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at)});
+    if (kind == BranchEventKind::fold && !first_.symmetric &&
+        closes_after(equation_, at->point, equation_.half_periods / 2, nearly)) {
+      kind = first_.periods % 2 == 0 ? BranchEventKind::flip : BranchEventKind::symmetry_breaking;
+      branch.end = BranchEnd::joined;
+    }
+    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
   }
   // Of two real multipliers, one the inverse of the other, the product is 1 as well.
   static bool on_unit_circle(const PoincareImage& image) {
@@ -534,7 +554,9 @@ class Follower {
         high = middle;
       }
     }
-    branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], orbit_at(last)});
+    if (!in_range(last.point)) return;
+    branch.events.push_back(
+        {BranchEventKind::grazing, last.point[at_parameter], orbit_at(last), std::ssize(branch.orbits)});
   }
 
   // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
@@ -550,7 +572,8 @@ class Follower {
       }
       if (!best) continue;
       branch.end = BranchEnd::grazing;
-      branch.events.push_back({BranchEventKind::grazing, best->parameter, branch.orbits.back()});
+      branch.events.push_back(
+          {BranchEventKind::grazing, best->parameter, branch.orbits.back(), std::ssize(branch.orbits)});
       return;
     }
   }
@@ -599,6 +622,16 @@ class Follower {
 
 }  // namespace
 
+double Scene::*member_of(Parameter parameter) {
+  switch (parameter) {
+    case Parameter::force_frequency:
+      return &Scene::force_frequency;
+    case Parameter::force_amplitude:
+      return &Scene::force_amplitude;
+  }
+  return {};
+}
+
 std::string_view name_of(OrbitEnd end) {
   switch (end) {
     case OrbitEnd::converged:
@@ -635,6 +668,8 @@ std::string_view name_of(BranchEnd end) {
       return "grazing";
     case BranchEnd::closed:
       return "closed";
+    case BranchEnd::joined:
+      return "joined";
     case BranchEnd::step_too_small:
       return "step_too_small";
     case BranchEnd::points:
@@ -689,9 +724,40 @@ Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& opti
     problems.push_back({"smallest_step", "must be > 0 and <= first_step"});
   if (!(options.largest_step >= options.first_step))
     problems.push_back({"largest_step", "must be >= first_step"});
+  if (!(options.largest_change > 0)) problems.push_back({"largest_change", "must be > 0"});
   if (!(options.max_points >= 1)) problems.push_back({"max_points", "must be >= 1"});
   require_none(problems);
   return Follower(orbit, parameter, options).follow();
+}
+
+Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOptions& options) {
+  require_none(problems_of(options));
+  const Orbit& from = event.orbit;
+  Orbit none;
+  none.scene = from.scene;
+  none.engine = from.engine;
+  const bool doubles =
+      event.kind == BranchEventKind::flip || event.kind == BranchEventKind::symmetry_breaking;
+  if (!doubles || from.end != OrbitEnd::converged) return none;
+  const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
+  const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
+  const Point origin =
+      point_at({from.scene.x0, from.scene.v0, from.scene.y0, from.scene.w0}, event.parameter);
+  const std::optional<StateVector> direction = reversed_by(
+      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(state_at(origin))
+          .by_state);
+  if (!direction) return none;
+  const Point normal{(*direction)[0], (*direction)[1], (*direction)[2], (*direction)[3], 0};
+  for (const double gap : {0.01, -0.01, 0.001, -0.001}) {
+    const Point start = along(origin, gap, normal);
+    const Solution found = solve(equation, origin, start, {start, normal});
+    if (found.end != OrbitEnd::converged) continue;
+    // On the branch from which it comes the state would be the same after half of the time, here it is on
+    // the other side.
+    const auto rest = rest_after(equation, found.point, half_periods);
+    if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, found, half_periods, false);
+  }
+  return none;
 }
 
 }  // namespace impact_damper
