@@ -112,7 +112,7 @@ class BranchSearch {
     const double value = value_of(orbit);
     for (std::size_t i = 0; i < branch.orbits.size(); ++i) {
       const Orbit &a = branch.orbits[i], &b = branch.orbits[std::min(i + 1, branch.orbits.size() - 1)];
-      const auto [low, high] = std::minmax(value_of(a), value_of(b));
+      const double low = std::min(value_of(a), value_of(b)), high = std::max(value_of(a), value_of(b));
       if (a.periods != orbit.periods || a.symmetric != orbit.symmetric || value < low || value > high)
         continue;
       const Orbit& nearer = std::abs(value_of(a) - value) <= std::abs(value_of(b) - value) ? a : b;

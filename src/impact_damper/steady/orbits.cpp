@@ -469,13 +469,19 @@ class Follower {
                   const Solution& next) const {
     if (!of_one_kind(now.image, next.image)) add_grazing(branch, now, tangent, step);
     if (now.image.impacts.empty() || next.image.impacts.empty()) return;  // linear: nothing can change
-    // At a fold the parameter turns back; where an orbit that is not symmetric becomes so, it does, too.
+    if (const auto at = junction_between(now, next, step)) {
+      if (!in_range(at->point)) return;
+      branch.events.push_back(
+          {first_.periods % 2 == 0 ? BranchEventKind::flip : BranchEventKind::symmetry_breaking,
+           at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
+      branch.end = BranchEnd::joined;
+      return;
+    }
     const auto slope = [&](const Solution& at) {
       const auto direction = tangent_at(at, at.plane.normal);
       return direction ? (*direction)[at_parameter] : 0;
     };
     add_event(branch, now, tangent, step, BranchEventKind::fold, tangent[at_parameter], slope(next), slope);
-    if (branch.end == BranchEnd::joined) return;  // all else that is found would be beyond
     const auto flip = [](const Solution& at) { return products_of(at.image).flip; };
     add_event(branch, now, tangent, step,
               first_.symmetric ? BranchEventKind::symmetry_breaking : BranchEventKind::flip, flip(now),
@@ -483,6 +489,46 @@ class Follower {
     const auto pairs = [](const Solution& at) { return products_of(at.image).pairs; };
     add_event(branch, now, tangent, step, BranchEventKind::neimark_sacker, pairs(now), pairs(next), pairs);
   }
+  // Where the branch meets that of orbits of half its length, from which it branches off: H^n(s) - s changes
+  // its sign, and a multiplier of H^n is -1 (M13.21). The bordered matrix is singular there, that of H^n is
+  // not: so the point is found along the other branch, as a root of the parameter by the secant method.
+  std::optional<Solution> junction_between(const Solution& now, const Solution& next, double step) const {
+    if (first_.symmetric) return {};
+    Equation half = equation_;
+    half.half_periods /= 2;
+    const auto before = rest_after(equation_, now.point, half.half_periods),
+               after = rest_after(equation_, next.point, half.half_periods);
+    if (!before || !after) return {};
+    double product_of_both = 0;
+    for (std::size_t i = 0; i < 4; ++i) product_of_both += (*before)[i] * (*after)[i];
+    if (!(product_of_both < 0)) return {};
+
+    const Point middle = along(now.point, 0.5, along(next.point, -1, now.point));
+    const auto at_parameter_value = [&](const Point& from, double value) {
+      Point p = from;
+      p[at_parameter] = value;
+      return solve(half, middle, p, at_value(p));
+    };
+    Solution other = at_parameter_value(middle, middle[at_parameter] * (1 + 1e-6)),
+             at = at_parameter_value(middle, middle[at_parameter]);
+    for (int i = 0; i < 20; ++i) {
+      if (at.end != OrbitEnd::converged || other.end != OrbitEnd::converged) return {};
+      const double value = products_of(at.image).flip, change = value - products_of(other.image).flip;
+      const double by = value * (at.point[at_parameter] - other.point[at_parameter]) / change;
+      if (!std::isfinite(by)) break;
+      other = std::exchange(at, at_parameter_value(at.point, at.point[at_parameter] - by));
+      if (std::fabs(by) <= 1e-14 * at.point[at_parameter]) break;
+    }
+    if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image)) return {};
+    at.image = equation_.map(at.point[at_parameter])(state_at(at.point));
+    return at;
+  }
+  static bool is_flip(const PoincareImage& image) {
+    const Multipliers all = multipliers_of(image.by_state);
+    return std::any_of(all.begin(), all.end(),
+                       [](const Multiplier& m) { return std::hypot(m.re + 1, m.im) < 1e-6; });
+  }
+
   // If the test changes its sign.
   template <class Test>
   void add_event(Branch& branch, const Solution& now, const Point& tangent, double step, BranchEventKind kind,
@@ -491,14 +537,6 @@ class Follower {
     const auto at = root_between(now, tangent, step, before, after, test);
     if (!at || !in_range(at->point)) return;
     if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
-    // How far from symmetric the orbit is, or from one of half the period, grows as the root of the distance
-    // in the parameter.
-    constexpr double nearly = 1e-4;
-    if (kind == BranchEventKind::fold && !first_.symmetric &&
-        closes_after(equation_, at->point, equation_.half_periods / 2, nearly)) {
-      kind = first_.periods % 2 == 0 ? BranchEventKind::flip : BranchEventKind::symmetry_breaking;
-      branch.end = BranchEnd::joined;
-    }
     branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
   }
   // Of two real multipliers, one the inverse of the other, the product is 1 as well.
