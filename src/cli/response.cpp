@@ -46,6 +46,7 @@ const std::map<std::string, std::vector<Kind>>& kinds_of_options() {
       {"--mean-periods", {Kind::sweep}},
       {"--capture-radius", {Kind::basin}},
       {"--largest-step", {Kind::orbits}},
+      {"--max-multiplier", {Kind::orbits}},
       {"--max-points", {Kind::orbits}},
       {"--max-branches", {Kind::orbits}},
       {"--periods", {Kind::lyapunov}},
@@ -238,6 +239,7 @@ BranchRule branch_rule_of(Arguments& arguments, const SteadyRule& steady) {
   BranchRule rule;
   rule.steady = steady;
   rule.largest_step = arguments.number("--largest-step", within(1e-6, 1e6)).value_or(rule.largest_step);
+  rule.max_multiplier = arguments.number("--max-multiplier", within(1, 1e12)).value_or(rule.max_multiplier);
   rule.max_points = arguments.whole_number("--max-points", within(1, 1e6)).value_or(rule.max_points);
   rule.max_branches = arguments.whole_number("--max-branches", within(1, 1000)).value_or(rule.max_branches);
   return rule;
@@ -519,6 +521,10 @@ Options own_options() {
       "varies, dimensionless; a step also\nchanges that number by at most a hundredth of its range; "
       "default " +
           number_text(orbits.largest_step),
+      "Response");
+  add("--max-multiplier", "X",
+      "orbits: a branch ends where a multiplier is larger and no grazing is\nthe cause; 1 to 1e12, default " +
+          number_text(orbits.max_multiplier),
       "Response");
   add("--max-points", "N",
       "orbits: points of a branch; 1 to 1e6, default " + std::to_string(orbits.max_points), "Response");

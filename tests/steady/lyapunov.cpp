@@ -161,7 +161,6 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
   double sum_of_errors = 0;
   for (std::size_t i = 0; i < 4; ++i)
     if (orbit.multipliers[i].im == 0) sum_of_errors += regular.standard_errors[i];
-  for (std::size_t i = 0; i < 4; ++i) MESSAGE(orbit.multipliers[i].re, " ", orbit.multipliers[i].im, " ", regular.exponents[i], " ", regular.standard_errors[i]);
   CHECK(sum_of_errors < 1e-9);
   CHECK(lyapunov_exponents(orbit.scene, Restitution{}, 9).standard_errors.empty());
 

@@ -415,9 +415,6 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
         1e-9);
   const Branch back =
       follow(doubled, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .upwards = false});
-  for (const Orbit& o : back.orbits)
-    MESSAGE((o.scene.force_amplitude - flip->parameter), " ", o.scene.x0, " ", o.scene.w0, " ", o.multipliers[0].re, " ", o.slowest_impact.value_or(9), " ", o.nearest_miss.value_or(9));
-  for (const BranchEvent& e : back.events) MESSAGE(name_of(e.kind), " ", (e.parameter - flip->parameter));
   CHECK(back.end == BranchEnd::joined);
   CHECK(back.events.back().kind == BranchEventKind::flip);
   CHECK(std::fabs(back.events.back().parameter - flip->parameter) < 1e-10);

@@ -71,6 +71,7 @@ class BranchSearch {
     options.largest_step = rule_.largest_step;
     options.first_step = std::min(options.first_step, options.largest_step);
     options.largest_change = (options.most - options.least) / points_along_range;
+    options.max_multiplier = rule_.max_multiplier;
     options.max_points = int(rule_.max_points);
     return follow(orbit, range_.parameter, options);
   }
@@ -88,6 +89,18 @@ class BranchSearch {
     PeriodicMotion motion = settled(at(last.scene, value), release_of(last.scene));
     if (!motion.orbit || motion.orbit->end != OrbitEnd::converged) return {};
     return std::move(motion.orbit);
+  }
+
+  // The orbit of half the length at which a branch ends, joining another.
+  std::optional<Orbit> joined(const Branch& branch) const {
+    if (branch.end != BranchEnd::joined) return {};
+    const BranchEvent& end = branch.events.back();
+    const Scene& scene = end.orbit.scene;
+    const bool symmetric = end.kind == BranchEventKind::symmetry_breaking;
+    const int periods = symmetric ? end.orbit.periods : end.orbit.periods / 2;
+    Orbit orbit = find_orbit(scene, engine_, periods, release_of(scene), {.symmetric = symmetric});
+    if (orbit.end != OrbitEnd::converged) return {};
+    return orbit;
   }
 
   double amplitude_of(const Orbit& orbit) const {
@@ -137,6 +150,7 @@ std::vector<Problem> problems_of(const BranchRule& rule) {
       problems.push_back({name, range.describe("must be") + ", got " + number_text(value)});
   };
   check("largest_step", rule.largest_step, within(1e-6, 1e6));
+  check("max_multiplier", rule.max_multiplier, within(1, 1e12));
   check("max_points", double(rule.max_points), within(1, 1e6));
   check("max_branches", double(rule.max_branches), within(1, 1000));
   return problems;
@@ -207,10 +221,19 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
   // What begins at the events and at the end of each branch, those that are found meanwhile included.
   for (std::int64_t n = 0; n < std::ssize(all.branches); ++n) {
     const Branch branch = all.branches[static_cast<std::size_t>(n)].branch;
+    const auto add_both_ways = [&](BranchOrigin origin, std::optional<std::int64_t> event,
+                                   const std::optional<Orbit>& orbit, bool upwards) {
+      if (!orbit || search.known(all.branches, *orbit)) return;
+      add(origin, n, event, *orbit, upwards);
+      add(origin, n, event, *orbit, !upwards);
+    };
     for (std::size_t i = 0; i < branch.events.size(); ++i) {
       const BranchEvent& event = branch.events[i];
-      const bool is_own_origin = branch.end == BranchEnd::joined && i + 1 == branch.events.size();
-      if (is_own_origin || search.is_joined(all.branches, event)) continue;
+      if (branch.end == BranchEnd::joined && i + 1 == branch.events.size()) {
+        add_both_ways(BranchOrigin::event, std::int64_t(i), search.joined(branch), true);
+        continue;
+      }
+      if (search.is_joined(all.branches, event)) continue;
       const Orbit orbit = branching_off(event, range.parameter);
       const double value = search.value_of(orbit);
       if (orbit.end != OrbitEnd::converged || orbit.periods > rule.steady.longest_period ||
@@ -220,9 +243,7 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
     }
     bool upwards = true;
     const std::optional<Orbit> beyond = search.beyond(branch, upwards);
-    if (!beyond || search.known(all.branches, *beyond)) continue;
-    add(BranchOrigin::beyond, n, std::nullopt, *beyond, upwards);
-    add(BranchOrigin::beyond, n, std::nullopt, *beyond, !upwards);
+    add_both_ways(BranchOrigin::beyond, std::nullopt, beyond, upwards);
   }
 
   for (FollowedBranch& each : all.branches) {

@@ -30,6 +30,7 @@ struct BranchRule {
   SteadyRule steady;
   // Largest distance of two points of a branch, in the space of x, v, y, w and the parameter. In [1e-6, 1e6].
   double largest_step = 5e-2;
+  double max_multiplier = 1e4;     // FollowOptions::max_multiplier; 1 to 1e12
   std::int64_t max_points = 1000;  // of each branch; 1 to 1e6
   std::int64_t max_branches = 20;  // 1 to 1000
 };
@@ -48,7 +49,7 @@ std::string_view end_of(const BranchStart& start);
 
 enum class BranchOrigin {
   start,   // a steady motion at ParameterRange::from
-  event,   // a flip or a symmetry breaking, where it branches off
+  event,   // a flip or a symmetry breaking, where it branches off, or where another one joins it
   beyond,  // a steady motion that simulation ends in beyond the end of another branch
 };
 std::string_view name_of(BranchOrigin origin);  // the enumerator's own name

@@ -408,6 +408,10 @@ class Follower {
         branch.end = BranchEnd::closed;
         return branch;
       }
+      if (instability(branch.orbits.back()) > options_.max_multiplier) {
+        branch.end = BranchEnd::unstable;
+        return branch;
+      }
       if (next.residuals.size() <= 5) step = std::min(1.5 * step, options_.largest_step);
     }
     if (!tangent) branch.end = BranchEnd::step_too_small;
@@ -418,6 +422,9 @@ class Follower {
   void add(Branch& branch, const Solution& at) { branch.orbits.push_back(orbit_at(at)); }
   Orbit orbit_at(const Solution& at) const {
     return orbit_of(equation_, at, first_.periods, first_.symmetric);
+  }
+  static double instability(const Orbit& orbit) {
+    return orbit.multipliers[0].modulus() * std::min(1.0, orbit.slowest_impact.value_or(1));
   }
   static bool far_from_grazing(const PoincareImage& image) {
     constexpr double far = 1e-5;
@@ -434,10 +441,9 @@ class Follower {
   }
   // The determinant of the bordered matrix keeps its sign along a branch, and is the product of (1 - m)
   // divided by the parameter's share of the direction (M13.11). So if one of the two changes its sign and
-  // not the other, the step has led to another branch. Where orbits that are not symmetric become so it
-  // changes as well.
+  // not the other, the step has led to another branch; or across a junction, where the branch ends.
   bool jumped(const Solution& now, double share, const Solution& next, double next_share) const {
-    if (!first_.symmetric || now.image.impacts.empty()) return false;
+    if (now.image.impacts.empty() || crosses(now, next)) return false;
     return products_of(now.image).fold * share * products_of(next.image).fold * next_share < 0;
   }
   // The direction of the branch, (M13.11), the one that `like` points to.
@@ -493,15 +499,9 @@ class Follower {
   // its sign, and a multiplier of H^n is -1 (M13.21). The bordered matrix is singular there, that of H^n is
   // not: so the point is found along the other branch, as a root of the parameter by the secant method.
   std::optional<Solution> junction_between(const Solution& now, const Solution& next, double step) const {
-    if (first_.symmetric) return {};
+    if (!crosses(now, next)) return {};
     Equation half = equation_;
     half.half_periods /= 2;
-    const auto before = rest_after(equation_, now.point, half.half_periods),
-               after = rest_after(equation_, next.point, half.half_periods);
-    if (!before || !after) return {};
-    double product_of_both = 0;
-    for (std::size_t i = 0; i < 4; ++i) product_of_both += (*before)[i] * (*after)[i];
-    if (!(product_of_both < 0)) return {};
 
     const Point middle = along(now.point, 0.5, along(next.point, -1, now.point));
     const auto at_parameter_value = [&](const Point& from, double value) {
@@ -519,9 +519,20 @@ class Follower {
       other = std::exchange(at, at_parameter_value(at.point, at.point[at_parameter] - by));
       if (std::fabs(by) <= 1e-14 * at.point[at_parameter]) break;
     }
-    if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image)) return {};
+    if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image))
+      return {};
     at.image = equation_.map(at.point[at_parameter])(state_at(at.point));
     return at;
+  }
+  // Whether H^n(s) - s has turned round.
+  bool crosses(const Solution& now, const Solution& next) const {
+    if (first_.symmetric) return false;
+    const auto before = rest_after(equation_, now.point, equation_.half_periods / 2),
+               after = rest_after(equation_, next.point, equation_.half_periods / 2);
+    if (!before || !after) return false;
+    double product_of_both = 0;
+    for (std::size_t i = 0; i < 4; ++i) product_of_both += (*before)[i] * (*after)[i];
+    return product_of_both < 0;
   }
   static bool is_flip(const PoincareImage& image) {
     const Multipliers all = multipliers_of(image.by_state);
@@ -710,6 +721,8 @@ std::string_view name_of(BranchEnd end) {
       return "joined";
     case BranchEnd::step_too_small:
       return "step_too_small";
+    case BranchEnd::unstable:
+      return "unstable";
     case BranchEnd::points:
       return "points";
     case BranchEnd::not_an_orbit:
@@ -763,6 +776,7 @@ Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& opti
   if (!(options.largest_step >= options.first_step))
     problems.push_back({"largest_step", "must be >= first_step"});
   if (!(options.largest_change > 0)) problems.push_back({"largest_change", "must be > 0"});
+  if (!(options.max_multiplier >= 1)) problems.push_back({"max_multiplier", "must be >= 1"});
   if (!(options.max_points >= 1)) problems.push_back({"max_points", "must be >= 1"});
   require_none(problems);
   return Follower(orbit, parameter, options).follow();

@@ -83,6 +83,7 @@ enum class BranchEnd {
   joined,   // it met the branch of symmetric orbits, or of half its period, from which it branches off:
             // the last orbit. Beyond are mirror images, or the same orbits half of their period later
   step_too_small,  // no orbit was found near enough to the last
+  unstable,        // FollowOptions::max_multiplier
   points,          // FollowOptions::max_points
   not_an_orbit,    // the first was not converged, or is none for the parameter's first value
 };
@@ -97,6 +98,11 @@ struct FollowOptions {
   double smallest_step = 1e-9;  // > 0, <= first_step
   // Of the parameter in a step, as it is predicted; it may shorten steps to smallest_step. > 0.
   double largest_change = std::numeric_limits<double>::infinity();
+  // Largest modulus of a multiplier, times the speed of the slowest impact if that is below 1: so that
+  // grazing, where multipliers have no bound, is none. Beyond it other orbits are so near that a step may
+  // lead to one.
+  // >= 1.
+  double max_multiplier = std::numeric_limits<double>::infinity();
   int max_points = 1000;  // >= 1
   OrbitOptions orbit;     // tolerance and iterations of each point; `symmetric` is the first orbit's
 };

@@ -347,8 +347,8 @@ std::string orbits_text(const Scene& scene, const Engine& engine, const BranchRu
   JsonWriter out = begun("orbits", scene, engine, scales);
   out.open_object("rule", Layout::one_line);
   write_rule(out, rule.steady);
-  out.fields("largest_step", rule.largest_step, "max_points", rule.max_points, "max_branches",
-             rule.max_branches);
+  out.fields("largest_step", rule.largest_step, "max_multiplier", rule.max_multiplier, "max_points",
+             rule.max_points, "max_branches", rule.max_branches);
   out.close();
   out.object("range", Layout::one_line, "number", key_of(number), "from", range.from, "to", range.to);
   out.open_array("starts", Layout::lines);
