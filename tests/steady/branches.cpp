@@ -83,8 +83,8 @@ TEST_CASE("the branch of the steady motion of two impacts is the closed form, pa
 TEST_CASE("branches of mirror images and of twice the period begin where simulations show them") {
   const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
   const Parameter parameter = Parameter::force_amplitude;
-  const Branches found = found_from(scene, {parameter, 0.05, 0.075}, {two_impact_orbits(scene).at(0).state},
-                                    {.max_branches = 8});
+  const Branches found =
+      found_from(scene, {parameter, 0.05, 0.12}, {two_impact_orbits(scene).at(0).state}, {.max_branches = 8});
   REQUIRE(found.starts[0].branch == 0);
   int compared = 0;
   for (const FollowedBranch& each : found.branches) {
@@ -95,6 +95,12 @@ TEST_CASE("branches of mirror images and of twice the period begin where simulat
     const Orbit& orbit = each.branch.orbits.front();
     const bool breaks = event.kind == BranchEventKind::symmetry_breaking;
     CHECK((breaks || event.kind == BranchEventKind::flip));
+    if (parent.end == BranchEnd::joined && &event == &parent.events.back()) {
+      // The branch that the other has joined goes on on both sides.
+      CHECK(2 * orbit.periods == event.orbit.periods);
+      CHECK(orbit.scene.force_amplitude == event.parameter);
+      continue;
+    }
     CHECK(orbit.periods == (breaks ? 1 : 2) * event.orbit.periods);
     CHECK(!orbit.symmetric);
     if (!orbit.stable()) continue;
@@ -108,7 +114,15 @@ TEST_CASE("branches of mirror images and of twice the period begin where simulat
     CHECK(old_one.symmetric == event.orbit.symmetric);
     ++compared;
   }
-  CHECK(compared >= 2);
+  CHECK(compared >= 3);
+
+  // Two branches end in one grazing, from both of its sides: a stable motion, and an unstable one.
+  std::vector<double> grazings;
+  for (const FollowedBranch& each : found.branches)
+    if (each.branch.end == BranchEnd::grazing && each.branch.orbits.front().periods == 1)
+      grazings.push_back(each.branch.events.back().parameter);
+  REQUIRE(grazings.size() == 2);
+  CHECK(std::fabs(grazings[0] - grazings[1]) < 1e-9);
 }
 
 TEST_CASE("a mass that is not struck is followed to where it grazes, and simulation leads on") {
