@@ -79,6 +79,8 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
       CHECK(apart(state_of_scene(orbit.scene), expected.state) < 1e-12 * scale);
       CHECK(std::fabs(orbit.impacts[0].speed - expected.impact_speed) < 1e-12 * scale);
       REQUIRE(orbit.half_multipliers);
+      for (std::size_t i = 0; i < 4; ++i)  // of a pair the one above the real axis is first
+        if (orbit.multipliers[i].im < 0) CHECK(orbit.multipliers[i - 1].im == -orbit.multipliers[i].im);
       // Of the whole period, by its own derivative.
       const Multipliers whole =
           multipliers_of(PoincareMap(scene, Restitution{}, 2)(state_of_scene(orbit.scene)).by_state);
@@ -240,6 +242,7 @@ TEST_CASE("a secondary mass that is not struck grazes both walls where the linea
       const Orbit idle = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.symmetric = true});
       REQUIRE(idle.end == OrbitEnd::converged);
       CHECK(idle.impacts.empty());
+      CHECK(!idle.stable());
       CHECK(*idle.nearest_miss == doctest::Approx(0.5 - linear_amplitude(scene)).epsilon(1e-12));
       const Branch branch = follow(idle, Parameter::force_amplitude, {.least = 0.01, .most = 2});
       CHECK(branch.end == BranchEnd::grazing);

@@ -292,7 +292,11 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
         {impact.time + map.duration(), impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed});
   orbit.sticking *= 2;
   orbit.half_multipliers = orbit.multipliers;
-  for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im};
+  for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im + 0.0};
+  // A square may lie below the real axis where the number does not; the + 0.0 makes no -0.
+  for (std::size_t i = 0; i + 1 < 4; ++i)
+    if (orbit.multipliers[i].im < 0 && orbit.multipliers[i + 1].im == -orbit.multipliers[i].im)
+      std::swap(orbit.multipliers[i], orbit.multipliers[i + 1]);
   return orbit;
 }
 

@@ -48,7 +48,8 @@ struct Orbit {
   // How near to grazing, as in PoincareImage.
   std::optional<double> slowest_impact, nearest_miss;
 
-  bool stable() const { return multipliers[0].modulus() < 1; }
+  // Without impacts two multipliers are 1: a secondary mass at rest elsewhere rests there, too.
+  bool stable() const { return !impacts.empty() && multipliers[0].modulus() < 1; }
   double residual() const { return residuals.back(); }
 };
 
