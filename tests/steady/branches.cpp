@@ -116,6 +116,10 @@ TEST_CASE("branches of mirror images and of twice the period begin where simulat
   }
   CHECK(compared >= 3);
 
+  // Each once: that at 0.0920, which a branch joins from above, would begin at its other end, too.
+  for (const FollowedBranch& e : found.branches) { MESSAGE(name_of(e.origin), " ", e.from, " ", name_of(e.branch.end), " ", e.branch.orbits.front().periods, " ", e.branch.orbits.front().scene.force_amplitude, " ", e.branch.orbits.back().scene.force_amplitude); for (auto& v : e.branch.events) MESSAGE(name_of(v.kind), " ", v.parameter); }
+  CHECK(found.branches.size() == 10);
+
   // Two branches end in one grazing, from both of its sides: a stable motion, and an unstable one.
   std::vector<double> grazings;
   for (const FollowedBranch& each : found.branches)

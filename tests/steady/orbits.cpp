@@ -447,6 +447,26 @@ TEST_CASE("steps of the parameter are as short as asked for, and events say betw
   CHECK(shortest.events.empty());
 }
 
+TEST_CASE("a branch ends where it is more unstable than asked for, unless grazing is the cause") {
+  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Branch branch =
+      follow(first, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .max_multiplier = 5});
+  REQUIRE(branch.end == BranchEnd::unstable);
+  const std::size_t last = branch.orbits.size() - 1;
+  const auto instability = [&](std::size_t i) {
+    return branch.orbits[i].multipliers[0].modulus() * std::pow(std::min(1.0, *branch.orbits[i].slowest_impact), 2);
+  };
+  CHECK(instability(last) > 5);
+  CHECK(instability(last - 1) <= 5);
+
+  const Scene grazing = forced(0.5, 0.1, 1.4, 0.309605);
+  const Orbit impacting = find_orbit(grazing, Restitution{}, 1, two_impact_orbits(grazing).at(0).state);
+  CHECK(follow(impacting, Parameter::force_frequency,
+               {.least = 0.3, .most = 2.5, .upwards = false, .max_multiplier = 100})
+            .end == BranchEnd::grazing);
+}
+
 TEST_CASE("what cannot be followed or found says so") {
   const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
   const Orbit none = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.max_iterations = 1});
@@ -459,6 +479,8 @@ TEST_CASE("what cannot be followed or found says so") {
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 1, {}, {.tolerance = 0}), InvalidArguments);
   CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0, .most = 1}), InvalidArguments);
   CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = 1, .largest_change = 0}),
+                  InvalidArguments);
+  CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = 1, .max_multiplier = 0}),
                   InvalidArguments);
   CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = std::nan("")}),
                   InvalidArguments);

@@ -428,7 +428,8 @@ class Follower {
     return orbit_of(equation_, at, first_.periods, first_.symmetric);
   }
   static double instability(const Orbit& orbit) {
-    return orbit.multipliers[0].modulus() * std::min(1.0, orbit.slowest_impact.value_or(1));
+    const double speed = std::min(1.0, orbit.slowest_impact.value_or(1));
+    return orbit.multipliers[0].modulus() * (orbit.symmetric ? speed * speed : speed);
   }
   static bool far_from_grazing(const PoincareImage& image) {
     constexpr double far = 1e-5;

@@ -99,10 +99,9 @@ struct FollowOptions {
   double smallest_step = 1e-9;  // > 0, <= first_step
   // Of the parameter in a step, as it is predicted; it may shorten steps to smallest_step. > 0.
   double largest_change = std::numeric_limits<double>::infinity();
-  // Largest modulus of a multiplier, times the speed of the slowest impact if that is below 1: so that
-  // grazing, where multipliers have no bound, is none. Beyond it other orbits are so near that a step may
-  // lead to one.
-  // >= 1.
+  // Largest modulus of a multiplier, times the speed of the slowest impact if that is below 1, or its square
+  // for symmetric orbits, which have two of them: so that grazing, where multipliers have no bound, is no
+  // reason. Beyond it other orbits are so near that a step may lead to one. >= 1.
   double max_multiplier = std::numeric_limits<double>::infinity();
   int max_points = 1000;  // >= 1
   OrbitOptions orbit;     // tolerance and iterations of each point; `symmetric` is the first orbit's
