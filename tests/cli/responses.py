@@ -265,6 +265,13 @@ value, point = event_of("flips", "grazing", 2)  # of the stable motion of twice 
 before, beyond = swept(doubling, "force_amplitude", value - 1e-7, value + 1e-7, point)
 demand(is_same(point, before) and not is_same(point, beyond), f"flips: no grazing at {value}: {before}, {beyond}")
 
+# And at a point where one wall is struck more often than the other.
+stable = next({key: column[0] for key, column in each.items() if isinstance(column, list) and key != "events"}
+              for each in found["flips"]["branches"] if each["impacts_left"][0] != each["impacts_right"][0] and each["stable"][0])
+there, _ = swept(doubling, "force_amplitude", stable["values"], stable["values"] * 1.0001, stable)
+demand(is_same(stable, there), f"flips: a sweep finds {there} at {stable}")
+demand(math.isclose(stable["amplitude"], there["amplitude"], rel_tol=1e-8), f"flips: amplitude {stable['amplitude']}")
+
 # Lyapunov exponents: on a stable orbit the logarithms of the multipliers, divided by the period.
 orbit = found["flips"]["branches"][0]
 on_orbit = [*doubling, "--force-amplitude", repr(orbit["values"][0])]
