@@ -61,7 +61,7 @@ struct FollowedBranch {
   std::optional<std::int64_t> event;  // of that branch, where it branches off
   Branch branch;
   // Largest |x| of each orbit, and of the orbit of each event. Of an unstable orbit, which a simulation of
-  // twice its period does not quite keep to, with an error up to about 1e-7.
+  // twice its period does not quite keep to, with an error up to about 1e-6.
   std::vector<double> amplitudes, event_amplitudes;
 };
 

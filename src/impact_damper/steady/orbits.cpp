@@ -616,7 +616,17 @@ class Follower {
   // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
   // parameter is a smooth function of it (M13.14), so a polynomial through a few orbits before leads there.
   void add_grazing_at_end(Branch& branch, const Solution& last) const {
-    if (!has_rigid_walls(equation_.engine)) return;
+    if (!has_rigid_walls(equation_.engine)) {
+      // The branch has a kink where it grazes. Where that is too sharp for the last step, all that is left of
+      // it is below these, which are of the order of smallest_step and of its root.
+      if (!(last.image.nearest_miss && *last.image.nearest_miss < 1e-8) &&
+          !(last.image.slowest_impact && *last.image.slowest_impact < 1e-4))
+        return;
+      branch.end = BranchEnd::grazing;
+      branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], branch.orbits.back(),
+                               std::ssize(branch.orbits)});
+      return;
+    }
     for (const auto member : {&PoincareImage::slowest_impact, &PoincareImage::nearest_miss}) {
       if (!(last.image.*member && *(last.image.*member) < 1e-4)) continue;
       std::optional<Extrapolated> best;

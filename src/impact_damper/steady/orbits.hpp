@@ -72,14 +72,16 @@ std::string_view name_of(BranchEventKind kind);
 
 struct BranchEvent {
   BranchEventKind kind = BranchEventKind::fold;
-  double parameter = 0;            // to about 1e-10; a grazing close to a fold to about 1e-7
+  double parameter = 0;            // to about 1e-10; a grazing close to a fold to about 1e-7, one
+                                   // with compliant walls at which the branch ends to 1e-9
   Orbit orbit;                     // there; at a grazing with rigid walls the last one that was found
   std::int64_t orbits_before = 0;  // of Branch::orbits
 };
 
 enum class BranchEnd {
   range,    // the parameter reached an end of its range; the last orbit is there
-  grazing,  // rigid walls: beyond it the branch, if it goes on, has another number of impacts
+  grazing,  // rigid walls: beyond it the branch, if it goes on, has another number of impacts.
+            // Compliant walls: it turns there so sharply that no step leads on
   closed,   // it came back to the first orbit
   joined,   // it met the branch of symmetric orbits, or of half its period, from which it branches off:
             // the last orbit. Beyond are mirror images, or the same orbits half of their period later
