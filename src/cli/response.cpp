@@ -425,6 +425,7 @@ std::string text_of(const Request& asked) {
 
 int respond(Arguments& arguments) {
   std::vector<std::string_view> words;
+  words.reserve(kinds.size());
   for (const Kind kind : kinds) words.push_back(name_of(kind));
   const std::optional<std::size_t> word = arguments.word("WHAT", words);
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));

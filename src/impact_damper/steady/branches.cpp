@@ -105,7 +105,9 @@ class BranchSearch {
 
   double amplitude_of(const Orbit& orbit) const {
     // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
-    return ForcedScene(orbit.scene, engine_).watch(release_of(orbit.scene), 2 * orbit.periods).amplitude;
+    return ForcedScene(orbit.scene, engine_)
+        .watch(release_of(orbit.scene), std::int64_t{2} * orbit.periods)
+        .amplitude;
   }
 
  private:
@@ -215,7 +217,7 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
           start.branch = std::ssize(all.branches) - 1;
       }
     }
-    all.starts.push_back(std::move(start));
+    all.starts.push_back(start);
   }
 
   // What begins at the events and at the end of each branch, those that are found meanwhile included.

@@ -224,12 +224,12 @@ void write_branch(JsonWriter& out, const FollowedBranch& followed, double Scene:
              "end", name_of(branch.end));
   const std::vector<BranchPoint> points = points_of(followed, number);
   std::vector<double> values;
+  values.reserve(points.size());
   for (const BranchPoint& each : points) values.push_back(each.value);
   out.field("values", values);
   for (const Column& column : columns_of(points)) out.field(column.name, column.numbers);
   out.open_array("events", Layout::lines);
-  for (std::size_t i = 0; i < branch.events.size(); ++i) {
-    const BranchEvent& event = branch.events[i];
+  for (const BranchEvent& event : branch.events) {
     out.open_object(Layout::one_line);
     out.fields("kind", name_of(event.kind), "value", event.parameter, "points_before", event.orbits_before);
     write_state(out, "state", release_of(event.orbit.scene));
