@@ -1,6 +1,7 @@
-// `response`: the steady states of a scene under its force, along one of its numbers or over two.
+// `response`: the steady states of a scene under its force, along one of its numbers or over two, its
+// periodic motions, stable or not, and its Lyapunov exponents.
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <iostream>
 #include <map>
 
@@ -17,6 +18,52 @@ namespace {
 
 constexpr const char* this_command = "impact-damper response";
 constexpr std::int64_t most_values = 100'000;  // of an axis
+
+enum class Kind { sweep, basin, orbits, lyapunov };
+constexpr std::array kinds{Kind::sweep, Kind::basin, Kind::orbits, Kind::lyapunov};
+std::string_view name_of(Kind kind) {
+  switch (kind) {
+    case Kind::sweep:
+      return "sweep";
+    case Kind::basin:
+      return "basin";
+    case Kind::orbits:
+      return "orbits";
+    case Kind::lyapunov:
+      return "lyapunov";
+  }
+  return {};
+}
+
+// Options that not all kinds have, and those that have them.
+const std::map<std::string, std::vector<Kind>>& kinds_of_options() {
+  static const std::map<std::string, std::vector<Kind>> all{
+      {"--vary", {Kind::sweep, Kind::basin, Kind::orbits}},
+      {"--start", {Kind::sweep, Kind::orbits}},
+      {"--tolerance", {Kind::sweep, Kind::basin, Kind::orbits}},
+      {"--longest-period", {Kind::sweep, Kind::basin, Kind::orbits}},
+      {"--max-periods", {Kind::sweep, Kind::basin, Kind::orbits}},
+      {"--mean-periods", {Kind::sweep}},
+      {"--capture-radius", {Kind::basin}},
+      {"--largest-step", {Kind::orbits}},
+      {"--max-multiplier", {Kind::orbits}},
+      {"--max-points", {Kind::orbits}},
+      {"--max-branches", {Kind::orbits}},
+      {"--periods", {Kind::lyapunov}},
+      {"--discard", {Kind::lyapunov}},
+      {"--threads", {Kind::sweep, Kind::basin, Kind::orbits}},
+  };
+  return all;
+}
+void reject_options_of_others(Arguments& arguments, Kind kind) {
+  for (const auto& [option, having] : kinds_of_options()) {
+    if (!arguments.given(option) || std::ranges::count(having, kind) > 0) continue;
+    std::vector<std::string_view> words;
+    for (const Kind each : having) words.push_back(name_of(each));
+    arguments.reject(option,
+                     "is an option of " + listed(words, "and") + ", not of " + std::string(name_of(kind)));
+  }
+}
 
 // The engines that can go on from one period of the force to the next.
 const std::vector<Engine>& offered_engines() {
@@ -56,7 +103,13 @@ Variables variables_of(const std::optional<Scales>& scales) {
   return variables;
 }
 
-std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const Variables& variables) {
+// NAME=VALUES: the number that is named, noted if there is none, and what is said of its values, absent
+// without an =.
+struct Varied {
+  std::optional<Variable> variable;
+  std::optional<std::string> values;
+};
+Varied varied_of(Arguments& arguments, const std::string& text, const Variables& variables) {
   const std::size_t equals = text.find('=');
   std::string name = text.substr(0, equals);
   std::ranges::replace(name, '-', '_');
@@ -67,15 +120,22 @@ std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const
     const auto meant = nearest(name, names);
     arguments.reject("--vary", "must name a number of the scene before the =, got " + in_quotes(text) +
                                    (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
-    return std::nullopt;
+    return {};
   }
-  const auto range = equals == std::string::npos ? std::nullopt : parse_triple(text.substr(equals + 1));
+  return {variable->second,
+          equals == std::string::npos ? std::nullopt : std::optional(text.substr(equals + 1))};
+}
+
+std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const Variables& variables) {
+  const auto [variable, values] = varied_of(arguments, text, variables);
+  if (!variable) return std::nullopt;
+  const auto range = values ? parse_triple(*values) : std::nullopt;
   if (!range || !(range->first < range->second) || !(range->count >= 2 && range->count <= most_values)) {
     arguments.reject("--vary", "must be NAME=FROM:TO:N with FROM < TO and 2 to " +
                                    std::to_string(most_values) + " values, got " + in_quotes(text));
     return std::nullopt;
   }
-  const auto& [number, scale] = variable->second;
+  const auto& [number, scale] = *variable;
   return Axis{number, range->first / scale, range->second / scale, range->count};
 }
 
@@ -103,6 +163,36 @@ std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool
                                    std::to_string(axes[0].count * axes[1].count));
   }
   return axes;
+}
+
+// NAME=FROM:TO, along which orbits are followed.
+std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& variables) {
+  const std::vector<std::string> given = arguments.texts("--vary");
+  if (given.size() != 1) {
+    arguments.reject("--vary", "must be given once for orbits, got " + std::to_string(given.size()));
+    return std::nullopt;
+  }
+  const auto [variable, values] = varied_of(arguments, given[0], variables);
+  if (!variable) return std::nullopt;
+  ParameterRange range;
+  if (variable->number == member_of(Parameter::force_amplitude)) {
+    range.parameter = Parameter::force_amplitude;
+  } else if (variable->number != member_of(range.parameter)) {
+    arguments.reject("--vary",
+                     "must be frequency or amplitude of the force for orbits, got " + in_quotes(given[0]));
+    return std::nullopt;
+  }
+  const std::size_t colon = values ? values->find(':') : std::string::npos;
+  const auto from = colon == std::string::npos ? std::nullopt : parse_number(values->substr(0, colon)),
+             to = colon == std::string::npos ? std::nullopt : parse_number(values->substr(colon + 1));
+  if (!from || !to || !(*from > 0 && *to > 0) || *from == *to) {
+    arguments.reject("--vary", "must be NAME=FROM:TO for orbits, with two different numbers > 0, got " +
+                                   in_quotes(given[0]));
+    return std::nullopt;
+  }
+  range.from = *from / variable->scale;
+  range.to = *to / variable->scale;
+  return range;
 }
 
 // X:V:Y:W in the units of the scene's file.
@@ -145,17 +235,39 @@ SteadyRule rule_of(Arguments& arguments, SteadyRule rule) {
   return rule;
 }
 
+BranchRule branch_rule_of(Arguments& arguments, const SteadyRule& steady) {
+  BranchRule rule;
+  rule.steady = steady;
+  rule.largest_step = arguments.number("--largest-step", within(1e-6, 1e6)).value_or(rule.largest_step);
+  rule.max_multiplier = arguments.number("--max-multiplier", within(1, 1e12)).value_or(rule.max_multiplier);
+  rule.max_points = arguments.whole_number("--max-points", within(1, 1e6)).value_or(rule.max_points);
+  rule.max_branches = arguments.whole_number("--max-branches", within(1, 1000)).value_or(rule.max_branches);
+  return rule;
+}
+
+// Periods of the force, of which the exponents are the means.
+struct Averaging {
+  std::int64_t periods = 5000, discard = 500;
+};
+Averaging averaging_of(Arguments& arguments) {
+  Averaging averaging;
+  averaging.periods = arguments.whole_number("--periods", within(10, 1e9)).value_or(averaging.periods);
+  averaging.discard = arguments.whole_number("--discard", within(0, 1e9)).value_or(averaging.discard);
+  return averaging;
+}
+
 // How far it is; called from several threads.
 class Progress {
  public:
-  Progress(const char* what, std::int64_t all) : what_(what), all_(all) {}
+  // all: of how many; absent where that is not known.
+  Progress(const char* what, std::optional<std::int64_t> all) : what_(what), all_(all) {}
   void operator()(std::int64_t done) {
-    told_(std::to_string(done) + " of " + std::to_string(all_) + " " + what_);
+    told_(std::to_string(done) + (all_ ? " of " + std::to_string(*all_) : "") + " " + what_);
   }
 
  private:
   const char* what_;
-  std::int64_t all_;
+  std::optional<std::int64_t> all_;
   ProgressOnStderr told_{"response"};
 };
 
@@ -194,59 +306,167 @@ void warn_of(const Basin& basin, const SteadyRule& rule) {
          " are undecided because a budget of the engine ended them; its option raises that");
 }
 
+void warn_of(const Branches& found, const BranchRule& rule) {
+  std::int64_t open = 0, ended = 0;
+  for (const BranchStart& start : found.starts) {
+    const bool is_ended = start.steady.stop_reason != StopReason::time;
+    ended += is_ended;
+    open += !is_ended && !start.orbit;
+    if (start.orbit && *start.orbit != OrbitEnd::converged)
+      warn("no periodic orbit is found near a motion that repeats: " + std::string(end_of(start)));
+  }
+  const std::size_t all = found.starts.size();
+  if (open > 0)
+    warn(of_all(open, all, "starts") + " are not periodic within " + std::to_string(rule.steady.max_periods) +
+         " periods of the force, so no branch begins there; --max-periods raises that, --start adds others");
+  if (ended > 0)
+    warn(of_all(ended, all, "starts") +
+         " ended early, by a budget of the engine that \"end\" names; its option raises that");
+  const auto ends = [&](BranchEnd end) {
+    return std::ranges::count(found.branches, end,
+                              [](const FollowedBranch& each) { return each.branch.end; });
+  };
+  const std::size_t branches = found.branches.size();
+  if (const auto count = ends(BranchEnd::points); count > 0)
+    warn(of_all(count, branches, "branches") + " end after " + std::to_string(rule.max_points) +
+         " points; --max-points or --largest-step raises that");
+  if (const auto count = ends(BranchEnd::step_too_small); count > 0)
+    warn(of_all(count, branches, "branches") + " end where no orbit is found near enough to the last");
+  if (!found.complete)
+    warn("there are more than " + std::to_string(rule.max_branches) +
+         " branches; --max-branches raises that");
+}
+
+void warn_of(const LyapunovExponents& found) {
+  if (found.stop_reason != StopReason::time)
+    warn("there are no exponents: the run ended early, by " + std::string(name_of(found.stop_reason)) +
+         " of the engine; its option raises that");
+}
+
+// What the command line asks for, checked.
+struct Request {
+  Kind kind = Kind::sweep;
+  SceneFile file;
+  Engine engine;
+  std::vector<Axis> axes;               // sweep: one, basin: two
+  std::optional<ParameterRange> range;  // orbits
+  std::vector<State<double>> starts;
+  SteadyRule sweep;
+  BasinRule basin;
+  BranchRule orbits;
+  Averaging averaging;
+  Threads threads;
+  Format format = Format::json;
+  std::optional<SiUnits> units;  // of the CSV
+};
+
+std::string swept(const Request& asked) {
+  const Scene& scene = asked.file.scene;
+  const Axis& axis = asked.axes[0];
+  Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
+  const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, asked.starts, asked.threads,
+                            [&](std::int64_t done) { progress(done); });
+  warn_of(sweeps, asked.sweep);
+  return asked.format == Format::csv
+             ? sweep_csv(scene, axis, sweeps, asked.units)
+             : sweep_text(scene, asked.engine, asked.sweep, axis, sweeps, asked.file.scales);
+}
+
+std::string mapped(const Request& asked) {
+  const Scene& scene = asked.file.scene;
+  const Axis &first = asked.axes[0], &second = asked.axes[1];
+  Progress progress("points", first.count * second.count);
+  const Basin map = basin(scene, asked.engine, first, second, asked.basin, asked.threads,
+                          [&](std::int64_t done) { progress(done); });
+  warn_of(map, asked.basin.steady);
+  return asked.format == Format::csv
+             ? basin_csv(first, second, map, asked.units)
+             : basin_text(scene, asked.engine, asked.basin, first, second, map, asked.file.scales);
+}
+
+std::string followed(const Request& asked) {
+  const Scene& scene = asked.file.scene;
+  Progress progress("branches are followed", std::nullopt);
+  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
+                                       asked.threads, [&](std::int64_t done) { progress(done); });
+  warn_of(found, asked.orbits);
+  return asked.format == Format::csv
+             ? orbits_csv(*asked.range, found, asked.units)
+             : orbits_text(scene, asked.engine, asked.orbits, *asked.range, found, asked.file.scales);
+}
+
+std::string averaged(const Request& asked) {
+  const Scene& scene = asked.file.scene;
+  const auto [periods, discard] = asked.averaging;
+  Progress progress("periods", periods + discard);
+  const LyapunovExponents found =
+      lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {
+        if (done % 100 == 0) progress(done);
+      });
+  warn_of(found);
+  return asked.format == Format::csv
+             ? lyapunov_csv(found, asked.units)
+             : lyapunov_text(scene, asked.engine, periods, discard, found, asked.file.scales);
+}
+
+std::string text_of(const Request& asked) {
+  switch (asked.kind) {
+    case Kind::sweep:
+      return swept(asked);
+    case Kind::basin:
+      return mapped(asked);
+    case Kind::orbits:
+      return followed(asked);
+    case Kind::lyapunov:
+      return averaged(asked);
+  }
+  return {};
+}
+
 int respond(Arguments& arguments) {
-  const std::optional<std::size_t> kind = arguments.word("WHAT", {"sweep", "basin"});
-  if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: sweep or basin");
-  const bool is_sweep = kind.value_or(0) == 0;
-  const SceneFile file = scene_of(arguments, Stops::ignored);
-  const Engine engine = engine_of(arguments, offered_engines());
-  const std::vector<Axis> axes =
-      kind ? axes_of(arguments, variables_of(file.scales), is_sweep) : std::vector<Axis>{};
-  const std::vector<State<double>> starts = starts_of(arguments, file);
-  BasinRule basin_rule;
-  const SteadyRule rule = rule_of(arguments, is_sweep ? SteadyRule{} : basin_rule.steady);
-  basin_rule.steady = rule;
-  basin_rule.capture_radius =
-      arguments.number("--capture-radius", {0, 0.5, false}).value_or(basin_rule.capture_radius);
-  for (const char* option : {"--start", "--mean-periods"})
-    if (kind && !is_sweep && arguments.given(option)) arguments.reject(option, "is an option of a sweep");
-  if (kind && is_sweep && arguments.given("--capture-radius"))
-    arguments.reject("--capture-radius", "is an option of a basin");
+  std::vector<std::string_view> words;
+  words.reserve(kinds.size());
+  for (const Kind kind : kinds) words.push_back(name_of(kind));
+  const std::optional<std::size_t> word = arguments.word("WHAT", words);
+  if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
+  Request asked;
+  asked.kind = kinds[word.value_or(0)];
+  asked.file = scene_of(arguments, Stops::ignored);
+  asked.engine = engine_of(arguments, offered_engines());
+  asked.starts = starts_of(arguments, asked.file);
+  asked.sweep = rule_of(arguments, SteadyRule{});
+  asked.basin.steady = rule_of(arguments, asked.basin.steady);
+  asked.basin.capture_radius =
+      arguments.number("--capture-radius", {0, 0.5, false}).value_or(asked.basin.capture_radius);
+  asked.orbits = branch_rule_of(arguments, asked.sweep);
+  asked.averaging = averaging_of(arguments);
+  if (word) {
+    reject_options_of_others(arguments, asked.kind);
+    const Variables variables = variables_of(asked.file.scales);
+    if (asked.kind == Kind::orbits) {
+      asked.range = range_of(arguments, variables);
+    } else if (asked.kind != Kind::lyapunov) {
+      asked.axes = axes_of(arguments, variables, asked.kind == Kind::sweep);
+    }
+  }
   const auto output = arguments.file("--output");
   arguments.reject_overwriting("--output", output, {arguments.text("--scene").value_or("")});
-  const Format format = format_of(arguments, output, {Format::json, Format::csv});
+  asked.format = format_of(arguments, output, {Format::json, Format::csv});
   const bool in_si = arguments.flag("--si");
-  if (in_si && format != Format::csv)
+  if (in_si && asked.format != Format::csv)
     arguments.reject(
         "--si", "is for --format csv; the JSON file is dimensionless, its units say what a unit is in SI");
-  if (in_si && !file.scales) arguments.reject("--si", "needs a scene in units, by --scene");
-  const Threads threads = threads_of(arguments);
+  if (in_si && !asked.file.scales) arguments.reject("--si", "needs a scene in units, by --scene");
+  asked.threads = threads_of(arguments);
   arguments.finish();
   if (output) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
-  warn_of_cautions(this_command, file.scene, file.scales);
-  std::optional<SiUnits> units;
-  if (in_si) units = si_units_of(*file.scales);
+  warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
+  if (in_si) asked.units = si_units_of(*asked.file.scales);
 
-  const std::string text = saying_options([&] {
-    if (is_sweep) {
-      Progress progress("motions", 2 * axes[0].count * std::int64_t(starts.size()));
-      const auto sweeps = sweep(file.scene, engine, axes[0], rule, starts, threads,
-                                [&](std::int64_t done) { progress(done); });
-      warn_of(sweeps, rule);
-      return format == Format::csv ? sweep_csv(file.scene, axes[0], sweeps, units)
-                                   : sweep_text(file.scene, engine, rule, axes[0], sweeps, file.scales);
-    }
-    Progress progress("points", axes[0].count * axes[1].count);
-    const Basin map = basin(file.scene, engine, axes[0], axes[1], basin_rule, threads,
-                            [&](std::int64_t done) { progress(done); });
-    warn_of(map, rule);
-    return format == Format::csv
-               ? basin_csv(axes[0], axes[1], map, units)
-               : basin_text(file.scene, engine, basin_rule, axes[0], axes[1], map, file.scales);
-  });
+  const std::string text = saying_options([&] { return text_of(asked); });
   if (output) {
     write_file(*output, text);
   } else {
@@ -263,13 +483,16 @@ Options own_options() {
   };
   const SteadyRule steady;
   const BasinRule basin;
+  const BranchRule orbits;
+  const Averaging averaging;
   add("--vary", "NAME=FROM:TO:N",
       "the number of the scene that takes N equally spaced values, both\nends included: mass_ratio, "
       "force_amplitude, force_frequency, ...;\nbeside a scene in units also by its name there, in its unit:\n"
-      "exciting_frequency=4:6:101 in Hz. Once for a sweep, twice for a\nbasin",
+      "exciting_frequency=4:6:101 in Hz. Once for a sweep, twice for a\nbasin. For orbits NAME=FROM:TO, "
+      "frequency or amplitude of the\nforce; they begin at FROM, which may be the larger one",
       "Response", Option::Takes::repeated_value);
   add("--start", "X0:V0:Y0:W0",
-      "sweep: one more sweep that begins there instead of at the scene's\nrelease, in mm and mm/s beside a "
+      "sweep, orbits: one more that begins there beside the scene's\nrelease, in mm and mm/s beside a "
       "scene in units; may be repeated",
       "Response", Option::Takes::repeated_value);
   add("--tolerance", "X",
@@ -294,6 +517,28 @@ Options own_options() {
       "nearer; > 0 and <= 0.5, default " +
           number_text(basin.capture_radius),
       "Response");
+  add("--largest-step", "H",
+      "orbits: largest distance of two points of a branch in the space of\nx, x', y, y' and the number that "
+      "varies, dimensionless; a step also\nchanges that number by at most a hundredth of its range; "
+      "default " +
+          number_text(orbits.largest_step),
+      "Response");
+  add("--max-multiplier", "X",
+      "orbits: a branch ends where a multiplier is larger and no grazing is\nthe cause; 1 to 1e12, default " +
+          number_text(orbits.max_multiplier),
+      "Response");
+  add("--max-points", "N",
+      "orbits: points of a branch; 1 to 1e6, default " + std::to_string(orbits.max_points), "Response");
+  add("--max-branches", "N",
+      "orbits: how many branches are followed; 1 to 1000, default " + std::to_string(orbits.max_branches),
+      "Response");
+  add("--periods", "N",
+      "lyapunov: periods of the force over which the exponents are\naveraged; 10 to 1e9, default " +
+          std::to_string(averaging.periods),
+      "Response");
+  add("--discard", "N",
+      "lyapunov: periods of the force before these; 0 to 1e9, default " + std::to_string(averaging.discard),
+      "Response");
   add("--format", "NAME", "json (default) or csv, one table", "Output");
   add("--si", "",
       "csv of a scene in units: columns in SI, as their names say\n(amplitude_m, force_frequency_Hz)",
@@ -310,8 +555,10 @@ Command response_command() {
   Command command{.name = "response",
                   .description =
                       "Find the steady motions of a scene under its force: along one number, or "
-                      "as a map over two."};
-  command.options = {{"WHAT", "sweep|basin", "the steady motions along a number, or a map over two"}};
+                      "as a map over two; its periodic motions, stable or not, and its Lyapunov exponents."};
+  command.options = {{"WHAT", "sweep|basin|orbits|lyapunov",
+                      "the steady motions along a number, or a map over two; branches of periodic motions; "
+                      "Lyapunov exponents"}};
   for (const Options& options :
        {own_options(), scene_options(Stops::ignored), engine_options(offered_engines())})
     command.options.insert(command.options.end(), options.begin(), options.end());
@@ -323,20 +570,32 @@ Command response_command() {
       "of "
       "the steady\nmotion. The next value begins where this one ended: first upwards, then back down. Where "
       "two "
-      "motions are possible\nthe two ways differ. Beside them stand the amplitudes without the loose mass "
+      "motions are possible\nthe two ways differ. Beside them stand the amplitudes without the secondary "
+      "mass "
       "and "
       "with it locked to its box.\n\n"
       "basin: in which steady motion each point of a map ends, the points being initial values (x0, v0, y0, "
       "w0) "
       "or other\nnumbers of the scene.\n\n"
+      "orbits: the branch of periodic motions on which the steady motion at FROM lies, followed past folds "
+      "through stable\nand unstable motions, with their multipliers, and the branches that begin at its "
+      "flips "
+      "and where it loses its symmetry.\nWhere it ends in a grazing, simulation leads on.\n\n"
+      "lyapunov: at what rates small changes of the state grow or decay along a run from the scene's "
+      "release, "
+      "with their\nstandard errors, in units of 1/time.\n\n"
       "Examples:\n"
       "  impact-damper response sweep --mass-ratio 0.05 --damping-ratio 0.005 --force-amplitude 0.02 \\\n"
       "    --x0 0 --vary force_frequency=0.9:1.1:201 --format csv -o sweep.csv\n"
-      "  impact-damper response sweep --scene data/examples/machine.json \\\n"
-      "    --vary exciting_frequency=2.9:3.5:61 --format csv --si -o machine.csv\n"
+      "  impact-damper response sweep --scene data/examples/mast_in_wind.json \\\n"
+      "    --vary exciting_frequency=2.9:3.5:61 --format csv --si -o wind.csv\n"
       "  impact-damper response basin --mass-ratio 0.1 --damping-ratio 0.01 --force-amplitude 0.05 \\\n"
       "    --force-frequency 0.9 --y0 0.5 --engine restitution --vary x0=-1:1:200 --vary v0=-1:1:200 -o "
-      "map.json";
+      "map.json\n"
+      "  impact-damper response orbits --scene data/examples/mast_in_wind.json \\\n"
+      "    --vary exciting_frequency=3.08:3.3 --format csv --si -o orbits.csv\n"
+      "  impact-damper response lyapunov --mass-ratio 0.05 --damping-ratio 0.01 --force-amplitude 0.3 \\\n"
+      "    --force-frequency 0.9 --periods 20000";
   command.act = respond;
   return command;
 }

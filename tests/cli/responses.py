@@ -145,6 +145,177 @@ for name, words in basins.items():
 starts = json.loads((folder / "starts.json").read_text())
 demand([axis["from"] for axis in starts["axes"]] == [-2, 1 / 160], f"starts: {starts['axes']}")
 
+# Branches of orbits: the table holds their points and, in their places, the events.
+rigid = ["--engine", "restitution", "--mass-ratio", 0.02]
+two_impacts = [*rigid, "--damping-ratio", 0.1, "--force-amplitude", 0.0655307, "--force-frequency", 0.9]
+doubling = [*rigid, "--damping-ratio", 0.02, "--force-frequency", 0.9]
+branches = {
+    "folds": [*two_impacts, "--vary", "force_frequency=0.9:2.5"],
+    "flips": [*doubling, "--vary", "force_amplitude=0.05:0.12"],
+    "few": [*doubling, "--vary", "force_amplitude=0.05:0.12", "--max-branches", 1, "--largest-step", 0.01],
+    "mast": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.09:3.0", "--start=0:0:5:0"],
+    "chaotic": [*forced, "--force-frequency", 0.9, "--vary", "force_amplitude=0.05:0.06", "--max-periods", 20],
+}
+found = {}
+for name, words in branches.items():
+    document = found[name] = examined(respond(f"{name}.json", "orbits", *words), name)
+    number = document["range"]["number"]
+    demand(document["complete"] == (name != "few"), f"{name}: complete is {document['complete']}")
+    header, *rows = csv.reader(respond(f"{name}.csv", "orbits", *words, "--format", "csv").splitlines())
+    demand(header[:3] == ["branch", "event", number], f"{name}.csv: its header is {header}")
+    rows = [dict(zip(header, row)) for row in rows]
+    for index, branch in enumerate(document["branches"]):
+        columns = {"values" if column == number else column: column for column in header[2:]}
+        demand({len(branch[column]) for column in columns} == {len(branch["values"])}, f"{name}: columns are not equally long")
+        own = [row for row in rows if row["branch"] == str(index)]
+        points = [row for row in own if not row["event"]]
+        demand(len(points) == len(branch["values"]), f"{name}.csv: {len(points)} points")
+        for i, row in enumerate(points):
+            for column, heading in columns.items():
+                given = float(row[heading]) if row[heading] else None
+                demand(given == branch[column][i], f"{name}.csv: {heading} is {given}, not {branch[column][i]}")
+        told = [(sum(not before["event"] for before in own[:i]), row) for i, row in enumerate(own) if row["event"]]
+        demand(len(told) == len(branch["events"]), f"{name}.csv: {len(told)} events")
+        for (before, row), event in zip(told, sorted(branch["events"], key=lambda each: each["points_before"])):
+            demand((before, row["event"], float(row[number])) == (event["points_before"], event["kind"], event["value"]),
+                   f"{name}.csv: {row}")
+            demand({key: float(row[key]) for key in "xvyw"} == event["state"], f"{name}.csv: {row}")
+    demand(len(rows) == sum(len(each["values"]) + len(each["events"]) for each in document["branches"]), f"{name}.csv: rows")
+demand([start["branch"] for start in found["chaotic"]["starts"]] == [None] and not found["chaotic"]["branches"], "chaotic: a branch")
+demand([start["end"] for start in found["mast"]["starts"]] == ["periodic"] * 2, "mast: a start")
+
+
+def event_of(name, kind, branch=0):
+    """It, and the point before it."""
+    all_of_it = found[name]["branches"][branch]
+    event = next(each for each in all_of_it["events"] if each["kind"] == kind)
+    at = event["points_before"] - 1
+    return event["value"], {key: column[at] for key, column in all_of_it.items() if isinstance(column, list) and key != "events"}
+
+
+def swept(words, number, low, high, point):
+    """What sweep finds at two values, beginning at the lower one in the state of a point."""
+    start = ":".join(str(point[key]) for key in "xvyw")
+    up = json.loads(respond("swept.json", "sweep", *words, "--vary", f"{number}={low!r}:{high!r}:2", f"--start={start}",
+                            "--max-periods", 50000))["sweeps"][1]["up"]
+    return [{key: column[i] for key, column in up.items()} for i in (0, 1)]
+
+
+def is_same(point, steady):
+    keys = ("period", "impacts_left", "impacts_right", "symmetric")
+    return [point[key] for key in keys] == [steady[key] for key in keys]
+
+
+# Two symmetric impacts in a period, in closed form (M13.16 to M13.18): the states at phase 0.
+def two_impact_states(scene):
+    nu, zeta, e, omega = (scene[key] for key in ("mass_ratio", "damping_ratio", "restitution", "force_frequency"))
+    root = math.sqrt(1 - zeta * zeta)
+
+    def propagator(t):
+        decay, sin, cos = math.exp(-zeta * t), math.sin(root * t), math.cos(root * t)
+        return decay * (cos + zeta / root * sin), decay * sin / root, decay * (cos - zeta / root * sin)
+
+    half = math.pi / omega
+    c, s, s1 = propagator(half)
+    delta, b = 1 + c + s1 + math.exp(-2 * zeta * half), (1 - e) / (1 + e)
+    a, q = half + 4 * nu * s / delta, (b - nu * (1 - b) + 2 * nu * (1 + c) / delta) / omega
+    amplitude = scene["force_amplitude"] / abs(complex(1 - omega * omega, 2 * zeta * omega))
+    lag = math.atan2(2 * zeta * omega, 1 - omega * omega)
+    for sign in (1, -1):
+        inside = a * a - (a * a + 4 * q * q) * (1 - 4 * amplitude * amplitude)
+        v = (a + sign * math.sqrt(max(inside, 0))) / (a * a + 4 * q * q)
+        phase = lag + math.atan2((1 - a * v) / 2, q * v)  # of the force where the left wall is left
+        u, u1 = 2 * nu * v * s / delta, -2 * nu * v * (1 + c) / delta
+
+        def motion(t):
+            c, s, s1 = propagator(t)
+            return (amplitude * math.sin(omega * t + phase - lag) + u * c + u1 * s,
+                    amplitude * omega * math.cos(omega * t + phase - lag) - u * s + u1 * s1)
+
+        t = -phase / omega % (2 * half)
+        x, v_x = motion(t % half)
+        state = (x, v_x, motion(0)[0] - x + v * (t % half), v - v_x)
+        yield state if t < half else (-state[0], -state[1], 1 - state[2], -state[3])
+
+
+compared = 0
+folds = found["folds"]["branches"][0]
+for i, value in enumerate(folds["values"]):
+    # The multipliers of a period are the squares of those of half a period; near the fold, where one is 1, both motions
+    # are known to half of the digits.
+    near_fold = min(math.hypot(1 - folds[f"multiplier_{n}_re"][i], folds[f"multiplier_{n}_im"][i]) for n in (1, 2, 3, 4)) < 0.02
+    states = two_impact_states({**found["folds"]["scene"], "force_frequency": value})
+    gap = min(max(abs(a - folds[key][i]) for a, key in zip(state, "xvyw")) for state in states)
+    demand(gap < (1e-8 if near_fold else 1e-11), f"folds: {gap} from the closed form at {value}")
+    compared += not near_fold
+demand(compared > 50, f"folds: {compared} points are compared with the closed form")
+demand(0 in folds["stable"] and 1 in folds["stable"], "folds: no point is stable, or all are")
+
+# A sweep on both sides of an event.
+value, point = event_of("folds", "fold")
+before, beyond = swept(two_impacts, "force_frequency", value - 1e-4, value + 1e-4, point)
+demand(is_same(point, before) and not is_same(point, beyond), f"folds: a sweep sees {before} and {beyond} at {value}")
+value, point = event_of("flips", "symmetry_breaking")
+before, beyond = swept(doubling, "force_amplitude", value * 0.999, value * 1.001, point)
+demand(is_same(point, before) and (beyond["period"], beyond["symmetric"]) == (1, 0), f"flips: no symmetry breaking at {value}")
+value, point = event_of("flips", "flip", 1)
+before, beyond = swept(doubling, "force_amplitude", value * 0.999, value * 1.001, point)
+demand(is_same(point, before) and beyond["period"] == 2, f"flips: no flip at {value}: {before}, {beyond}")
+value, point = event_of("flips", "grazing", 2)  # of the stable motion of twice the period
+before, beyond = swept(doubling, "force_amplitude", value - 1e-7, value + 1e-7, point)
+demand(is_same(point, before) and not is_same(point, beyond), f"flips: no grazing at {value}: {before}, {beyond}")
+
+# And at a point where one wall is struck more often than the other.
+stable = next({key: column[0] for key, column in each.items() if isinstance(column, list) and key != "events"}
+              for each in found["flips"]["branches"] if each["impacts_left"][0] != each["impacts_right"][0] and each["stable"][0])
+there, _ = swept(doubling, "force_amplitude", stable["values"], stable["values"] * 1.0001, stable)
+demand(is_same(stable, there), f"flips: a sweep finds {there} at {stable}")
+demand(math.isclose(stable["amplitude"], there["amplitude"], rel_tol=1e-8), f"flips: amplitude {stable['amplitude']}")
+
+# Lyapunov exponents: on a stable orbit the logarithms of the multipliers, divided by the period.
+orbit = found["flips"]["branches"][0]
+on_orbit = [*doubling, "--force-amplitude", repr(orbit["values"][0])]
+for option, key in (("--x0", "x"), ("--v0", "v"), ("--y0", "y"), ("--w0", "w")):
+    on_orbit.append(f"{option}={orbit[key][0]!r}")
+document = examined(respond("exponents.json", "lyapunov", *on_orbit, "--periods", 400, "--discard", 300), "exponents")
+period = 2 * math.pi / 0.9
+moduli = [math.hypot(orbit[f"multiplier_{n}_re"][0], orbit[f"multiplier_{n}_im"][0]) for n in (1, 2, 3, 4)]
+alone = [orbit[f"multiplier_{n}_im"][0] == 0 for n in (1, 2, 3, 4)]
+for exponent, error, modulus, is_real in zip(document["exponents"], document["standard_errors"], moduli, alone):
+    expected = math.log(modulus) / period
+    # Of a conjugate pair each period's stretch varies as the pair turns.
+    demand(math.isclose(exponent, expected, rel_tol=1e-9 if is_real else 0.03), f"exponents: {exponent}, not {expected}")
+    demand(error < (1e-12 if is_real else 0.01), f"exponents: a standard error of {error}")
+impacts = orbit["impacts_left"][0] + orbit["impacts_right"][0]
+expected = -2 * 0.02 + 2 * impacts * math.log(document["scene"]["restitution"]) / period
+demand(math.isclose(sum(document["exponents"]), expected, rel_tol=1e-9), f"exponents: their sum is not {expected}")
+plain = list(csv.DictReader(respond("exponents.csv", "lyapunov", *on_orbit, "--periods", 400, "--discard", 300, "--format",
+                                    "csv").splitlines()))
+demand([[float(row[key]) for row in plain] for key in ("exponent", "standard_error")] ==
+       [document["exponents"], document["standard_errors"]], "exponents.csv: other numbers")
+ended = examined(respond("ended.json", "lyapunov", *forced, "--force-frequency", 0.9, "--max-impacts", 1), "ended")
+demand((ended["stop_reason"], ended["exponents"], ended["standard_errors"]) == ("impact_budget", [], []), "ended: exponents")
+
+# In SI.
+mast = ["--scene", source / "data/examples/mast_in_wind.json"]
+units = found["mast"]["units"]
+length, time = units["length_m"], units["time_s"]
+plain = list(csv.DictReader((folder / "mast.csv").read_text().splitlines()))
+text = respond("mast_si.csv", "orbits", *branches["mast"], "--format", "csv", "--si")
+SI = {"force_frequency_Hz": ("force_frequency", 1 / (2 * math.pi * time)), "amplitude_m": ("amplitude", length),
+      "slowest_impact_m_per_s": ("slowest_impact", length / time), "nearest_miss_m": ("nearest_miss", length),
+      "y_m": ("y", length), "w_m_per_s": ("w", length / time), "multiplier_1_re": ("multiplier_1_re", 1)}
+for row, own in zip(csv.DictReader(text.splitlines()), plain):
+    for column, (name, scale) in SI.items():
+        demand((row[column] == "") == (own[name] == "") and
+               (not row[column] or math.isclose(float(row[column]), float(own[name]) * scale, rel_tol=1e-12)),
+               f"mast_si.csv: {column} is {row[column]}")
+plain, in_si = (list(csv.DictReader(respond(f"{name}.csv", "lyapunov", *mast, "--periods", 50, "--format", "csv", *more).splitlines()))
+                for name, more in (("rates", []), ("rates_si", ["--si"])))
+for row, own in zip(in_si, plain):
+    for column in ("exponent", "standard_error"):
+        demand(math.isclose(float(row[f"{column}_per_s"]), float(own[column]) / time, rel_tol=1e-12), f"rates_si.csv: {row}")
+
 # Interrupted: one line that says what is left, and no file, also none half written.
 process = subprocess.Popen([str(program), "response", "basin", *map(str, forced), "--vary", "x0=-1:1:2000", "--vary",
                             "v0=-1:1:2000", "-o", "long.json"], cwd=folder, stderr=subprocess.PIPE, text=True)

@@ -133,6 +133,42 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
   CHECK(found.exponents[0] > 0.01);
 }
 
+TEST_CASE("the standard errors are how much the exponents of independent runs scatter") {
+  Scene scene = forced(0.05, 0.01, 0.9, 0.3);
+  constexpr int runs = 24;
+  double mean = 0, squares = 0, told = 0;
+  std::vector<double> all;
+  for (int i = 0; i < runs; ++i) {
+    scene.x0 = 0.3 + 0.01 * i;
+    const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, 1005, 50);
+    REQUIRE(found.standard_errors.size() == found.exponents.size());
+    all.push_back(found.exponents[0]);
+    mean += found.exponents[0] / runs;
+    told += found.standard_errors[0] / runs;
+  }
+  for (const double one : all) squares += (one - mean) * (one - mean);
+  const double scatter = std::sqrt(squares / (runs - 1));
+  MESSAGE("scatter ", scatter, ", standard error ", told);
+  CHECK(told > 0.6 * scatter);
+  CHECK(told < 1.6 * scatter);
+
+  // Of what is the same in each period there is none; of nine periods it is not told.
+  const Scene light = forced(0.02, 0.05, 0.9, 0.1);
+  State<double> s = two_impact_orbits(light).at(0).state;
+  for (int i = 0; i < 500; ++i) s = PoincareMap(light, Restitution{}, 2)(s).state;
+  const Orbit orbit = find_orbit(light, Restitution{}, 1, s);
+  const LyapunovExponents regular = lyapunov_exponents(orbit.scene, Restitution{}, 100, 400);
+  double sum_of_errors = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (orbit.multipliers[i].im == 0) sum_of_errors += regular.standard_errors[i];
+  CHECK(sum_of_errors < 1e-9);
+  CHECK(lyapunov_exponents(orbit.scene, Restitution{}, 9).standard_errors.empty());
+
+  std::int64_t calls = 0;
+  lyapunov_exponents(orbit.scene, Restitution{}, 12, 3, [&](std::int64_t done) { CHECK(done == ++calls); });
+  CHECK(calls == 15);
+}
+
 TEST_CASE("sticking leaves two exponents") {
   Scene scene = forced(0.1, 0.02, 0.95, 0.3);
   const State<double> s = two_impact_orbits(scene).at(0).state;

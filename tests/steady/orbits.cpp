@@ -44,6 +44,11 @@ double bisected(double low, double high, const std::function<bool(double)>& is_l
   }
   return low;
 }
+// An event at which nothing branches off.
+BranchEvent fold_at(const Scene& scene) {
+  const Orbit orbit = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  return {BranchEventKind::fold, scene.force_amplitude, orbit};
+}
 const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
   for (const BranchEvent& event : branch.events)
     if (event.kind == kind) return &event;
@@ -74,6 +79,8 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
       CHECK(apart(state_of_scene(orbit.scene), expected.state) < 1e-12 * scale);
       CHECK(std::fabs(orbit.impacts[0].speed - expected.impact_speed) < 1e-12 * scale);
       REQUIRE(orbit.half_multipliers);
+      for (std::size_t i = 0; i < 4; ++i)  // of a pair the one above the real axis is first
+        if (orbit.multipliers[i].im < 0) CHECK(orbit.multipliers[i - 1].im == -orbit.multipliers[i].im);
       // Of the whole period, by its own derivative.
       const Multipliers whole =
           multipliers_of(PoincareMap(scene, Restitution{}, 2)(state_of_scene(orbit.scene)).by_state);
@@ -235,6 +242,7 @@ TEST_CASE("a secondary mass that is not struck grazes both walls where the linea
       const Orbit idle = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.symmetric = true});
       REQUIRE(idle.end == OrbitEnd::converged);
       CHECK(idle.impacts.empty());
+      CHECK(!idle.stable());
       CHECK(*idle.nearest_miss == doctest::Approx(0.5 - linear_amplitude(scene)).epsilon(1e-12));
       const Branch branch = follow(idle, Parameter::force_amplitude, {.least = 0.01, .most = 2});
       CHECK(branch.end == BranchEnd::grazing);
@@ -242,6 +250,14 @@ TEST_CASE("a secondary mass that is not struck grazes both walls where the linea
       CHECK(branch.events[0].kind == BranchEventKind::grazing);
       const double expected = 0.02 * 0.5 / linear_amplitude(scene);
       CHECK(std::fabs(branch.events[0].parameter - expected) < 1e-10);
+      if (nu != 0.02) continue;
+      // Compliant walls are met at the same amplitude.
+      const Orbit between = find_orbit(scene, Exact{}, 1, {0, 0, 0.5, 0}, {.symmetric = true});
+      const Branch soft = follow(between, Parameter::force_amplitude, {.least = 0.01, .most = 2});
+      REQUIRE(!soft.events.empty());
+      CHECK(soft.end == BranchEnd::grazing);
+      CHECK(soft.events[0].kind == BranchEventKind::grazing);
+      CHECK(std::fabs(soft.events[0].parameter - expected) < 2e-9);
     }
   }
 }
@@ -362,12 +378,26 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
                              {.least = 0.05, .most = 0.07, .upwards = false, .max_points = 200});
   const BranchEvent* joined = first_of(down, BranchEventKind::symmetry_breaking);
   REQUIRE(joined);
+  CHECK(down.end == BranchEnd::joined);
+  CHECK(down.orbits.back().scene.force_amplitude == joined->parameter);
   const Orbit below = find_orbit(forced(0.02, 0.02, 0.9, 0.05), Restitution{}, 1,
                                  two_impact_orbits(forced(0.02, 0.02, 0.9, 0.05)).at(0).state);
   const Branch main = follow(below, Parameter::force_amplitude, {.least = 0.04, .most = 0.07});
   const BranchEvent* left = first_of(main, BranchEventKind::symmetry_breaking);
   REQUIRE(left);
   CHECK(std::fabs(joined->parameter - left->parameter) < 1e-10);
+
+  // The branch that is found there is that of simulation, or of its mirror image.
+  const Orbit beside_it = branching_off(*left, Parameter::force_amplitude);
+  REQUIRE(beside_it.end == OrbitEnd::converged);
+  CHECK(!beside_it.symmetric);
+  CHECK(beside_it.scene.force_amplitude > left->parameter);
+  const Branch off = follow(beside_it, Parameter::force_amplitude, {.least = 0.04, .most = 0.06});
+  REQUIRE(off.end == BranchEnd::range);
+  const State<double> there = state_of_scene(off.orbits.back().scene),
+                      mirrored = PoincareMap(scene, Restitution{}, 1)(there).state;
+  CHECK(std::min(apart(there, state_of_scene(one.scene)), apart(mirrored, state_of_scene(one.scene))) < 1e-9);
+  CHECK(branching_off(fold_at(scene), Parameter::force_amplitude).end == OrbitEnd::no_convergence);
 
   const Branch up = follow(one, Parameter::force_amplitude, {.least = 0.05, .most = 0.2});
   const BranchEvent* flip = first_of(up, BranchEventKind::flip);
@@ -382,6 +412,68 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   REQUIRE(doubled.end == OrbitEnd::converged);
   CHECK(doubled.periods == 2);
   CHECK(doubled.stable());
+
+  // From the flip to there, and back from there to the flip.
+  const Orbit first = branching_off(*flip, Parameter::force_amplitude);
+  REQUIRE(first.end == OrbitEnd::converged);
+  CHECK(first.periods == 2);
+  const Branch off_flip = follow(first, Parameter::force_amplitude,
+                                 {.least = 0.05, .most = scene.force_amplitude, .first_step = 1e-3});
+  REQUIRE(off_flip.end == BranchEnd::range);
+  const State<double> last = state_of_scene(off_flip.orbits.back().scene),
+                      later = settled(scene, Restitution{}, last, 1);
+  CHECK(std::min(apart(last, state_of_scene(doubled.scene)), apart(later, state_of_scene(doubled.scene))) <
+        1e-9);
+  const Branch back =
+      follow(doubled, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .upwards = false});
+  CHECK(back.end == BranchEnd::joined);
+  CHECK(back.events.back().kind == BranchEventKind::flip);
+  CHECK(std::fabs(back.events.back().parameter - flip->parameter) < 1e-10);
+}
+
+TEST_CASE("steps of the parameter are as short as asked for, and events say between which orbits they are") {
+  const Scene scene = forced(0.02, 0.02, 0.9, 0.04);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Branch branch = follow(first, Parameter::force_amplitude,
+                               {.least = 0.03, .most = 0.07, .largest_step = 1, .largest_change = 3e-4});
+  REQUIRE(branch.end == BranchEnd::range);
+  CHECK(branch.orbits.size() > 100);
+  for (std::size_t i = 1; i < branch.orbits.size(); ++i)
+    CHECK(branch.orbits[i].scene.force_amplitude - branch.orbits[i - 1].scene.force_amplitude < 3.3e-4);
+  const BranchEvent* event = first_of(branch, BranchEventKind::symmetry_breaking);
+  REQUIRE(event);
+  const auto at = static_cast<std::size_t>(event->orbits_before);
+  CHECK(branch.orbits[at - 1].scene.force_amplitude < event->parameter);
+  CHECK(event->parameter < branch.orbits[at].scene.force_amplitude);
+  // An event in the last step before the end of the range is not missed.
+  const Branch shorter =
+      follow(first, Parameter::force_amplitude, {.least = 0.03, .most = event->parameter + 1e-7});
+  REQUIRE(shorter.end == BranchEnd::range);
+  CHECK(first_of(shorter, BranchEventKind::symmetry_breaking) != nullptr);
+  const Branch shortest =
+      follow(first, Parameter::force_amplitude, {.least = 0.03, .most = event->parameter - 1e-7});
+  CHECK(shortest.events.empty());
+}
+
+TEST_CASE("a branch ends where it is more unstable than asked for, unless grazing is the cause") {
+  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Branch branch =
+      follow(first, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .max_multiplier = 5});
+  REQUIRE(branch.end == BranchEnd::unstable);
+  const std::size_t last = branch.orbits.size() - 1;
+  const auto instability = [&](std::size_t i) {
+    return branch.orbits[i].multipliers[0].modulus() *
+           std::pow(std::min(1.0, *branch.orbits[i].slowest_impact), 2);
+  };
+  CHECK(instability(last) > 5);
+  CHECK(instability(last - 1) <= 5);
+
+  const Scene grazing = forced(0.5, 0.1, 1.4, 0.309605);
+  const Orbit impacting = find_orbit(grazing, Restitution{}, 1, two_impact_orbits(grazing).at(0).state);
+  CHECK(follow(impacting, Parameter::force_frequency,
+               {.least = 0.3, .most = 2.5, .upwards = false, .max_multiplier = 100})
+            .end == BranchEnd::grazing);
 }
 
 TEST_CASE("what cannot be followed or found says so") {
@@ -395,6 +487,10 @@ TEST_CASE("what cannot be followed or found says so") {
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 2, {}, {.symmetric = true}), InvalidArguments);
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 1, {}, {.tolerance = 0}), InvalidArguments);
   CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0, .most = 1}), InvalidArguments);
+  CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = 1, .largest_change = 0}),
+                  InvalidArguments);
+  CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = 1, .max_multiplier = 0}),
+                  InvalidArguments);
   CHECK_THROWS_AS(follow(none, Parameter::force_amplitude, {.least = 0.1, .most = std::nan("")}),
                   InvalidArguments);
 }

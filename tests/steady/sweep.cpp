@@ -61,7 +61,7 @@ TEST_CASE("a mass that is never struck leaves the closed form of the empty box")
         REQUIRE(steady.means);
         CHECK(steady.period == 1);
         CHECK(steady.impacts == ImpactCounts{0, 0});
-        CHECK(steady.symmetric == (y0 == 0.5));  // the loose mass lies in the middle of the box's ways
+        CHECK(steady.symmetric == (y0 == 0.5));  // the secondary mass lies in the middle of the box's ways
         const double amplitude = std::abs(f0) / std::abs(h);
         CHECK(steady.means->amplitude == doctest::Approx(amplitude).epsilon(1e-8));
         CHECK(steady.means->fundamental == doctest::Approx(amplitude).epsilon(1e-8));
@@ -97,7 +97,7 @@ TEST_CASE("a mass that sticks nearly all the time is as if locked in") {
   }
 }
 
-// x and the speed V of the loose mass where it strikes each wall once in a period, at equal intervals,
+// x and the speed V of the secondary mass where it strikes each wall once in a period, at equal intervals,
 // without damping: the mass leaves the left wall at t = 0, the force is f0 sin(omega t + tau).
 struct SymmetricPair {
   double nu, omega, c, v, tau;

@@ -43,11 +43,8 @@ class Frame {
     return loss < most ? 1 + int(loss) : most;
   }
   void forget_logarithms() { logarithms_ = {}; }
-  std::vector<double> exponents(double time) const {
-    std::vector<double> all;
-    for (std::size_t j = 0; j < dimensions_; ++j) all.push_back(logarithms_[j] / time);
-    return all;
-  }
+  const StateVector& logarithms() const { return logarithms_; }
+  std::size_t dimensions() const { return dimensions_; }
 
  private:
   std::array<StateVector, 4> columns_ = identity<double>();
@@ -55,10 +52,22 @@ class Frame {
   std::size_t dimensions_ = 4;
 };
 
+constexpr std::int64_t blocks = 10;
+
+// What an exponent's means over blocks say of the error of the mean over all.
+double standard_error(const std::vector<StateVector>& means, std::size_t j) {
+  const auto count = double(means.size());
+  double mean = 0, squares = 0;
+  for (const StateVector& each : means) mean += each[j] / count;
+  for (const StateVector& each : means) squares += (each[j] - mean) * (each[j] - mean);
+  return std::sqrt(squares / (count - 1) / count);
+}
+
 }  // namespace
 
 LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
-                                     std::int64_t skipped) {
+                                     std::int64_t skipped,
+                                     const std::function<void(std::int64_t done)>& progress) {
   std::vector<Problem> problems;
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
@@ -71,6 +80,9 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   require_none(incompatibilities_of(period, engine));
   LyapunovExponents result;
   Frame frame;
+  std::vector<StateVector> means;  // of the blocks
+  StateVector before{};            // logarithms when the block began
+  std::int64_t begun = 0;          // periods that were used by then
   for (std::int64_t n = 0; n < skipped + periods; ++n) {
     if (n == skipped) frame.forget_logarithms();
     VariationObserver<Frame> observer(period, engine, frame);
@@ -78,9 +90,23 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
     if (result.stop_reason != StopReason::time) return result;
     const State<double>& end = observer.variation.end();
     period.x0 = end.x, period.v0 = end.v, period.y0 = end.y, period.w0 = end.w;
+    if (progress) progress(n + 1);
+
+    // Blocks differ by one period where their number does not divide that of the periods.
+    const std::int64_t used = n + 1 - skipped;
+    if (used < 1 || used != periods * (std::ssize(means) + 1) / blocks) continue;
+    StateVector mean = frame.logarithms();
+    for (std::size_t j = 0; j < 4; ++j)
+      mean[j] = (mean[j] - before[j]) / (double(used - begun) * map.duration());
+    means.push_back(mean);
+    before = frame.logarithms();
+    begun = used;
   }
   result.periods = periods;
-  result.exponents = frame.exponents(double(periods) * map.duration());
+  for (std::size_t j = 0; j < frame.dimensions(); ++j) {
+    result.exponents.push_back(frame.logarithms()[j] / (double(periods) * map.duration()));
+    if (periods >= blocks) result.standard_errors.push_back(standard_error(means, j));
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "impact_damper/run.hpp"
@@ -16,11 +17,17 @@ struct LyapunovExponents {
   // minus infinity, because both masses stick, or too far below to be told, because a sustained contact damps
   // its fast mode by more than exp(-36) 4096 times.
   std::vector<double> exponents;
+  // Of each: the standard deviation of the means of ten blocks of periods, divided by the root of ten. A
+  // statistical uncertainty if the motion forgets within one block where it was. None for less than ten
+  // periods.
+  std::vector<double> standard_errors;
 };
 
-// From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0. Throws
+// From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0.
+// `progress`, if given, is called with the number of periods, of all these, that are done. Throws
 // InvalidArguments as PoincareMap does.
 LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
-                                     std::int64_t skipped = 0);
+                                     std::int64_t skipped = 0,
+                                     const std::function<void(std::int64_t done)>& progress = {});
 
 }  // namespace impact_damper

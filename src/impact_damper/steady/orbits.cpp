@@ -43,16 +43,6 @@ double largest(const StateVector& s) {
 State<double> state_at(const Point& p) { return {p[0], p[1], p[2], p[3]}; }
 Point point_at(const State<double>& s, double parameter) { return {s.x, s.v, s.y, s.w, parameter}; }
 
-double Scene::*member_of(Parameter parameter) {
-  switch (parameter) {
-    case Parameter::force_frequency:
-      return &Scene::force_frequency;
-    case Parameter::force_amplitude:
-      return &Scene::force_amplitude;
-  }
-  return {};
-}
-
 // The equation H^n(s) - s = 0 for states and values of one parameter.
 struct Equation {
   Scene scene;
@@ -302,8 +292,28 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
         {impact.time + map.duration(), impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed});
   orbit.sticking *= 2;
   orbit.half_multipliers = orbit.multipliers;
-  for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im};
+  for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im + 0.0};
+  // A square may lie below the real axis where the number does not; the + 0.0 makes no -0.
+  for (std::size_t i = 0; i + 1 < 4; ++i)
+    if (orbit.multipliers[i].im < 0 && orbit.multipliers[i + 1].im == -orbit.multipliers[i].im)
+      std::swap(orbit.multipliers[i], orbit.multipliers[i + 1]);
   return orbit;
+}
+
+// The eigenvector of -1, of length 1, of a matrix that has this eigenvalue nearly; by inverse iteration.
+std::optional<StateVector> reversed_by(StateMatrix a) {
+  constexpr double shift = 1e-9;  // so that the matrix is not singular
+  for (std::size_t i = 0; i < 4; ++i) a[i][i] += 1 + shift;
+  StateVector v{1, 1, 1, 1};
+  for (int pass = 0; pass < 4; ++pass) {
+    const auto next = solution<4>(a, v);
+    if (!next) return {};
+    double size = 0;
+    for (const double entry : *next) size += entry * entry;
+    size = std::sqrt(size);
+    for (std::size_t i = 0; i < 4; ++i) v[i] = (*next)[i] / size;
+  }
+  return v;
 }
 
 std::vector<Problem> problems_of(const OrbitOptions& options) {
@@ -364,6 +374,10 @@ class Follower {
     double step = options_.first_step;
     branch.end = BranchEnd::points;
     while (tangent && int(branch.orbits.size()) < options_.max_points) {
+      // Smaller where the parameter changes more, but not for it alone too small to go on.
+      const double share = std::fabs((*tangent)[at_parameter]);
+      if (step * share > options_.largest_change)
+        step = std::max(options_.largest_change / share, options_.smallest_step);
       if (far_from_grazing(now.image)) {
         anchor_ = now;
         anchor_tangent_ = *tangent;
@@ -380,11 +394,15 @@ class Follower {
         add_grazing_at_end(branch, now);
         return branch;
       }
+      add_events(branch, now, *tangent, step, next);
+      if (branch.end == BranchEnd::joined) {
+        branch.orbits.push_back(branch.events.back().orbit);
+        return branch;
+      }
       if (!in_range(next.point)) {
         finish_at_end_of_range(branch, now, next);
         return branch;
       }
-      add_events(branch, now, *tangent, step, next);
       add(branch, next);
       const bool is_back = branch.orbits.size() > 3 && distance(next.point, origin) < step &&
                            dot(along(origin, -1, now.point), *tangent) > 0;
@@ -392,6 +410,10 @@ class Follower {
       tangent = turned;
       if (is_back) {
         branch.end = BranchEnd::closed;
+        return branch;
+      }
+      if (instability(branch.orbits.back()) > options_.max_multiplier) {
+        branch.end = BranchEnd::unstable;
         return branch;
       }
       if (next.residuals.size() <= 5) step = std::min(1.5 * step, options_.largest_step);
@@ -404,6 +426,10 @@ class Follower {
   void add(Branch& branch, const Solution& at) { branch.orbits.push_back(orbit_at(at)); }
   Orbit orbit_at(const Solution& at) const {
     return orbit_of(equation_, at, first_.periods, first_.symmetric);
+  }
+  static double instability(const Orbit& orbit) {
+    const double speed = std::min(1.0, orbit.slowest_impact.value_or(1));
+    return orbit.multipliers[0].modulus() * (orbit.symmetric ? speed * speed : speed);
   }
   static bool far_from_grazing(const PoincareImage& image) {
     constexpr double far = 1e-5;
@@ -420,10 +446,9 @@ class Follower {
   }
   // The determinant of the bordered matrix keeps its sign along a branch, and is the product of (1 - m)
   // divided by the parameter's share of the direction (M13.11). So if one of the two changes its sign and
-  // not the other, the step has led to another branch. Where orbits that are not symmetric become so it
-  // changes as well.
+  // not the other, the step has led to another branch; or across a junction, where the branch ends.
   bool jumped(const Solution& now, double share, const Solution& next, double next_share) const {
-    if (!first_.symmetric || now.image.impacts.empty()) return false;
+    if (now.image.impacts.empty() || crosses(now, next)) return false;
     return products_of(now.image).fold * share * products_of(next.image).fold * next_share < 0;
   }
   // The direction of the branch, (M13.11), the one that `like` points to.
@@ -438,10 +463,11 @@ class Follower {
     return solve(equation_, now.point, from, {from, normal_at(now, tangent)});
   }
   // Where an orbit that is not symmetric is about to become so, and so to meet the branch of symmetric ones,
-  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it.
+  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it. The same where
+  // an orbit is about to meet the branch of those of half its period.
   Point normal_at(const Solution& now, const Point& tangent) const {
-    if (first_.symmetric || first_.periods % 2 == 0) return tangent;
-    const auto rest = rest_after(equation_, now.point, first_.periods);
+    if (first_.symmetric) return tangent;
+    const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
     if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
     const Point across = normalized(Point{(*rest)[0], (*rest)[1], (*rest)[2], (*rest)[3], 0});
     const double along_tangent = dot(across, tangent);
@@ -449,11 +475,19 @@ class Follower {
     return along_tangent > 0 ? across : along(Point{}, -1, across);
   }
 
+  // Those in the range between two orbits, of which the second may lie beyond it.
   void add_events(Branch& branch, const Solution& now, const Point& tangent, double step,
                   const Solution& next) const {
     if (!of_one_kind(now.image, next.image)) add_grazing(branch, now, tangent, step);
     if (now.image.impacts.empty() || next.image.impacts.empty()) return;  // linear: nothing can change
-    // At a fold the parameter turns back; where an orbit that is not symmetric becomes so, it does, too.
+    if (const auto at = junction_between(now, next, step)) {
+      if (!in_range(at->point)) return;
+      branch.events.push_back(
+          {first_.periods % 2 == 0 ? BranchEventKind::flip : BranchEventKind::symmetry_breaking,
+           at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
+      branch.end = BranchEnd::joined;
+      return;
+    }
     const auto slope = [&](const Solution& at) {
       const auto direction = tangent_at(at, at.plane.normal);
       return direction ? (*direction)[at_parameter] : 0;
@@ -466,20 +500,60 @@ class Follower {
     const auto pairs = [](const Solution& at) { return products_of(at.image).pairs; };
     add_event(branch, now, tangent, step, BranchEventKind::neimark_sacker, pairs(now), pairs(next), pairs);
   }
+  // Where the branch meets that of orbits of half its length, from which it branches off: H^n(s) - s changes
+  // its sign, and a multiplier of H^n is -1 (M13.21). The bordered matrix is singular there, that of H^n is
+  // not: so the point is found along the other branch, as a root of the parameter by the secant method.
+  std::optional<Solution> junction_between(const Solution& now, const Solution& next, double step) const {
+    if (!crosses(now, next)) return {};
+    Equation half = equation_;
+    half.half_periods /= 2;
+
+    const Point middle = along(now.point, 0.5, along(next.point, -1, now.point));
+    const auto at_parameter_value = [&](const Point& from, double value) {
+      Point p = from;
+      p[at_parameter] = value;
+      return solve(half, middle, p, at_value(p));
+    };
+    Solution other = at_parameter_value(middle, middle[at_parameter] * (1 + 1e-6)),
+             at = at_parameter_value(middle, middle[at_parameter]);
+    for (int i = 0; i < 20; ++i) {
+      if (at.end != OrbitEnd::converged || other.end != OrbitEnd::converged) return {};
+      const double value = products_of(at.image).flip, change = value - products_of(other.image).flip;
+      const double by = value * (at.point[at_parameter] - other.point[at_parameter]) / change;
+      if (!std::isfinite(by)) break;
+      other = std::exchange(at, at_parameter_value(at.point, at.point[at_parameter] - by));
+      if (std::fabs(by) <= 1e-14 * at.point[at_parameter]) break;
+    }
+    if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image))
+      return {};
+    at.image = equation_.map(at.point[at_parameter])(state_at(at.point));
+    return at;
+  }
+  // Whether H^n(s) - s has turned round.
+  bool crosses(const Solution& now, const Solution& next) const {
+    if (first_.symmetric) return false;
+    const auto before = rest_after(equation_, now.point, equation_.half_periods / 2),
+               after = rest_after(equation_, next.point, equation_.half_periods / 2);
+    if (!before || !after) return false;
+    double product_of_both = 0;
+    for (std::size_t i = 0; i < 4; ++i) product_of_both += (*before)[i] * (*after)[i];
+    return product_of_both < 0;
+  }
+  static bool is_flip(const PoincareImage& image) {
+    const Multipliers all = multipliers_of(image.by_state);
+    return std::any_of(all.begin(), all.end(),
+                       [](const Multiplier& m) { return std::hypot(m.re + 1, m.im) < 1e-6; });
+  }
+
   // If the test changes its sign.
   template <class Test>
   void add_event(Branch& branch, const Solution& now, const Point& tangent, double step, BranchEventKind kind,
                  double before, double after, Test&& test) const {
     if (!(before * after < 0)) return;
     const auto at = root_between(now, tangent, step, before, after, test);
-    if (!at) return;
+    if (!at || !in_range(at->point)) return;
     if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
-    // How far from symmetric the orbit is grows as the root of the distance in the parameter.
-    constexpr double nearly = 1e-4;
-    if (kind == BranchEventKind::fold && !first_.symmetric && first_.periods % 2 != 0 &&
-        closes_after(equation_, at->point, first_.periods, nearly))
-      kind = BranchEventKind::symmetry_breaking;
-    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at)});
+    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
   }
   // Of two real multipliers, one the inverse of the other, the product is 1 as well.
   static bool on_unit_circle(const PoincareImage& image) {
@@ -534,13 +608,25 @@ class Follower {
         high = middle;
       }
     }
-    branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], orbit_at(last)});
+    if (!in_range(last.point)) return;
+    branch.events.push_back(
+        {BranchEventKind::grazing, last.point[at_parameter], orbit_at(last), std::ssize(branch.orbits)});
   }
 
   // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
   // parameter is a smooth function of it (M13.14), so a polynomial through a few orbits before leads there.
   void add_grazing_at_end(Branch& branch, const Solution& last) const {
-    if (!has_rigid_walls(equation_.engine)) return;
+    if (!has_rigid_walls(equation_.engine)) {
+      // The branch has a kink where it grazes. Where that is too sharp for the last step, all that is left of
+      // it is below these, which are of the order of smallest_step and of its root.
+      if (!(last.image.nearest_miss && *last.image.nearest_miss < 1e-8) &&
+          !(last.image.slowest_impact && *last.image.slowest_impact < 1e-4))
+        return;
+      branch.end = BranchEnd::grazing;
+      branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], branch.orbits.back(),
+                               std::ssize(branch.orbits)});
+      return;
+    }
     for (const auto member : {&PoincareImage::slowest_impact, &PoincareImage::nearest_miss}) {
       if (!(last.image.*member && *(last.image.*member) < 1e-4)) continue;
       std::optional<Extrapolated> best;
@@ -550,7 +636,8 @@ class Follower {
       }
       if (!best) continue;
       branch.end = BranchEnd::grazing;
-      branch.events.push_back({BranchEventKind::grazing, best->parameter, branch.orbits.back()});
+      branch.events.push_back(
+          {BranchEventKind::grazing, best->parameter, branch.orbits.back(), std::ssize(branch.orbits)});
       return;
     }
   }
@@ -599,6 +686,16 @@ class Follower {
 
 }  // namespace
 
+double Scene::*member_of(Parameter parameter) {
+  switch (parameter) {
+    case Parameter::force_frequency:
+      return &Scene::force_frequency;
+    case Parameter::force_amplitude:
+      return &Scene::force_amplitude;
+  }
+  return {};
+}
+
 std::string_view name_of(OrbitEnd end) {
   switch (end) {
     case OrbitEnd::converged:
@@ -635,8 +732,12 @@ std::string_view name_of(BranchEnd end) {
       return "grazing";
     case BranchEnd::closed:
       return "closed";
+    case BranchEnd::joined:
+      return "joined";
     case BranchEnd::step_too_small:
       return "step_too_small";
+    case BranchEnd::unstable:
+      return "unstable";
     case BranchEnd::points:
       return "points";
     case BranchEnd::not_an_orbit:
@@ -689,9 +790,41 @@ Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& opti
     problems.push_back({"smallest_step", "must be > 0 and <= first_step"});
   if (!(options.largest_step >= options.first_step))
     problems.push_back({"largest_step", "must be >= first_step"});
+  if (!(options.largest_change > 0)) problems.push_back({"largest_change", "must be > 0"});
+  if (!(options.max_multiplier >= 1)) problems.push_back({"max_multiplier", "must be >= 1"});
   if (!(options.max_points >= 1)) problems.push_back({"max_points", "must be >= 1"});
   require_none(problems);
   return Follower(orbit, parameter, options).follow();
+}
+
+Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOptions& options) {
+  require_none(problems_of(options));
+  const Orbit& from = event.orbit;
+  Orbit none;
+  none.scene = from.scene;
+  none.engine = from.engine;
+  const bool doubles =
+      event.kind == BranchEventKind::flip || event.kind == BranchEventKind::symmetry_breaking;
+  if (!doubles || from.end != OrbitEnd::converged) return none;
+  const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
+  const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
+  const Point origin =
+      point_at({from.scene.x0, from.scene.v0, from.scene.y0, from.scene.w0}, event.parameter);
+  const std::optional<StateVector> direction = reversed_by(
+      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(state_at(origin))
+          .by_state);
+  if (!direction) return none;
+  const Point normal{(*direction)[0], (*direction)[1], (*direction)[2], (*direction)[3], 0};
+  for (const double gap : {0.01, -0.01, 0.001, -0.001}) {
+    const Point start = along(origin, gap, normal);
+    const Solution found = solve(equation, origin, start, {start, normal});
+    if (found.end != OrbitEnd::converged) continue;
+    // On the branch from which it comes the state would be the same after half of the time, here it is on
+    // the other side.
+    const auto rest = rest_after(equation, found.point, half_periods);
+    if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, found, half_periods, false);
+  }
+  return none;
 }
 
 }  // namespace impact_damper

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -47,7 +48,8 @@ struct Orbit {
   // How near to grazing, as in PoincareImage.
   std::optional<double> slowest_impact, nearest_miss;
 
-  bool stable() const { return multipliers[0].modulus() < 1; }
+  // Without impacts two multipliers are 1: a secondary mass at rest elsewhere rests there, too.
+  bool stable() const { return !impacts.empty() && multipliers[0].modulus() < 1; }
   double residual() const { return residuals.back(); }
 };
 
@@ -56,11 +58,13 @@ Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const St
                  const OrbitOptions& options = {});
 
 enum class Parameter { force_frequency, force_amplitude };
+double Scene::*member_of(Parameter parameter);
 
 enum class BranchEventKind {
   fold,               // the branch turns back in the parameter: multiplier +1
-  flip,               // multiplier -1: an orbit of twice the period branches off
-  symmetry_breaking,  // multiplier -1 of half a period with the mirror: two that are not symmetric branch off
+  flip,               // multiplier -1: an orbit of twice the period branches off, or this one did
+  symmetry_breaking,  // multiplier -1 of half a period with the mirror: two that are not symmetric branch
+                      // off, or this one did
   neimark_sacker,     // two conjugate multipliers of modulus 1
   grazing,            // an impact appears, or vanishes, with speed 0
 };
@@ -68,15 +72,21 @@ std::string_view name_of(BranchEventKind kind);
 
 struct BranchEvent {
   BranchEventKind kind = BranchEventKind::fold;
-  double parameter = 0;  // to about 1e-10; a grazing close to a fold to about 1e-7
-  Orbit orbit;           // there; at a grazing with rigid walls the last one that was found
+  double parameter = 0;            // to about 1e-10; a grazing close to a fold to about 1e-7, one
+                                   // with compliant walls at which the branch ends to 1e-9
+  Orbit orbit;                     // there; at a grazing with rigid walls the last one that was found
+  std::int64_t orbits_before = 0;  // of Branch::orbits
 };
 
 enum class BranchEnd {
-  range,           // the parameter reached an end of its range; the last orbit is there
-  grazing,         // rigid walls: beyond it the branch, if it goes on, has another number of impacts
-  closed,          // it came back to the first orbit
+  range,    // the parameter reached an end of its range; the last orbit is there
+  grazing,  // rigid walls: beyond it the branch, if it goes on, has another number of impacts.
+            // Compliant walls: it turns there so sharply that no step leads on
+  closed,   // it came back to the first orbit
+  joined,   // it met the branch of symmetric orbits, or of half its period, from which it branches off:
+            // the last orbit. Beyond are mirror images, or the same orbits half of their period later
   step_too_small,  // no orbit was found near enough to the last
+  unstable,        // FollowOptions::max_multiplier
   points,          // FollowOptions::max_points
   not_an_orbit,    // the first was not converged, or is none for the parameter's first value
 };
@@ -89,8 +99,14 @@ struct FollowOptions {
   double first_step = 1e-2;     // > 0
   double largest_step = 5e-2;   // >= first_step
   double smallest_step = 1e-9;  // > 0, <= first_step
-  int max_points = 1000;        // >= 1
-  OrbitOptions orbit;           // tolerance and iterations of each point; `symmetric` is the first orbit's
+  // Of the parameter in a step, as it is predicted; it may shorten steps to smallest_step. > 0.
+  double largest_change = std::numeric_limits<double>::infinity();
+  // Largest modulus of a multiplier, times the speed of the slowest impact if that is below 1, or its square
+  // for symmetric orbits, which have two of them: so that grazing, where multipliers have no bound, is no
+  // reason. Beyond it other orbits are so near that a step may lead to one. >= 1.
+  double max_multiplier = std::numeric_limits<double>::infinity();
+  int max_points = 1000;  // >= 1
+  OrbitOptions orbit;     // tolerance and iterations of each point; `symmetric` is the first orbit's
 };
 
 struct Branch {
@@ -101,5 +117,10 @@ struct Branch {
 
 // Throws InvalidArguments for options out of range.
 Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& options);
+
+// An orbit of the branch that begins at a flip or a symmetry breaking of an orbit of half its length
+// (M13.21), 0.01 away from it or 0.001; not converged if none is found. The other half of that branch holds
+// mirror images, or the same orbits half of their period later. Throws InvalidArguments as find_orbit does.
+Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOptions& options = {});
 
 }  // namespace impact_damper

@@ -1,6 +1,7 @@
 #include "impact_damper/steady/response_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "impact_damper/analysis/design.hpp"
@@ -24,6 +25,7 @@ constexpr Quantity length{"_m", [](const SiUnits& u) { return u.length; }};
 constexpr Quantity velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
 constexpr Quantity force{"_N", [](const SiUnits& u) { return u.force; }};
 constexpr Quantity power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
+constexpr Quantity rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
 constexpr Quantity frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
 
 Quantity quantity_of(const double Scene::*number) {
@@ -91,6 +93,76 @@ std::vector<Column> columns_of(const std::vector<SteadyState>& way) {
   return columns;
 }
 
+// A point of a branch, or an event on it.
+struct BranchPoint {
+  const Orbit* orbit;
+  double value, amplitude;
+  std::string_view event{};
+};
+
+std::vector<BranchPoint> points_of(const FollowedBranch& followed, double Scene::*number) {
+  std::vector<BranchPoint> points;
+  for (std::size_t i = 0; i < followed.branch.orbits.size(); ++i) {
+    const Orbit& orbit = followed.branch.orbits[i];
+    points.push_back({&orbit, orbit.scene.*number, followed.amplitudes[i]});
+  }
+  return points;
+}
+BranchPoint point_of_event(const FollowedBranch& followed, std::size_t i) {
+  const BranchEvent& event = followed.branch.events[i];
+  return {&event.orbit, event.parameter, followed.event_amplitudes[i], name_of(event.kind)};
+}
+// All of them, in their order along the branch.
+std::vector<BranchPoint> points_and_events_of(const FollowedBranch& followed, double Scene::*number) {
+  const std::vector<BranchPoint> points = points_of(followed, number);
+  std::vector<BranchPoint> all;
+  for (std::size_t i = 0; i <= points.size(); ++i) {
+    for (std::size_t n = 0; n < followed.branch.events.size(); ++n)
+      if (followed.branch.events[n].orbits_before == std::int64_t(i))
+        all.push_back(point_of_event(followed, n));
+    if (i < points.size()) all.push_back(points[i]);
+  }
+  return all;
+}
+
+double impacts_on(Wall wall, const Orbit& orbit) {
+  return double(std::ranges::count(orbit.impacts, wall, &OrbitImpact::wall));
+}
+
+std::vector<Column> columns_of(const std::vector<BranchPoint>& points) {
+  std::vector<Column> columns;
+  const auto add = [&](std::string_view name, const Quantity& quantity, auto&& number) {
+    Column column{name, quantity, {}};
+    for (const BranchPoint& each : points) column.numbers.push_back(number(*each.orbit));
+    columns.push_back(std::move(column));
+  };
+  add("period", ratio, [](const Orbit& o) { return double(o.periods); });
+  add("symmetric", ratio, [](const Orbit& o) { return double(o.symmetric); });
+  add("stable", ratio, [](const Orbit& o) { return double(o.stable()); });
+  add("impacts_left", ratio, [](const Orbit& o) { return impacts_on(Wall::left, o); });
+  add("impacts_right", ratio, [](const Orbit& o) { return impacts_on(Wall::right, o); });
+  add("sticking", ratio, [](const Orbit& o) { return double(o.sticking); });
+  Column amplitudes{"amplitude", length, {}};
+  for (const BranchPoint& each : points) amplitudes.numbers.push_back(each.amplitude);
+  columns.push_back(std::move(amplitudes));
+  static constexpr std::array<std::array<std::string_view, 2>, 4> names{
+      {{"multiplier_1_re", "multiplier_1_im"},
+       {"multiplier_2_re", "multiplier_2_im"},
+       {"multiplier_3_re", "multiplier_3_im"},
+       {"multiplier_4_re", "multiplier_4_im"}}};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    add(names[i][0], ratio, [&](const Orbit& o) { return o.multipliers[i].re; });
+    add(names[i][1], ratio, [&](const Orbit& o) { return o.multipliers[i].im; });
+  }
+  add("slowest_impact", velocity, [](const Orbit& o) { return o.slowest_impact; });
+  add("nearest_miss", length, [](const Orbit& o) { return o.nearest_miss; });
+  add("x", length, [](const Orbit& o) { return o.scene.x0; });
+  add("v", velocity, [](const Orbit& o) { return o.scene.v0; });
+  add("y", length, [](const Orbit& o) { return o.scene.y0; });
+  add("w", velocity, [](const Orbit& o) { return o.scene.w0; });
+  return columns;
+}
+
 // The amplitude without the damper and with its mass locked in, (M12.6), at each value of the axis. Infinite
 // at the resonance of an undamped oscillator: absent.
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
@@ -113,8 +185,16 @@ void write_rule(JsonWriter& out, const SteadyRule& rule) {
              rule.max_periods);
 }
 
+std::string_view key_of(double Scene::*number) {
+  return std::ranges::find(scene_fields, number, &SceneField::member)->name;
+}
+
 void write_axis(JsonWriter& out, const Axis& axis) {
-  out.fields("number", name_of(axis), "from", axis.from, "to", axis.to, "count", axis.count);
+  out.fields("number", key_of(axis.number), "from", axis.from, "to", axis.to, "count", axis.count);
+}
+
+std::optional<double> index_of(const std::optional<std::int64_t>& index) {
+  return index ? std::optional(double(*index)) : std::nullopt;
 }
 
 void write_state(JsonWriter& out, std::string_view name, const State<double>& s) {
@@ -131,7 +211,29 @@ void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyS
   out.close();
 }
 
-// What both kinds of file begin with. The stops of a scene do not count, and are not written.
+void write_branch(JsonWriter& out, const FollowedBranch& followed, double Scene::*number) {
+  const Branch& branch = followed.branch;
+  out.open_object(Layout::lines);
+  out.fields("origin", name_of(followed.origin), "from", followed.from, "event", index_of(followed.event),
+             "end", name_of(branch.end));
+  const std::vector<BranchPoint> points = points_of(followed, number);
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const BranchPoint& each : points) values.push_back(each.value);
+  out.field("values", values);
+  for (const Column& column : columns_of(points)) out.field(column.name, column.numbers);
+  out.open_array("events", Layout::lines);
+  for (const BranchEvent& event : branch.events) {
+    out.open_object(Layout::one_line);
+    out.fields("kind", name_of(event.kind), "value", event.parameter, "points_before", event.orbits_before);
+    write_state(out, "state", release_of(event.orbit.scene));
+    out.close();
+  }
+  out.close();
+  out.close();
+}
+
+// What all kinds of file begin with. The stops of a scene do not count, and are not written.
 JsonWriter begun(std::string_view kind, const Scene& scene, const Engine& engine,
                  const std::optional<Scales>& scales) {
   JsonWriter out("response");
@@ -178,11 +280,7 @@ class CsvRow {
 
 }  // namespace
 
-std::string_view name_of(const Axis& axis) {
-  const auto* const field =
-      std::ranges::find_if(scene_fields, [&](const SceneField& each) { return each.member == axis.number; });
-  return field->name;
-}
+std::string_view name_of(const Axis& axis) { return key_of(axis.number); }
 
 std::string sweep_text(const Scene& scene, const Engine& engine, const SteadyRule& rule, const Axis& axis,
                        const std::vector<Sweep>& sweeps, const std::optional<Scales>& scales) {
@@ -236,6 +334,43 @@ std::string basin_text(const Scene& scene, const Engine& engine, const BasinRule
   return ended(out);
 }
 
+std::string orbits_text(const Scene& scene, const Engine& engine, const BranchRule& rule,
+                        const ParameterRange& range, const Branches& branches,
+                        const std::optional<Scales>& scales) {
+  double Scene::*const number = member_of(range.parameter);
+  JsonWriter out = begun("orbits", scene, engine, scales);
+  out.open_object("rule", Layout::one_line);
+  write_rule(out, rule.steady);
+  out.fields("largest_step", rule.largest_step, "max_multiplier", rule.max_multiplier, "max_points",
+             rule.max_points, "max_branches", rule.max_branches);
+  out.close();
+  out.object("range", Layout::one_line, "number", key_of(number), "from", range.from, "to", range.to);
+  out.open_array("starts", Layout::lines);
+  for (const BranchStart& start : branches.starts) {
+    out.open_object(Layout::one_line);
+    out.fields("end", end_of(start), "transient_periods", start.steady.transient_periods, "branch",
+               index_of(start.branch));
+    write_state(out, "state", start.state);
+    out.close();
+  }
+  out.close();
+  out.field("complete", branches.complete);
+  out.open_array("branches", Layout::lines);
+  for (const FollowedBranch& each : branches.branches) write_branch(out, each, number);
+  out.close();
+  return ended(out);
+}
+
+std::string lyapunov_text(const Scene& scene, const Engine& engine, std::int64_t periods,
+                          std::int64_t skipped, const LyapunovExponents& found,
+                          const std::optional<Scales>& scales) {
+  JsonWriter out = begun("lyapunov", scene, engine, scales);
+  out.object("rule", Layout::one_line, "periods", periods, "discard", skipped);
+  out.fields("stop_reason", name_of(found.stop_reason), "exponents", found.exponents, "standard_errors",
+             found.standard_errors);
+  return ended(out);
+}
+
 std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sweep>& sweeps,
                       const std::optional<SiUnits>& units) {
   std::string text;
@@ -247,7 +382,8 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     row.word("way");
     row.heading(name_of(axis), given);
     row.word("end");
-    for (const Column& column : columns_of({})) row.heading(column.name, column.quantity);
+    for (const Column& column : columns_of(std::vector<SteadyState>{}))
+      row.heading(column.name, column.quantity);
     for (const Column& column : linear) row.heading(column.name, column.quantity);
   }
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
@@ -284,6 +420,49 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
     row.number(first.value(std::int64_t(n) % first.count), of_first);
     row.number(second.value(std::int64_t(n) / first.count), of_second);
     row.word(basin.attractor[n] == undecided ? "" : std::to_string(basin.attractor[n]));
+  }
+  return text;
+}
+
+std::string orbits_csv(const ParameterRange& range, const Branches& branches,
+                       const std::optional<SiUnits>& units) {
+  std::string text;
+  double Scene::*const number = member_of(range.parameter);
+  const Quantity varied = quantity_of(number);
+  {
+    CsvRow row(text, units);
+    row.word("branch");
+    row.word("event");
+    row.heading(key_of(number), varied);
+    for (const Column& column : columns_of(std::vector<BranchPoint>{}))
+      row.heading(column.name, column.quantity);
+  }
+  for (std::size_t n = 0; n < branches.branches.size(); ++n) {
+    const std::vector<BranchPoint> points = points_and_events_of(branches.branches[n], number);
+    const std::vector<Column> columns = columns_of(points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      CsvRow row(text, units);
+      row.word(std::to_string(n));
+      row.word(points[i].event);
+      row.number(points[i].value, varied);
+      for (const Column& column : columns) row.number(column.numbers[i], column.quantity);
+    }
+  }
+  return text;
+}
+
+std::string lyapunov_csv(const LyapunovExponents& found, const std::optional<SiUnits>& units) {
+  std::string text;
+  {
+    CsvRow row(text, units);
+    row.heading("exponent", rate);
+    row.heading("standard_error", rate);
+  }
+  for (std::size_t i = 0; i < found.exponents.size(); ++i) {
+    CsvRow row(text, units);
+    row.number(found.exponents[i], rate);
+    row.number(i < found.standard_errors.size() ? std::optional(found.standard_errors[i]) : std::nullopt,
+               rate);
   }
   return text;
 }

@@ -1,0 +1,82 @@
+// The periodic motions of a scene along omega_f or f0: from the steady motions that simulations end in,
+// along the branches on which these lie, past folds to unstable motions, and along the branches that begin
+// at flips, at symmetry breaking and behind grazings (docs/mathematics.md, 13.6 and 13.9).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/steady/orbits.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+
+namespace impact_damper {
+
+// Both > 0 and different. Simulations begin at `from`, and branches go from there towards `to`.
+struct ParameterRange {
+  Parameter parameter = Parameter::force_frequency;
+  double from = 0, to = 0;
+
+  double least() const { return from < to ? from : to; }
+  double most() const { return from < to ? to : from; }
+};
+
+struct BranchRule {
+  // When a simulation has become periodic. Branches of orbits longer than its longest_period are not
+  // followed.
+  SteadyRule steady;
+  // Largest distance of two points of a branch, in the space of x, v, y, w and the parameter. In [1e-6, 1e6].
+  double largest_step = 5e-2;
+  double max_multiplier = 1e4;     // FollowOptions::max_multiplier; 1 to 1e12
+  std::int64_t max_points = 1000;  // of each branch; 1 to 1e6
+  std::int64_t max_branches = 20;  // 1 to 1000
+};
+// What is wrong with it, one entry for each member.
+std::vector<Problem> problems_of(const BranchRule& rule);
+
+// What a simulation from an initial state ended in, at ParameterRange::from.
+struct BranchStart {
+  State<double> state{};
+  SteadyState steady;                  // without what is measured
+  std::optional<OrbitEnd> orbit;       // of Newton's iteration from there; absent: it is not periodic
+  std::optional<std::int64_t> branch;  // on which it lies
+};
+// "periodic"; "not_periodic"; the budget that ended the simulation; or why no orbit was found near it.
+std::string_view end_of(const BranchStart& start);
+
+enum class BranchOrigin {
+  start,   // a steady motion at ParameterRange::from
+  event,   // a flip or a symmetry breaking, where it branches off, or where another one joins it
+  beyond,  // a steady motion that simulation ends in beyond the end of another branch
+};
+std::string_view name_of(BranchOrigin origin);  // the enumerator's own name
+
+struct FollowedBranch {
+  BranchOrigin origin = BranchOrigin::start;
+  // Index of the start, or of the branch from which it comes.
+  std::int64_t from = 0;
+  std::optional<std::int64_t> event;  // of that branch, where it branches off
+  Branch branch;
+  // Largest |x| of each orbit, and of the orbit of each event. Of an unstable orbit, which a simulation of
+  // twice its period does not quite keep to, with an error up to about 1e-6.
+  std::vector<double> amplitudes, event_amplitudes;
+};
+
+struct Branches {
+  std::vector<BranchStart> starts;
+  std::vector<FollowedBranch> branches;  // each after the one from which it comes
+  bool complete = true;                  // false: BranchRule::max_branches ended the search
+};
+
+// From each of `starts`, states at phase 0 of the force. A motion on a branch that is known begins no other.
+// A secondary mass that is not struck is taken to rest where the motion is symmetric (OrbitOptions).
+// `progress` is called with the number of branches that are done. No result depends on the number of
+// threads. Throws InvalidArguments if scene, range or rule are not valid.
+Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
+                       const BranchRule& rule, const std::vector<State<double>>& starts,
+                       const Threads& threads, const std::function<void(std::int64_t done)>& progress);
+
+}  // namespace impact_damper
