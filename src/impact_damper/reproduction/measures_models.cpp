@@ -28,17 +28,6 @@ Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& pair) { return find(*pair[0], *pair[1]); });
 }
 
-Spread curve_difference(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const AnalysisOptions& analysis = runs.analysis();
-  const auto curve = [&](const Run& run) {
-    return loss_curve(run, LossOrdinate::amplitude_times, analysis.loss, from, to);
-  };
-  return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
-    return spread_percent({curve(ours), curve(theirs)}, from, to, analysis.bins);
-  });
-}
-
 Spread time_saved(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
   std::vector<double> theirs;
@@ -197,12 +186,6 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> model_measures() {
   return {
-      {"curve_difference_percent",
-       2,
-       2,
-       {"from", "to"},
-       curve_difference,
-       "spread of A eta_s / nu between two runs, in percent"},
       {"mixed_share_ratio",
        2,
        2,
