@@ -261,7 +261,8 @@ TEST_CASE("without a folder an ensemble is simulated") {
 TEST_CASE("a further run is read from its files, and without a folder simulated from its scene's run") {
   const ShortEnsemble files;
   const CatalogueRun rigid{"short.rigid", "short", {{"x0", 6.5}}, Restitution{}, Record{}};
-  const CatalogueRun stiff{"short.stiff", "short", {{"wall_stiffness", 1e5}}, {}, Record{}};
+  const CatalogueRun stiff{
+      "short.stiff", "short", {{"wall_stiffness", 1e5}, {"until_amplitude", 5.7}}, {}, Record{}};
   Scene changed = files.first.scene;
   changed.x0 = 6.5;
   const std::vector<Scene> scenes = ensemble_of(changed, {.members = 3});
@@ -281,6 +282,7 @@ TEST_CASE("a further run is read from its files, and without a folder simulated 
     CHECK(one.half_cycles->amplitude == other.half_cycles->amplitude);
   }
   CHECK(simulated.file("short.stiff").scene.wall_stiffness == 1e5);
+  CHECK(simulated.file("short.stiff").scene.until_amplitude == 5.7);
   CHECK(simulated.file("short.stiff").engine == files.first.engine);
   // Further runs are no part of whose verdicts these are.
   read.file("short");
@@ -332,9 +334,10 @@ TEST_CASE("a further run that is missing, or of another scene or engine than the
         std::string::npos);
   changed.x0 = 6.5;
   CHECK(becomes(changed, Restitution{}) == "nothing");
-  CHECK(becomes(changed, Restitution{.accumulation_tolerance = 1e-6})
-            .find("/engine: must be that of run short.later of the catalogue, restitution, with its options") !=
-        std::string::npos);
+  CHECK(
+      becomes(changed, Restitution{.accumulation_tolerance = 1e-6})
+          .find("/engine: must be that of run short.later of the catalogue, restitution, with its options") !=
+      std::string::npos);
   wanted.engine.reset();
   CHECK(complaint().find("/engine: must be that of " + folders.file_of("short").string() +
                          ", exact, with its options, got restitution") != std::string::npos);

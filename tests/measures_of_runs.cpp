@@ -305,7 +305,8 @@ double percent_apart(double a, double b) { return 100 * std::abs(a - b) / ((a + 
 }  // namespace
 
 TEST_CASE("two runs take time in proportion, or save it, by when they are below an amplitude") {
-  // The first peak below 4.02 is number 40 of one, and 20 of the other, which takes 1.5 times as long for each.
+  // The first peak below 4.02 is number 40 of one, and 20 of the other, which takes 1.5 times as long for
+  // each.
   const Run one = linear_decay(120, 6, 0.05), other = slower(linear_decay(60, 6, 0.1), 1.5);
   CHECK(measured("time_ratio", {{"amplitude", 4.02}}, {one, other}) == doctest::Approx(40 / 30.0));
   CHECK(measured("time_saved_percent", {{"amplitude", 4.02}}, {one, other}) ==

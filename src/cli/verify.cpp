@@ -267,8 +267,7 @@ int verify(Arguments& arguments) {
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
   const std::string catalogue_file =
       arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
-  const auto verdicts_file = arguments.file("--output"),
-             markdown_file = arguments.file("--markdown");
+  const auto verdicts_file = arguments.file("--output"), markdown_file = arguments.file("--markdown");
   const bool power = arguments.flag("--power");
   reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };

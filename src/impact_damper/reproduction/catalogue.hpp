@@ -53,8 +53,8 @@ struct CatalogueScene {
 // own, or both. Its file lies beside the runs of the scenes, and it is an ensemble as these are
 // (scene_runs.hpp).
 struct CatalogueRun {
-  std::string name;   // of its file, without .json; no scene's
-  std::string scene;  // one of the catalogue's
+  std::string name;                                // of its file, without .json; no scene's
+  std::string scene;                               // one of the catalogue's
   std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
   std::optional<Engine> engine;                    // absent: that of the scenes' runs
   Record record;

@@ -1,6 +1,5 @@
 // Our side of the claims: a table of names, each a function that finds one number, from runs and, where a
-// claim compares with another model, engine or experiment than the scene's runs, from simulations of its own
-// (Runs::simulated).
+// claim is about a short experiment of its own, from simulations (Runs::simulated).
 #pragma once
 
 #include <cstddef>
@@ -45,9 +44,9 @@ struct WrongColumn {
 };
 
 // The runs that measures look at, of scenes and the catalogue's further runs, each by its name. From a folder
-// of run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is read
-// once, when somebody asks. Without a folder, as power.hpp needs it to try other scenes and other ensembles,
-// there are the scenes' runs that were put; further runs of these and all ensembles are simulated.
+// of run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is
+// read once, when somebody asks. Without a folder, as power.hpp needs it to try other scenes and other
+// ensembles, there are the scenes' runs that were put; further runs of these and all ensembles are simulated.
 class Runs {
  public:
   explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},

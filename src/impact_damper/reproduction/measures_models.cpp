@@ -25,7 +25,8 @@ double time_below(const Run& run, double amplitude) {
 // For each member of the two ensembles of `call`, side by side.
 template <class Find>
 Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& pair) { return find(*pair[0], *pair[1]); });
+  return over_groups(runs, call,
+                     [&](const std::vector<const Run*>& pair) { return find(*pair[0], *pair[1]); });
 }
 
 Spread time_saved(Runs& runs, const MeasureCall& call) {
@@ -33,9 +34,8 @@ Spread time_saved(Runs& runs, const MeasureCall& call) {
   std::vector<double> theirs;
   for (const Run& run : runs.ensemble(call.scenes.back())) theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  return over_members(runs, call, [&](const Run& run) {
-    return 100 * (1 - time_below(run, amplitude) / reference);
-  });
+  return over_members(runs, call,
+                      [&](const Run& run) { return 100 * (1 - time_below(run, amplitude) / reference); });
 }
 
 Spread time_ratio(Runs& runs, const MeasureCall& call) {

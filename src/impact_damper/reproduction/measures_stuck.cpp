@@ -1,8 +1,7 @@
-// Measures of the paper's stuck regime: what it changes in the decays of the component element method.
-#include <algorithm>
-#include <cmath>
+// A measure of the paper's stuck regime: the steps that it saves the component element method.
+#include <cstdint>
+#include <optional>
 
-#include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
@@ -11,7 +10,7 @@ namespace impact_damper {
 namespace {
 
 // Small steps only near contact, touch and release located: the way of the method whose own error, 1e-5 of
-// the time of a decay, is below what the regime changes.
+// the time of a decay, is below what the regime changes. The catalogue's further runs by it go the same way.
 Cem method(std::optional<double> stuck_speed) {
   Cem engine;
   engine.locate = true;

@@ -134,8 +134,7 @@ Run SceneRuns::read(const CatalogueRun& wanted) const {
   Run run = read_or_name_command(
       file, "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() + " -o " +
                 file.string() + ", with what run " + wanted.name + " of the catalogue sets, and --members");
-  require_scene(run, file, changed_scene(wanted, of_scene.scene),
-                "run " + wanted.name + " of the catalogue");
+  require_scene(run, file, changed_scene(wanted, of_scene.scene), "run " + wanted.name + " of the catalogue");
   if (wanted.engine)
     require_engine(run, file, *wanted.engine, "run " + wanted.name + " of the catalogue");
   else
