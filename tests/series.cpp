@@ -182,11 +182,12 @@ TEST_CASE("a catalogue that does not hold together is rejected at the place that
   const auto with_runs = [&](const std::string& runs, const std::string& at) {
     rejected(R"("figures")", R"("runs": [)" + runs + R"(], "figures")", at);
   };
-  const std::string run = R"({"scene": "a", "engine": "restitution", "record": ["half_cycles"]})";
+  const std::string run =
+      R"({"name": "a.r", "scene": "a", "engine": {"name": "restitution"}, "record": ["half_cycles"]})";
   with_runs(run, "not rejected");
-  with_runs(run + ", " + run, "/runs/1/engine");
+  with_runs(run + ", " + run, "/runs/1/name");
   with_runs(replaced(run, R"("a")", R"("b")"), "/runs/0/scene");
-  with_runs(replaced(run, "restitution", "rigid"), "/runs/0/engine");
+  with_runs(replaced(run, "restitution", "rigid"), "/runs/0/engine/name");
   rejected(R"("fig08.gp"})",
            R"("fig08.gp"}, {"figure": "9", "title": "t", "table": "drawing", "script": "fig08.plt"})",
            "/figures/1/script");
