@@ -52,7 +52,7 @@ struct SceneRuns {
   Run read(const std::string& scene) const;
   // The further run, consistent, of its scene with its changes and by its engine, or that of the scene's run,
   // which is read as well. Throws the same.
-  Run read(const CatalogueRun& run) const;
+  Run read(const CatalogueRun& wanted) const;
 };
 
 }  // namespace impact_damper
