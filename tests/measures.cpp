@@ -15,6 +15,7 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
@@ -257,56 +258,90 @@ TEST_CASE("without a folder an ensemble is simulated") {
     CHECK(simulated[member].half_cycles->amplitude == read.ensemble("short")[member].half_cycles->amplitude);
 }
 
-TEST_CASE("the ensemble by another engine is read from its files, and simulated without a folder") {
+TEST_CASE("a further run is read from its files, and without a folder simulated from its scene's run") {
   const ShortEnsemble files;
-  const Scene& scene = files.first.scene;
-  const auto file = file_by(files.folder, "short", Restitution{});
-  CHECK(file == files.folder / "short.restitution.json");
-  Runs runs(files.folder, {.members = 1});
+  const CatalogueRun rigid{"short.rigid", "short", {{"x0", 6.5}}, Restitution{}, Record{}};
+  const CatalogueRun stiff{
+      "short.stiff", "short", {{"wall_stiffness", 1e5}, {"until_amplitude", 5.7}}, {}, Record{}};
+  Scene changed = files.first.scene;
+  changed.x0 = 6.5;
+  const std::vector<Scene> scenes = ensemble_of(changed, {.members = 3});
+  const std::filesystem::path file = files.folder / "short.rigid.json";
+  for (int member = 1; member <= 3; ++member)
+    files.write(member == 1 ? file : member_file(file, member),
+                simulate(scenes[std::size_t(member) - 1], Restitution{}, Record{}));
+  Runs read(files.folder, {.members = 3}, {rigid}), simulated(std::nullopt, {.members = 3}, {rigid, stiff});
+  simulated.put("short", files.first);
+  REQUIRE(read.ensemble("short.rigid").size() == 3);
+  REQUIRE(simulated.ensemble("short.rigid").size() == 3);
+  for (std::size_t member = 0; member < 3; ++member) {
+    const Run &one = read.ensemble("short.rigid")[member], &other = simulated.ensemble("short.rigid")[member];
+    CHECK(one.scene == scenes[member]);
+    CHECK(other.scene == scenes[member]);
+    CHECK(std::holds_alternative<Restitution>(other.engine));
+    CHECK(one.half_cycles->amplitude == other.half_cycles->amplitude);
+  }
+  CHECK(simulated.file("short.stiff").scene.wall_stiffness == 1e5);
+  CHECK(simulated.file("short.stiff").scene.until_amplitude == 5.7);
+  CHECK(simulated.file("short.stiff").engine == files.first.engine);
+  // Further runs are no part of whose verdicts these are.
+  read.file("short");
+  CHECK(read.engine() == "exact");
+  CHECK(simulated.engine() == "exact");
+
+  // Times are saved of the median.
+  std::vector<double> saved, theirs;
+  for (const Run& run : read.ensemble("short.rigid")) theirs.push_back(run.half_cycles->peak_time.back());
+  for (const Run& run : read.ensemble("short"))
+    saved.push_back(100 * (1 - run.half_cycles->peak_time.back() / spread_of(theirs).median));
+  const Spread found = measure(read, {"time_saved_percent", {"short", "short.rigid"}, {{"amplitude", 5.5}}});
+  CHECK(found.median == spread_of(saved).median);
+  CHECK(found.low == spread_of(saved).low);
+  CHECK(found.high == spread_of(saved).high);
+
+  // Of another scene there is another further run.
+  Run other = files.first;
+  other.scene.restitution = 0.7;
+  simulated.put("short", other);
+  CHECK(simulated.file("short.rigid").scene.restitution == 0.7);
+  CHECK(simulated.file("short.rigid").scene.x0 == 6.5);
+}
+
+TEST_CASE("a further run that is missing, or of another scene or engine than the catalogue's, is rejected") {
+  const ShortEnsemble files;
+  const SceneRuns folders{files.folder, files.folder / "scenes"};
+  std::filesystem::create_directories(folders.scenes);
+  write_file(folders.scenes / "short.json", scene_text(files.first.scene));
+  CatalogueRun wanted{"short.later", "short", {{"x0", 6.5}}, Restitution{}, Record{}};
+  const std::filesystem::path file = folders.file_of(wanted.name);
   const auto complaint = [&] {
     try {
-      runs.ensemble_by("short", Restitution{});
+      folders.read(wanted);
     } catch (const std::exception& error) {
       return std::string(error.what());
     }
     return std::string("nothing");
   };
-  CHECK(
-      complaint().find("made by: impact-damper run --scene short.json --engine restitution --members 1 -o " +
-                       file.string()) != std::string::npos);
-  const auto becomes = [&](const Scene& of, const Engine& engine) {
-    files.write(file, simulate(of, engine, Record{}));
+  CHECK(complaint().find("made by: impact-damper run --scene " + (folders.scenes / "short.json").string() +
+                         " -o " + file.string()) != std::string::npos);
+  const auto becomes = [&](const Scene& scene, const Engine& engine) {
+    files.write(file, simulate(scene, engine, Record{}));
     return complaint();
   };
-  CHECK(becomes(scene, Exact{}).find("/engine: must be restitution with its default options, got exact") !=
+  Scene changed = files.first.scene;
+  CHECK(becomes(changed, Restitution{})
+            .find("/scene/x0: must be 6.5 as in run short.later of the catalogue, got 6") !=
         std::string::npos);
-  CHECK(becomes(scene, Restitution{.accumulation_tolerance = 1e-6}).find("/engine") != std::string::npos);
-  Scene other = scene;
-  other.restitution = 0.7;
-  CHECK(becomes(other, Restitution{}).find("/scene/restitution: must be 0.6") != std::string::npos);
-  CHECK(becomes(scene, Restitution{}) == "nothing");
-
-  // What the file holds counts: with the times doubled nothing is saved any more.
-  Run slow = simulate(scene, Restitution{}, Record{});
-  for (auto* column : {&slow.half_cycles->zero_crossing, &slow.half_cycles->peak_time})
-    for (double& time : *column) time *= 2;
-  slow.end_time *= 2;
-  const MeasureCall saved{"time_saved_percent", {"short"}, {{"amplitude", 5.6}}};
-  const double as_simulated = measure(runs, saved).median;
-  files.write(file, slow);
-  CHECK(measure(runs, saved).median == doctest::Approx(50 + as_simulated / 2).epsilon(1e-12));
-
-  CHECK(complaint() == "nothing");
-  Runs three(files.folder, {.members = 3});
-  CHECK_THROWS_AS(three.ensemble_by("short", Restitution{}), IoError);  // its other members are missing
-  Runs without(std::nullopt, {.members = 3});
-  without.put("short", files.first);
-  const std::vector<Run> simulated = without.ensemble_by("short", Restitution{});
-  REQUIRE(simulated.size() == 3);
-  for (std::size_t member = 0; member < 3; ++member) {
-    CHECK(simulated[member].scene == ensemble_of(scene)[member]);
-    CHECK(std::holds_alternative<Restitution>(simulated[member].engine));
-  }
+  changed.x0 = 6.5;
+  CHECK(becomes(changed, Restitution{}) == "nothing");
+  CHECK(
+      becomes(changed, Restitution{.accumulation_tolerance = 1e-6})
+          .find("/engine: must be that of run short.later of the catalogue, restitution, with its options") !=
+      std::string::npos);
+  wanted.engine.reset();
+  CHECK(complaint().find("/engine: must be that of " + folders.file_of("short").string() +
+                         ", exact, with its options, got restitution") != std::string::npos);
+  CHECK(becomes(changed, Exact{}) == "nothing");
 }
 
 TEST_CASE("a member that is missing, of another release or engine, or contradicts itself is rejected") {

@@ -36,6 +36,7 @@ const Power& power() {
   static const Power power = [] {
     PowerInput input;
     input.claims = read_claims(source / "data/claims.json");
+    input.further = read_catalogue(source / "figures/catalogue.json").runs;
     Record record;
     record.impacts = record.contacts = true;
     for (const auto& file : std::filesystem::directory_iterator(source / "data/scenes"))
@@ -127,6 +128,32 @@ TEST_CASE("a number that turns no verdict as it is turns none") {
     if (number.name == "mass_ratio" || number.name == "bins")
       CHECK(power().turned(number, number.value).empty());
   }
+}
+
+TEST_CASE("a changed scene changes its further runs, each with its own numbers in place of the scene's") {
+  Scene scene;
+  scene.until_amplitude = 4;
+  PowerInput input;
+  input.runs["small"] = simulate(scene, Exact{}, Record{});
+  input.further = {{"small.later", "small", {{"x0", 7}}, {}, Record{}}};
+  input.ensemble.members = 2;
+  Claim claim;
+  claim.id = "loss";
+  claim.measure = {"largest_loss", {"small.later"}, {}};
+  Runs runs(std::nullopt, input.ensemble, input.further);
+  runs.put("small", input.runs["small"]);
+  const double loss = measure(runs, claim.measure).median;
+  claim.allowed.printed = {loss, loss};
+  input.claims = {claim};
+  const Power power(std::move(input));
+  const auto turned = [&](std::string_view name, double value) {
+    const auto number = std::ranges::find(power.numbers(), name, &PowerNumber::name);
+    REQUIRE(number != power.numbers().end());
+    return power.turned(*number, value).size();
+  };
+  CHECK(turned("mass_ratio", 0.02) == 0);
+  CHECK(turned("mass_ratio", 0.03) == 1);
+  CHECK(turned("x0", 6.5) == 0);
 }
 
 TEST_CASE("the tests that the table names exist") {

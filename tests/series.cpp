@@ -129,11 +129,19 @@ TEST_CASE("the project's catalogue has Figures 1 to 15, A and B, from eight dist
   CHECK(find_figure(catalogue, "B") != nullptr);
   for (const Figure& figure : catalogue.figures) CHECK(fs::exists(source / "figures" / figure.script));
 
-  // The one that measures compare with.
-  REQUIRE(catalogue.runs.size() == 1);
-  CHECK(catalogue.runs[0].scene == "nu2-e06");
-  CHECK(std::holds_alternative<Restitution>(catalogue.runs[0].engine));
-  CHECK(catalogue.runs[0].record.half_cycles);
+  // Those that measures compare with.
+  const Engine near_contact = Cem{.locate = true, .large_step = 0.02};
+  REQUIRE(catalogue.runs.size() == 8);
+  for (const CatalogueRun& run : catalogue.runs) CHECK(run.scene == "nu2-e06");
+  CHECK(find_run(catalogue.runs, "nu2-e06.restitution")->engine == Engine(Restitution{}));
+  CHECK(find_run(catalogue.runs, "nu2-e06.restitution")->set.empty());
+  CHECK(find_run(catalogue.runs, "nu2-e06.soft")->set.at("wall_stiffness") == 1e3);
+  CHECK_FALSE(find_run(catalogue.runs, "nu2-e06.soft")->engine);
+  CHECK(find_run(catalogue.runs, "nu2-e06.later")->set.at("x0") == 10);
+  CHECK(find_run(catalogue.runs, "nu2-e06.cem")->engine == near_contact);
+  CHECK(std::get<Cem>(*find_run(catalogue.runs, "nu2-e06.cem-stuck-04")->engine).stuck_speed == 0.4);
+  CHECK(find_run(catalogue.runs, "nu2-e06.cem")->set.at("until_amplitude") == 0.075);
+  CHECK(find_run(catalogue.runs, "nu2-e06") == nullptr);
 
   REQUIRE(catalogue.scenes.size() == 8);
   std::set<std::string> distinct;
@@ -174,11 +182,12 @@ TEST_CASE("a catalogue that does not hold together is rejected at the place that
   const auto with_runs = [&](const std::string& runs, const std::string& at) {
     rejected(R"("figures")", R"("runs": [)" + runs + R"(], "figures")", at);
   };
-  const std::string run = R"({"scene": "a", "engine": "restitution", "record": ["half_cycles"]})";
+  const std::string run =
+      R"({"name": "a.r", "scene": "a", "engine": {"name": "restitution"}, "record": ["half_cycles"]})";
   with_runs(run, "not rejected");
-  with_runs(run + ", " + run, "/runs/1/engine");
+  with_runs(run + ", " + run, "/runs/1/name");
   with_runs(replaced(run, R"("a")", R"("b")"), "/runs/0/scene");
-  with_runs(replaced(run, "restitution", "rigid"), "/runs/0/engine");
+  with_runs(replaced(run, "restitution", "rigid"), "/runs/0/engine/name");
   rejected(R"("fig08.gp"})",
            R"("fig08.gp"}, {"figure": "9", "title": "t", "table": "drawing", "script": "fig08.plt"})",
            "/figures/1/script");

@@ -177,18 +177,32 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   return out.finish() + '\n';
 }
 
-std::set<std::string> scenes_of(const Claim& claim) {
-  std::set<std::string> scenes(claim.measure.scenes.begin(), claim.measure.scenes.end());
-  for (const auto& [name, call] : claim.also) scenes.insert(call.scenes.begin(), call.scenes.end());
-  return scenes;
+// What claims rest on: runs of scenes and further runs, whose scenes' runs are among them.
+struct RunNames {
+  std::set<std::string> scenes, further;
+};
+RunNames runs_of(const std::vector<Claim>& claims, const std::vector<CatalogueRun>& further) {
+  RunNames names;
+  const auto add = [&](const MeasureCall& call) {
+    for (const std::string& name : call.scenes) {
+      const CatalogueRun* const run = find_run(further, name);
+      names.scenes.insert(run ? run->scene : name);
+      if (run) names.further.insert(name);
+    }
+  };
+  for (const Claim& claim : claims) {
+    add(claim.measure);
+    for (const auto& [name, call] : claim.also) add(call);
+  }
+  return names;
 }
 
 // The figures may rest on no claim that does not exist.
-void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
+void check_figures(const std::vector<Figure>& figures, const fs::path& file,
+                   const std::vector<Claim>& claims) {
   std::set<std::string> ids;
   for (const Claim& claim : claims) ids.insert(claim.id);
   std::vector<Problem> problems;
-  const std::vector<Figure> figures = read_catalogue(file).figures;
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const std::vector<std::string>& rests_on = figures[i].claims;
     for (std::size_t j = 0; j < rests_on.size(); ++j) {
@@ -200,26 +214,26 @@ void check_catalogue(const fs::path& file, const std::vector<Claim>& claims) {
   if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
-// Every run that a claim rests on, before anything is measured: consistent, of its scene, and all of one
-// engine.
-void check_runs(const SceneRuns& folders, const std::vector<Claim>& claims) {
-  std::set<std::string> scenes;
-  for (const Claim& claim : claims) scenes.merge(scenes_of(claim));
+// Every run that a claim rests on, before anything is measured: consistent, of its scene, and those of scenes
+// all of one engine.
+void check_runs(const SceneRuns& folders, const RunNames& names, const std::vector<CatalogueRun>& further) {
   std::optional<Run> first;
-  for (const std::string& scene : scenes) {
+  for (const std::string& scene : names.scenes) {
     Run run = folders.read(scene);
-    if (first) require_same_engine(run, folders.file_of(scene), *first, folders.file_of(*scenes.begin()));
+    if (first)
+      require_same_engine(run, folders.file_of(scene), *first, folders.file_of(*names.scenes.begin()));
     if (!first) first = std::move(run);
   }
+  for (const std::string& name : names.further) folders.read(*find_run(further, name));
 }
 
 // Which changes of a number turn a verdict, instead of the verdicts.
-int find_power(const SceneRuns& folders, std::vector<Claim> claims, const EnsembleOptions& ensemble,
+int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::set<std::string>& scenes,
+               const std::vector<CatalogueRun>& further, const EnsembleOptions& ensemble,
                const std::optional<std::string>& json_file, const std::optional<std::string>& markdown_file) {
-  PowerInput input{.claims = std::move(claims), .runs = {}, .ensemble = ensemble, .left_out = {}};
-  for (const Claim& claim : input.claims)
-    for (const std::string& scene : scenes_of(claim))
-      if (!input.runs.contains(scene)) input.runs[scene] = folders.read(scene);
+  PowerInput input{
+      .claims = std::move(claims), .runs = {}, .further = further, .ensemble = ensemble, .left_out = {}};
+  for (const std::string& scene : scenes) input.runs[scene] = folders.read(scene);
   PowerTable table;
   if (!input.runs.empty()) table.engine = name_of(input.runs.begin()->second.engine);
   table.members = ensemble.members;
@@ -251,8 +265,9 @@ int verify(Arguments& arguments) {
   const fs::path claims_file = arguments.file("--claims").value_or(project_file("data/claims.json")),
                  runs_folder = arguments.file("--runs").value_or(project_file("build/runs/exact"));
   const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
-  const auto catalogue = arguments.file("--catalogue"), verdicts_file = arguments.file("--output"),
-             markdown_file = arguments.file("--markdown");
+  const std::string catalogue_file =
+      arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
+  const auto verdicts_file = arguments.file("--output"), markdown_file = arguments.file("--markdown");
   const bool power = arguments.flag("--power");
   reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
   const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
@@ -262,17 +277,16 @@ int verify(Arguments& arguments) {
 
   const ClaimsFile read = read_claims_file(claims_file);
   const std::vector<Claim>& claims = read.claims;
-  if (catalogue) check_catalogue(*catalogue, claims);
-  std::vector<fs::path> inputs{claims_file, catalogue.value_or("")};
-  for (const Claim& claim : claims)
-    for (const std::string& scene : scenes_of(claim)) {
-      std::vector<fs::path> runs{folders.file_of(scene)};
-      for (const Engine& engine : default_engines()) runs.push_back(file_by(runs_folder, scene, engine));
-      for (const fs::path& run : runs) {
-        inputs.push_back(run);
-        for (std::int64_t member = 2; member <= most_members; ++member)
-          inputs.push_back(member_file(run, member));
-      }
+  const Catalogue catalogue = read_catalogue(catalogue_file);
+  if (arguments.given("--catalogue")) check_figures(catalogue.figures, catalogue_file, claims);
+  const RunNames names = runs_of(claims, catalogue.runs);
+  std::vector<fs::path> inputs{claims_file, catalogue_file};
+  for (const std::set<std::string>* list : {&names.scenes, &names.further})
+    for (const std::string& name : *list) {
+      const fs::path run = folders.file_of(name);
+      inputs.push_back(run);
+      for (std::int64_t member = 2; member <= most_members; ++member)
+        inputs.push_back(member_file(run, member));
     }
   arguments.reject_overwriting("--output", verdicts_file, inputs);
   arguments.reject_overwriting("--markdown", markdown_file, inputs);
@@ -280,9 +294,10 @@ int verify(Arguments& arguments) {
   for (const auto& file : {verdicts_file, markdown_file})
     if (file) require_writable(*file);
 
-  check_runs(folders, claims);
-  if (power) return find_power(folders, claims, ensemble, verdicts_file, markdown_file);
-  Runs runs(runs_folder, ensemble);
+  check_runs(folders, names, catalogue.runs);
+  if (power)
+    return find_power(folders, claims, names.scenes, catalogue.runs, ensemble, verdicts_file, markdown_file);
+  Runs runs(runs_folder, ensemble, catalogue.runs);
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
@@ -327,15 +342,17 @@ Command verify_command() {
   command.options = {
       {"--claims", "FILE", "what the paper reports; default data/claims.json"},
       {"--runs", "FOLDER",
-       "folder of run files, SCENE.json each, with the other members of\n"
-       "its ensemble (run --members), and SCENE.ENGINE.json where a\n"
-       "measure compares with that engine; default build/runs/exact"},
+       "folder of run files, NAME.json of each scene and further run,\n"
+       "with the other members of its ensemble (run --members);\n"
+       "default build/runs/exact"},
       scenes_option(),
       {.name = "--power",
        .help =
            "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
        .takes = Option::Takes::nothing},
-      {"--catalogue", "FILE", "check that the claims its figures rest on exist"},
+      {"--catalogue", "FILE",
+       "lists the further runs; default figures/catalogue.json. If given, the\n"
+       "claims that its figures rest on must exist"},
       {"--members", "N",
        "use the first N of each ensemble, the run file itself among them;\n"
        "1 to 100, default 16; --power simulates them"},

@@ -106,6 +106,21 @@ for what, alter, follows in ALTERATIONS:
     for command in (check, verify, series):
         call(3 if follows else 0, *command, says=f"{SCENE}.json: /" if follows else "")
 
+# A further run, of the scene with another wall.
+run.write_text(text)
+soft = f"{SCENE}.soft"
+entry = {"name": soft, "scene": SCENE, "set": {"wall_stiffness": 1000}, "record": ["half_cycles"]}
+(folder / "catalogue.json").write_text(json.dumps({
+    "schema": "impact-damper/catalogue/1", "scenes": [{"scene": SCENE, "record": ["half_cycles"]}], "runs": [entry], "figures": []}))
+(folder / "claims.json").write_text(json.dumps({**claims, "claims": [{**claim, "measure": {**claim["measure"], "scenes": [soft]}}]}))
+further = [*verify, "--catalogue", "catalogue.json"]
+call(5, *further, says=f"runs/{soft}.json: cannot be read: No such file or directory; made by: impact-damper run --scene ")
+shutil.copy(run, folder / "runs" / f"{soft}.json")
+call(3, *further, says=f"{soft}.json: /scene/wall_stiffness: must be 1000 as in run {soft} of the catalogue, got 10000")
+call(0, "run", "--scene", scenes / f"{SCENE}.json", "--wall-stiffness", "1000", *record, "-o", folder / "runs" / f"{soft}.json")
+call(0, *further)
+(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim]}))
+
 # A run of another scene, under this one's name.
 shutil.copy(folder / "runs" / "nu1-e06.json", run)
 for command in (check, verify, series):

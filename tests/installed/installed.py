@@ -48,8 +48,12 @@ def finds_its_files():
         run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]),
             *below, "--members", str(catalogue["members"]), "-o", runs / f"{scene['scene']}.json")
     for each in catalogue["runs"]:
-        run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{each['scene']}.json", "--engine", each["engine"], "--record",
-            ",".join(each["record"]), "--members", str(catalogue["members"]), "-o", runs / f"{each['scene']}.{each['engine']}.json")
+        engine = dict(each.get("engine", {"name": "exact"}))
+        options = ["--engine", engine.pop("name")] + (["--stuck", "paper"] if "stuck_speed" in engine else [])
+        for key, value in {**each.get("set", {}), **engine}.items():
+            options += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
+        run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{each['scene']}.json", *options, "--record",
+            ",".join(each["record"]), "--members", str(catalogue["members"]), "-o", runs / f"{each['name']}.json")
     same_as_in_the_source_folder("series", "--runs", runs, "--figure", "7")
     demand(run(PROGRAM, "check", "run", *sorted(runs.rglob("*.json"))).count("\n") ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")

@@ -48,11 +48,11 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
   const Real wall_damping = system.nu * walls.damping;
   Real losses{0};
 
-  // A release at rest on a wall: in contact if pressed against it. (With a velocity towards the wall it is an
+  // A release at rest on a wall: in contact if it sticks. (With a velocity towards the wall it is an
   // impact, which the flight meets at once.)
   bool at_rest_on_wall = state.w == 0 && (state.y == 0 || state.y == 1);
   bool in_contact = state.y < 0 || state.y > 1 ||
-                    (at_rest_on_wall && Flight<Real, Force>(system, tracker.now(), state).pressed());
+                    (at_rest_on_wall && Flight<Real, Force>(system, tracker.now(), state).sticks());
   bool by_impact = false;
   Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;

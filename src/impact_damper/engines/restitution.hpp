@@ -55,7 +55,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const auto lead = flight.lead_of_y();
     const Real push = -away * lead[2];
     accumulation = 0;
-    if (speed == 0) return flight.pressed();
+    if (speed == 0) return flight.sticks();
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const Real change_of_push = -away * lead[3];

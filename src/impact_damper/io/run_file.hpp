@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,8 @@
 #include "impact_damper/units.hpp"
 
 namespace impact_damper {
+
+class ObjectReader;  // json_reader.hpp
 
 inline constexpr std::string_view run_schema = "impact-damper/run/1";
 
@@ -52,5 +55,7 @@ Run parse_run(const std::string& name, const std::string& text);
 // The engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given; other
 // options have their defaults. Throws InputError as above.
 Engine parse_engine(const std::string& name, const std::string& text);
+// The same from an object of a document, which collects the problems; absent if there are any.
+std::optional<Engine> read_engine(ObjectReader& object);
 
 }  // namespace impact_damper

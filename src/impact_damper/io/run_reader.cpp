@@ -75,7 +75,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, bool may_be_mis
 }
 
 // Absent if any of it is not valid.
-std::optional<Engine> read_engine(ObjectReader& object, bool options_may_be_missing = false) {
+std::optional<Engine> read_engine(ObjectReader& object, bool options_may_be_missing) {
   if (!object.require("name")) return std::nullopt;
   const std::optional<std::size_t> name = object.word("name", engine_names());
   if (!name) {
@@ -228,7 +228,7 @@ Run read_whole(JsonDocument document, bool sealed) {
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_full_scene(scene);
-  if (const std::optional<Engine> whole = read_engine(engine)) {
+  if (const std::optional<Engine> whole = read_engine(engine, false)) {
     run.engine = *whole;
     check_together(scene, engine, run);
   }
@@ -278,10 +278,12 @@ Run parse_run(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text), is_sealed(text));
 }
 
+std::optional<Engine> read_engine(ObjectReader& object) { return read_engine(object, true); }
+
 Engine parse_engine(const std::string& name, const std::string& text) {
   JsonDocument document = JsonDocument::parse(name, text);
   ObjectReader object = document.root();
-  const std::optional<Engine> engine = read_engine(object, true);
+  const std::optional<Engine> engine = read_engine(object);
   document.finish();  // throws if anything is not valid
   return engine.value_or(Engine{});
 }

@@ -103,9 +103,9 @@ class Flight {
     const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
-  // Whether a secondary mass at rest on the wall next to it is pressed against it: y'' tells, or y''' where
-  // y'' is no more than the rounding errors of the terms it is the sum of.
-  bool pressed() const {
+  // Whether a secondary mass at rest on the wall next to it sticks to it, pressed against it: y'' tells, or
+  // y''' where y'' is no more than the rounding errors of the terms it is the sum of.
+  bool sticks() const {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
     return absolute(acceleration) > primary_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;

@@ -6,6 +6,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
 
 namespace impact_damper {
@@ -140,20 +141,30 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
   }
 }
 
+// Each number in its range; together with the scene's others the engine checks them.
+void read_changes(ObjectReader item, CatalogueRun& run) {
+  std::vector<std::string_view> names{"until_time", "until_amplitude"};
+  for (const SceneField& field : scene_fields) names.push_back(field.name);
+  for (const std::string_view name : names) {
+    double value = 0;
+    if (item.has(name) && item.optional(name, value)) run.set.emplace(name, value);
+  }
+  Scene scene;
+  scene.until_time = 1;  // a scene needs a stop
+  for (const Problem& problem : problems_of(changed_scene(run, scene)))
+    item.reject(problem.field, problem.message);
+}
+
 CatalogueRun read_run_entry(ObjectReader& item, const Catalogue& catalogue) {
   CatalogueRun run;
+  if (item.required("name", run.name, a_name) &&
+      (find_run(catalogue.runs, run.name) || find_scene(catalogue, run.name)))
+    item.reject("name", "must be given once among scenes and runs, got the string " + in_quotes(run.name));
   if (item.required("scene", run.scene, a_name) && !find_scene(catalogue, run.scene))
     item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(run.scene));
-  item.require("engine");
-  const std::optional<std::size_t> engine = item.word("engine", engine_names());
-  if (engine) run.engine = default_engines()[*engine];
+  if (const std::optional<ObjectReader> changes = item.optional_object("set")) read_changes(*changes, run);
+  if (std::optional<ObjectReader> engine = item.optional_object("engine")) run.engine = read_engine(*engine);
   run.record = read_record(item);
-  const auto is_same = [&](const CatalogueRun& other) {
-    return other.scene == run.scene && other.engine.index() == run.engine.index();
-  };
-  if (engine && std::ranges::any_of(catalogue.runs, is_same))
-    item.reject("engine", "must be given once, got the string " + in_quotes(name_of(run.engine)) +
-                              " for the scene " + run.scene + " again");
   return run;
 }
 
@@ -283,6 +294,21 @@ Catalogue parse_catalogue(const std::string& name, const std::string& text) {
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name) {
   const auto found = std::ranges::find(catalogue.scenes, name, &CatalogueScene::name);
   return found == catalogue.scenes.end() ? nullptr : &*found;
+}
+
+const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_view name) {
+  const auto found = std::ranges::find(runs, name, &CatalogueRun::name);
+  return found == runs.end() ? nullptr : &*found;
+}
+
+Scene changed_scene(const CatalogueRun& run, Scene scene) {
+  const auto change = [&](std::string_view name, auto& number) {
+    if (const auto found = run.set.find(name); found != run.set.end()) number = found->second;
+  };
+  for (const SceneField& field : scene_fields) change(field.name, scene.*field.member);
+  change("until_time", scene.until_time);
+  change("until_amplitude", scene.until_amplitude);
+  return scene;
 }
 
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {

@@ -6,7 +6,10 @@
 //    "members": 16,
 //    "scenes":  [{"scene": "nu2-e06", "record": ["half_cycles", "impacts"],
 //                 "history_below": [{"amplitude": 5.6, "length": 12.6, "count": 2001}]}],
-//    "runs":    [{"scene": "nu2-e06", "engine": "restitution", "record": ["half_cycles"]}],
+//    "runs":    [{"name": "nu2-e06.soft", "scene": "nu2-e06", "set": {"wall_stiffness": 1000},
+//                 "record": ["half_cycles"]},
+//                {"name": "nu2-e06.restitution", "scene": "nu2-e06", "engine": {"name": "restitution"},
+//                 "record": ["half_cycles"]}],
 //    "figures": [{"figure": "8", "title": "...", "table": "loss_factor", "ordinate": "eta",
 //                 "varied": "mass_ratio", "curves": [{"scene": "nu2-e06", "half_cycles": 10}],
 //                 "down_to": 0.1, "script": "fig08.gp", "claims": ["..."]}]}
@@ -14,6 +17,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,13 +49,18 @@ struct CatalogueScene {
   Record record;
 };
 
-// A scene's run by an engine of its own, for measures that compare with that: beside the runs of whichever
-// engine the figures are made with, and an ensemble as these are (scene_runs.hpp).
+// A further run that measures compare with: of a scene with some of its numbers changed, by an engine of its
+// own, or both. Its file lies beside the runs of the scenes, and it is an ensemble as these are
+// (scene_runs.hpp).
 struct CatalogueRun {
-  std::string scene;  // one of the catalogue's
-  Engine engine;      // with its default options
+  std::string name;                                // of its file, without .json; no scene's
+  std::string scene;                               // one of the catalogue's
+  std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
+  std::optional<Engine> engine;                    // absent: that of the scenes' runs
   Record record;
 };
+// `scene` with the numbers of `run` in place of its own.
+Scene changed_scene(const CatalogueRun& run, Scene scene);
 
 struct FigureCurve {
   std::string scene;
@@ -88,8 +97,9 @@ inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
 Catalogue read_catalogue(const std::filesystem::path& file);
 Catalogue parse_catalogue(const std::string& name, const std::string& text);
 
-// The scene or figure of that name; a null pointer if there is none.
+// The scene, run or figure of that name; a null pointer if there is none.
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);
+const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_view name);
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
 
 // The name of its table and pictures without their endings: its script's, "fig08" for fig08.gp.

@@ -47,10 +47,10 @@ std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "
 enum class Source { paper, ours };  // whose claim it is
 std::string_view name_of(Source source);
 
-// How our value is found: a name out of measures.hpp, the scenes it looks at and its numbers.
+// How our value is found: a name out of measures.hpp, the runs it looks at and its numbers.
 struct MeasureCall {
   std::string name;
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes;  // and further runs of the catalogue, by their names
   std::map<std::string, double> numbers;
 };
 

@@ -29,7 +29,6 @@ const std::vector<MeasureNumber>& measure_numbers() {
       {"power", within(-10, 10), 0, "power of the amplitude that the impacts' speed is divided by"},
       {"restitution", within(0, 1), 0, "coefficient of restitution e"},
       {"steps_per_contact", within(1, 1000), 0, "time steps in a nominal contact"},
-      {"stiffness", above_up_to(0, 1e15), 0, "wall to primary spring stiffness k of the other walls"},
       {"stuck_speed", above_up_to(0, 1e6), 0, "relative speed of impact below which the masses join"},
       {"to", amplitudes, 0, "largest amplitude looked at, in units of the clearance"},
       {"until_time", above_up_to(0, 1e3), 0, "end of a scene of the measure's own, in units of 1/Omega_n"},

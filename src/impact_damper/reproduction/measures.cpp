@@ -23,32 +23,42 @@ void multiply(Run& run, double factor) {
   for (auto& entry : (*(run.*section)).*column) multiply_entry(entry, factor);
 }
 
-// Half cycles, impacts and contacts: all that measures look at.
-std::vector<Run> simulated_members(const Run& first, const EnsembleOptions& options) {
+// All that measures look at.
+Record measured() {
   Record record;
   record.impacts = record.contacts = true;
+  return record;
+}
+
+std::vector<Run> simulated_members(const Run& first, const EnsembleOptions& options) {
   std::vector<Scene> members = ensemble_of(first.scene, options);
   members.erase(members.begin());
-  return simulate_scenes(members, first.engine, record, options.threads);
+  return simulate_scenes(members, first.engine, measured(), options.threads);
 }
 
 }  // namespace
 
-const Run& Runs::file(const std::string& scene) {
-  auto found = ensembles_.find(scene);
-  if (found == ensembles_.end()) {
-    if (!folder_) throw std::invalid_argument("there is no run of scene " + scene);
-    found = ensembles_.emplace(scene, std::vector<Run>{}).first;
-    found->second.push_back(as_recorded(read_run(*folder_ / (scene + ".json"))));
+const Run& Runs::file(const std::string& name) {
+  const auto found = ensembles_.find(name);
+  if (found != ensembles_.end()) return found->second.front();
+  Run run;
+  if (folder_) {
+    run = read_run(*folder_ / (name + ".json"));
+  } else {
+    const CatalogueRun* const further = find_run(further_, name);
+    if (!further) throw std::invalid_argument("there is no run of scene " + name);
+    const Run& of_scene = file(further->scene);
+    run = simulate(changed_scene(*further, of_scene.scene), further->engine.value_or(of_scene.engine),
+                   measured());
   }
-  return found->second.front();
+  return ensembles_[name].emplace_back(as_recorded(std::move(run)));
 }
 
-const std::vector<Run>& Runs::ensemble(const std::string& scene) {
-  const Run& first = file(scene);
-  std::vector<Run>& runs = ensembles_.at(scene);
+const std::vector<Run>& Runs::ensemble(const std::string& name) {
+  const Run& first = file(name);
+  std::vector<Run>& runs = ensembles_.at(name);
   if (runs.size() == 1 && options_.members > 1) {
-    std::vector<Run> others = folder_ ? read_members(first, *folder_ / (scene + ".json"), options_)
+    std::vector<Run> others = folder_ ? read_members(first, *folder_ / (name + ".json"), options_)
                                       : simulated_members(first, options_);
     runs.reserve(others.size() + 1);
     for (Run& other : others) runs.push_back(as_recorded(std::move(other)));
@@ -56,15 +66,9 @@ const std::vector<Run>& Runs::ensemble(const std::string& scene) {
   return runs;
 }
 
-std::vector<Run> Runs::ensemble_by(const std::string& scene, const Engine& engine) {
-  const Scene& same = file(scene).scene;
-  if (!folder_) return simulated_ensemble(same, engine, Record{});
-  std::vector<Run> runs = read_ensemble_by(*folder_, scene, same, engine, options_);
-  for (Run& run : runs) run = as_recorded(std::move(run));
-  return runs;
-}
-
 void Runs::put(const std::string& scene, Run run) {
+  for (const CatalogueRun& further : further_)
+    if (further.scene == scene) ensembles_.erase(further.name);
   std::vector<Run>& runs = ensembles_[scene];
   runs.clear();
   runs.push_back(as_recorded(std::move(run)));
@@ -74,13 +78,6 @@ Run Runs::simulated(const Scene& scene, const Engine& engine, const Record& reco
   return as_recorded(simulate(scene, engine, record));
 }
 
-std::vector<Run> Runs::simulated_ensemble(const Scene& scene, const Engine& engine,
-                                          const Record& record) const {
-  std::vector<Run> runs = simulate_ensemble(scene, engine, record, options_);
-  for (Run& run : runs) run = as_recorded(std::move(run));
-  return runs;
-}
-
 Run Runs::as_recorded(Run run) const {
   if (wrong_) wrong_->column.multiply(run, wrong_->factor);
   return run;
@@ -88,8 +85,8 @@ Run Runs::as_recorded(Run run) const {
 
 std::string Runs::engine() const {
   std::set<std::string> names;
-  for (const auto& [scene, runs] : ensembles_) {
-    if (runs.empty()) continue;
+  for (const auto& [name, runs] : ensembles_) {
+    if (find_run(further_, name)) continue;
     const Cem* const cem = std::get_if<Cem>(&runs.front().engine);
     names.insert(std::string(name_of(runs.front().engine)) + (cem && cem->locate ? " --locate" : ""));
   }

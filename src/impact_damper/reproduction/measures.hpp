@@ -1,6 +1,5 @@
 // Our side of the claims: a table of names, each a function that finds one number, from runs and, where a
-// claim compares with another model, engine or experiment than the scene's runs, from simulations of its own
-// (Runs::simulated).
+// claim is about a short experiment of its own, from simulations (Runs::simulated).
 #pragma once
 
 #include <cstddef>
@@ -14,6 +13,7 @@
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/reproduction/claims.hpp"
 #include "impact_damper/run.hpp"
 
@@ -43,39 +43,41 @@ struct WrongColumn {
   double factor = 1;
 };
 
-// The runs that measures look at. From a folder of run files, SCENE.json each with the other members of its
-// ensemble beside it (scene_runs.hpp), each is read once, when somebody asks. Without a folder, as power.hpp
-// needs it to try other scenes and other ensembles, there is what was put, and ensembles of that are
-// simulated.
+// The runs that measures look at, of scenes and the catalogue's further runs, each by its name. From a folder
+// of run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is
+// read once, when somebody asks. Without a folder, as power.hpp needs it to try other scenes and other
+// ensembles, there are the scenes' runs that were put; further runs of these and all ensembles are simulated.
 class Runs {
  public:
   explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},
-                AnalysisOptions analysis = {}, std::optional<WrongColumn> wrong = std::nullopt)
-      : folder_(std::move(folder)), options_(options), analysis_(analysis), wrong_(wrong) {}
+                std::vector<CatalogueRun> further = {}, AnalysisOptions analysis = {},
+                std::optional<WrongColumn> wrong = std::nullopt)
+      : folder_(std::move(folder)),
+        options_(options),
+        further_(std::move(further)),
+        analysis_(analysis),
+        wrong_(wrong) {}
 
   // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put.
-  const Run& file(const std::string& scene);
-  // From now on this run stands for the scene's file.
+  const Run& file(const std::string& name);
+  // From now on this run stands for the scene's file, and further runs of the scene start from its scene.
   void put(const std::string& scene, Run run);
   // The run file, then the other members; throws what read_members() throws.
-  const std::vector<Run>& ensemble(const std::string& scene);
-  // The ensemble of the same scene by that engine with its default options: the run files SCENE.ENGINE.json
-  // (scene_runs.hpp); without a folder simulated.
-  std::vector<Run> ensemble_by(const std::string& scene, const Engine& engine);
-  // The name of the engine of the runs read so far ("cem --locate" if it locates touch and release); empty if
-  // none was or if they are of several.
+  const std::vector<Run>& ensemble(const std::string& name);
+  // The name of the engine of the scenes' runs read so far ("cem --locate" if it locates touch and release);
+  // empty if none was or if they are of several.
   std::string engine() const;
   const AnalysisOptions& analysis() const { return analysis_; }
 
-  // What a measure simulates itself: one run, or the ensemble of a scene that has no file.
+  // What a measure simulates itself.
   Run simulated(const Scene& scene, const Engine& engine, const Record& record) const;
-  std::vector<Run> simulated_ensemble(const Scene& scene, const Engine& engine, const Record& record) const;
 
  private:
   Run as_recorded(Run run) const;
 
   std::optional<std::filesystem::path> folder_;
   EnsembleOptions options_;
+  std::vector<CatalogueRun> further_;
   AnalysisOptions analysis_;
   std::optional<WrongColumn> wrong_;
   std::map<std::string, std::vector<Run>> ensembles_;  // of one member while only the file was asked for

@@ -1,4 +1,5 @@
-// Measures that hold one model against another: engines, releases, walls, time steps.
+// Measures that hold one run against another, of another engine, release or wall, and those of walls and time
+// steps.
 #include <algorithm>
 #include <cmath>
 
@@ -21,68 +22,27 @@ double time_below(const Run& run, double amplitude) {
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
 
-std::vector<Run> again(const Runs& runs, const Scene& scene, const Engine& engine) {
-  return runs.simulated_ensemble(scene, engine, Record{});
-}
-
-// How far apart the curves of A eta_s / nu of two ensembles lie over [from, to], in percent, release by
-// release.
-Spread curves_apart(const std::vector<Run>& ours, const std::vector<Run>& theirs,
-                    const AnalysisOptions& analysis, double from, double to) {
-  const auto curve = [&](const Run& run) {
-    return loss_curve(run, LossOrdinate::amplitude_times, analysis.loss, from, to);
-  };
-  std::vector<double> values;
-  values.reserve(ours.size());
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(spread_percent({curve(ours[i]), curve(theirs[i])}, from, to, analysis.bins));
-  return spread_of(values);
-}
-
-Spread models_difference(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  const std::vector<Run> theirs = runs.ensemble_by(call.scenes.front(), Restitution{});
-  return curves_apart(ours, theirs, runs.analysis(), from, to);
+// For each member of the two ensembles of `call`, side by side.
+template <class Find>
+Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
+  return over_groups(runs, call,
+                     [&](const std::vector<const Run*>& pair) { return find(*pair[0], *pair[1]); });
 }
 
 Spread time_saved(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
   std::vector<double> theirs;
-  for (const Run& run : runs.ensemble_by(call.scenes.front(), Restitution{}))
-    theirs.push_back(time_below(run, amplitude));
+  for (const Run& run : runs.ensemble(call.scenes.back())) theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  std::vector<double> values;
-  values.reserve(ours.size());
-  for (const Run& run : ours) values.push_back(100 * (1 - time_below(run, amplitude) / reference));
-  return spread_of(values);
+  return over_members(runs, call,
+                      [&](const Run& run) { return 100 * (1 - time_below(run, amplitude) / reference); });
 }
 
-Spread later_release(Runs& runs, const MeasureCall& call) {
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  Scene higher = ours.front().scene;
-  higher.x0 = number(call, "x0");
-  higher.until_time.reset();
-  higher.until_amplitude = number(call, "amplitude") / 2;
-  const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
-  std::vector<double> values;
-  values.reserve(ours.size());
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(time_below(theirs[i], number(call, "amplitude")) /
-                     time_below(ours[i], number(call, "amplitude")));
-  return spread_of(values);
-}
-
-Spread later_release_difference(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  Scene higher = ours.front().scene;
-  higher.x0 = number(call, "x0");
-  higher.until_time.reset();
-  higher.until_amplitude = from / 2;
-  const std::vector<Run> theirs = again(runs, higher, ours.front().engine);
-  return curves_apart(ours, theirs, runs.analysis(), from, to);
+Spread time_ratio(Runs& runs, const MeasureCall& call) {
+  const double amplitude = number(call, "amplitude");
+  return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
+    return time_below(ours, amplitude) / time_below(theirs, amplitude);
+  });
 }
 
 // Share of the half cycles with an amplitude in [from, to] that belong to no regular window.
@@ -101,23 +61,10 @@ double mixed_share(const Run& run, const RegimeOptions& regimes, double from, do
 
 Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  const std::vector<Run> theirs = runs.ensemble_by(call.scenes.front(), Restitution{});
-  std::vector<double> values;
-  values.reserve(ours.size());
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    values.push_back(mixed_share(ours[i], runs.analysis().regimes, from, to) /
-                     mixed_share(theirs[i], runs.analysis().regimes, from, to));
-  return spread_of(values);
-}
-
-Spread stiffness_effect(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const std::vector<Run>& ours = runs.ensemble(call.scenes.front());
-  Scene other = ours.front().scene;
-  other.wall_stiffness = number(call, "stiffness");
-  const std::vector<Run> theirs = again(runs, other, ours.front().engine);
-  return curves_apart(ours, theirs, runs.analysis(), from, to);
+  const RegimeOptions& regimes = runs.analysis().regimes;
+  return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
+    return mixed_share(ours, regimes, from, to) / mixed_share(theirs, regimes, from, to);
+  });
 }
 
 Spread zeta_error(Runs&, const MeasureCall& call) {
@@ -239,44 +186,24 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> model_measures() {
   return {
-      {"models_difference_percent",
-       1,
-       1,
-       {"from", "to"},
-       models_difference,
-       "spread of A eta_s / nu between the scene's engine and the restitution engine, in percent"},
       {"mixed_share_ratio",
-       1,
-       1,
+       2,
+       2,
        {"from", "to"},
        mixed_share_ratio,
-       "share of the half cycles that belong to no regular window, divided by that of the restitution "
-       "engine"},
+       "share of the half cycles that belong to no regular window, divided by the second run's"},
       {"time_saved_percent",
-       1,
-       1,
+       2,
+       2,
        {"amplitude"},
        time_saved,
-       "by how much the scene's engine reaches an amplitude before the restitution engine, in percent of the "
-       "time"},
-      {"later_release_ratio",
-       1,
-       1,
-       {"x0", "amplitude"},
-       later_release,
-       "time from x0 down to an amplitude, divided by that from the scene's own release"},
-      {"later_release_difference_percent",
-       1,
-       1,
-       {"x0", "from", "to"},
-       later_release_difference,
-       "spread of A eta_s / nu between the two releases, in percent"},
-      {"stiffness_effect_percent",
-       1,
-       1,
-       {"stiffness", "from", "to"},
-       stiffness_effect,
-       "spread of A eta_s / nu between the scene's wall stiffness and another, in percent"},
+       "by how much the first run reaches an amplitude before the second, in percent of the time"},
+      {"time_ratio",
+       2,
+       2,
+       {"amplitude"},
+       time_ratio,
+       "time down to an amplitude, divided by the second run's"},
       {"zeta_error", 0, 0, {"restitution"}, zeta_error, "velocity error of the iterative zeta_m"},
       {"zeta_steps", 0, 0, {"restitution"}, zeta_steps, "steps of the iterative zeta_m through one impact"},
       {"zeta_difference",

@@ -202,7 +202,7 @@ const auto by_name = [](const auto& table, std::string_view name) -> const auto&
 };
 
 Runs runs_with(const PowerInput& input, const Settings& settings, std::optional<WrongColumn> wrong = {}) {
-  Runs runs(std::nullopt, settings.ensemble, settings.analysis, wrong);
+  Runs runs(std::nullopt, settings.ensemble, input.further, settings.analysis, wrong);
   for (const auto& [scene, run] : input.runs) runs.put(scene, run);
   for (const auto& [scene, run] : input.runs) runs.ensemble(scene);
   return runs;
@@ -215,9 +215,12 @@ std::vector<Verdict> verdicts_of(const std::vector<Claim>& claims, Runs& runs) {
   return verdicts;
 }
 
-bool looks_at(const Claim& claim, const PowerNumber& number) {
+bool looks_at(const Claim& claim, const PowerNumber& number, const std::vector<CatalogueRun>& further) {
   if (number.of == of_analysis || number.of == of_columns) return true;
-  return std::ranges::find(claim.measure.scenes, number.of) != claim.measure.scenes.end();
+  return std::ranges::any_of(claim.measure.scenes, [&](const std::string& name) {
+    const CatalogueRun* const run = find_run(further, name);
+    return (run ? run->scene : name) == number.of;
+  });
 }
 
 }  // namespace
@@ -297,7 +300,7 @@ std::vector<std::string> Power::turned(const PowerNumber& number, double value, 
   std::optional<Runs> runs;
   for (std::size_t i = 0; i < input_.claims.size(); ++i) {
     const Claim& claim = input_.claims[i];
-    if (!looks_at(claim, number)) continue;
+    if (!looks_at(claim, number, input_.further)) continue;
     try {
       if (!runs) runs = changed(number, value);
       if (judge(claim, measure(*runs, claim.measure).median) == verdicts_[i]) continue;

@@ -56,10 +56,12 @@ struct PowerRow {
   std::optional<Direction> up = {}, down = {};
 };
 
-// The runs that verdicts rest on, by scene, how an ensemble of each is made, and claims to be left out.
+// The runs that verdicts rest on, by scene, the further ones made of these, how an ensemble of each is made,
+// and claims to be left out.
 struct PowerInput {
   std::vector<Claim> claims;
   std::map<std::string, Run> runs;
+  std::vector<CatalogueRun> further;
   EnsembleOptions ensemble;  // `threads` are those that search
   std::vector<std::string> left_out;
 };

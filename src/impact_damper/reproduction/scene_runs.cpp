@@ -40,6 +40,15 @@ void require_scene(const Run& run, const fs::path& file, const Scene& scene, con
   if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
+// `source` says whose engine is wanted.
+void require_engine(const Run& run, const fs::path& file, const Engine& engine, const std::string& source) {
+  if (without_defaults_by_scene(run.engine) == without_defaults_by_scene(engine)) return;
+  throw InputError(file.string(),
+                   {{"/engine", "must be that of " + source + ", " + std::string(name_of(engine)) +
+                                    ", with its options, got " + std::string(name_of(run.engine)) +
+                                    ": runs of several engines are not put together"}});
+}
+
 // Reads a run file; if there is none, what is thrown names the command that makes it.
 Run read_or_name_command(const fs::path& file, const std::string& command) {
   try {
@@ -66,12 +75,7 @@ void require_scene(const Run& run, const std::filesystem::path& file,
 
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
                          const std::filesystem::path& other_file) {
-  if (without_defaults_by_scene(run.engine) == without_defaults_by_scene(other.engine)) return;
-  throw InputError(
-      file.string(),
-      {{"/engine", "must be that of " + other_file.string() + ", " + std::string(name_of(other.engine)) +
-                       ", with its options, got " + std::string(name_of(run.engine)) +
-                       ": runs of several engines are not put together"}});
+  require_engine(run, file, other.engine, other_file.string());
 }
 
 fs::path member_file(const fs::path& run_file, std::int64_t member) {
@@ -114,33 +118,27 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
   return others;
 }
 
-fs::path file_by(const fs::path& folder, const std::string& scene, const Engine& engine) {
-  return folder / (scene + '.' + std::string(name_of(engine)) + ".json");
-}
-
-std::vector<Run> read_ensemble_by(const fs::path& folder, const std::string& name, const Scene& scene,
-                                  const Engine& engine, const EnsembleOptions& options) {
-  const fs::path file = file_by(folder, name, engine);
-  const std::string words(name_of(engine));
-  const Run first = read_or_name_command(file, "impact-damper run --scene " + name + ".json --engine " +
-                                                   words + " --members " + std::to_string(options.members) +
-                                                   " -o " + file.string());
-  require_scene(first, file, scene, (folder / (name + ".json")).string());
-  if (without_defaults_by_scene(first.engine) != without_defaults_by_scene(engine))
-    throw InputError(file.string(), {{"/engine", "must be " + words + " with its default options, got " +
-                                                     std::string(name_of(first.engine))}});
-  require_consistent(first, file);
-  std::vector<Run> runs = read_members(first, file, options);
-  runs.insert(runs.begin(), first);
-  return runs;
-}
-
 Run SceneRuns::read(const std::string& scene) const {
   const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
   Run run =
       read_or_name_command(file, "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                      ", with --record, --engine and --members as needed");
   require_scene(run, file, scene_file);
+  require_consistent(run, file);
+  return run;
+}
+
+Run SceneRuns::read(const CatalogueRun& wanted) const {
+  const Run of_scene = read(wanted.scene);
+  const fs::path file = file_of(wanted.name);
+  Run run = read_or_name_command(
+      file, "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() + " -o " +
+                file.string() + ", with what run " + wanted.name + " of the catalogue sets, and --members");
+  require_scene(run, file, changed_scene(wanted, of_scene.scene), "run " + wanted.name + " of the catalogue");
+  if (wanted.engine)
+    require_engine(run, file, *wanted.engine, "run " + wanted.name + " of the catalogue");
+  else
+    require_same_engine(run, file, of_scene, file_of(wanted.scene));
   require_consistent(run, file);
   return run;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -41,14 +42,6 @@ Record record_of_member(Record record);
 std::vector<Run> read_members(const Run& first, const std::filesystem::path& run_file,
                               const EnsembleOptions& options = {});
 
-// The run of a scene by an engine of its own, with its default options, whichever engine the others are by.
-std::filesystem::path file_by(const std::filesystem::path& folder, const std::string& scene,
-                              const Engine& engine);  // FOLDER/SCENE.ENGINE.json
-// Its ensemble: runs of `scene`, which is called `name`, and of its other members. Throws as read_members().
-std::vector<Run> read_ensemble_by(const std::filesystem::path& folder, const std::string& name,
-                                  const Scene& scene, const Engine& engine,
-                                  const EnsembleOptions& options = {});
-
 // Where runs and the scenes that they are of are kept.
 struct SceneRuns {
   std::filesystem::path runs, scenes;
@@ -57,6 +50,9 @@ struct SceneRuns {
   // The run of that scene, consistent and of the scene in the other folder. Throws IoError, naming the
   // command that makes it if it is missing, or InputError.
   Run read(const std::string& scene) const;
+  // The further run, consistent, of its scene with its changes and by its engine, or that of the scene's run,
+  // which is read as well. Throws the same.
+  Run read(const CatalogueRun& wanted) const;
 };
 
 }  // namespace impact_damper
