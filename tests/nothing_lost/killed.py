@@ -9,10 +9,8 @@ the point of them. The other half meets the writing of a file: the program is st
 hold.cpp knows, and killed there; figures/draw when an unfinished file has been seen. All are drawn from the seed.
 """
 
-import json
 import os
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -168,12 +166,12 @@ def main():
 
     program, runs = str(options.program.resolve()), str(tree / "build" / "runs" / "exact")
     catalogue, scenes = str(tree / "figures" / "catalogue.json"), str(tree / "data" / "scenes")
-    # What claims rest on: the runs of the figures, and by another engine those that measures compare with.
-    claimed = folder / "runs"
-    shutil.copytree(runs, claimed)
-    for each in json.loads(Path(catalogue).read_text())["runs"]:
-        subprocess.run([program, "run", "--scene", f"{scenes}/{each['scene']}.json", "--engine", each["engine"], "-o",
-                        claimed / f"{each['scene']}.{each['engine']}.json"], check=True)
+    # What claims rest on: the runs of the figures, and the further ones that measures compare with.
+    other_tree = scratch.make_tree(folder / "runs", options.program.resolve(), options.figures)
+    scratch.make(other_tree, "build/build.ninja")
+    subprocess.run(["cmake", "--build", "build", "--target", "runs-exact"], cwd=other_tree, check=True,
+                   stdout=subprocess.DEVNULL)
+    claimed = str(other_tree / "build" / "runs" / "exact")
     tables = sorted(file.name for file in (tree / "build" / "series" / "exact").glob("*.dat"))
     loss = next(file for file in reversed(tables) if file != "fig15.dat")
     number = str(int(loss[3:5]))

@@ -541,8 +541,9 @@ class Follower {
   }
   static bool is_flip(const PoincareImage& image) {
     const Multipliers all = multipliers_of(image.by_state);
-    return std::any_of(all.begin(), all.end(),
-                       [](const Multiplier& m) { return std::hypot(m.re + 1, m.im) < 1e-6; });
+    return std::any_of(all.begin(), all.end(), [](const Multiplier& m) {
+      return std::fabs(m.re + 1) < 1e-6 && std::fabs(m.im) < 1e-6;
+    });
   }
 
   // If the test changes its sign.
