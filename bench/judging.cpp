@@ -254,7 +254,8 @@ TEST_CASE("a very fast force is held against a slow one by its periods") {
   // 100 impacts each: 30 operations an impact. At 50 t / 2 pi = 159.2 periods: 18.85 operations each.
   const Scene& fast = found.scenes.back().scene;
   REQUIRE(*fast.until_time * fast.force_frequency == 1000);
-  CHECK(*find(results_of(found), "time per impact, at 50").measured == Approx(30 / (3000 * 2 * std::acos(-1.0) / 1000)));
+  CHECK(*find(results_of(found), "time per impact, at 50").measured ==
+        Approx(30 / (3000 * 2 * std::acos(-1.0) / 1000)));
 }
 
 TEST_CASE("a peer that does not reach the error has no ratio, and how far it came is said") {

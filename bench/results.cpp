@@ -47,7 +47,8 @@ void measure_cost(const Findings& found, const std::string& scene, const std::st
       std::to_string(point.impacts) + " impacts in " + digits(point.timing.seconds.median * 1e3) + " ms";
 }
 
-// What an impact costs under a slow and a fast force, and a whole period of one so fast that impacts are rare.
+// What an impact costs under a slow and a fast force, and a whole period of one so fast that impacts are
+// rare.
 void measure_frequencies(const Findings& found, Result& result) {
   std::vector<double> costs;
   for (const char* name : {"S8 slow", "S8 fast", "S8 very fast"}) {
@@ -57,7 +58,8 @@ void measure_frequencies(const Findings& found, Result& result) {
     const double omega = scene->scene.force_frequency;
     const double periods = *scene->scene.until_time * omega / (2 * std::acos(-1.0));
     const Point& point = curve->finest();
-    costs.push_back(point.timing.reference_operations.median / (omega < 10 ? double(point.impacts) : periods));
+    costs.push_back(point.timing.reference_operations.median /
+                    (omega < 10 ? double(point.impacts) : periods));
     result.note += (result.note.empty() ? "" : ", ") + digits(costs.back(), "%.1f") + " at " + digits(omega);
   }
   const auto [least, most] = std::ranges::minmax_element(costs);

@@ -59,16 +59,16 @@ struct Vector {
   Vector(const Vector&) = delete;
 };
 
-// Solver(problem, u, context, tolerance, time by radian of the fastest motion), with restart(u) at its time 0,
-// advance(end, u, t) that says whether
-// it stopped at an event, and found(events).
+// Solver(problem, u, context, tolerance, time by radian of the fastest motion), with restart(u) at its time
+// 0, advance(end, u, t) that says whether it stopped at an event, and found(events).
 template <class Solver>
 Rows run(const Scene& scene, Walls walls, double tolerance) {
   const Context context;
   Problem problem{System(scene, walls)};
   const Vector vector(problem.system.state, context.context);
   N_Vector u = vector.vector;
-  // Roots are looked for at the ends of steps only, whose length is bounded by the shorter of the two periods.
+  // Roots are looked for at the ends of steps only, whose length is bounded by the shorter of the two
+  // periods.
   const double radian = scene.force_amplitude != 0 ? 1 / std::max(1.0, scene.force_frequency) : 1;
   Solver solver(problem, u, context.context, tolerance, radian);
 
