@@ -29,10 +29,9 @@ Scene compared_part(const BenchScene& scene);
 //   S4  forced at resonance, f0 = 0.05, and damped, zeta = 0.01: x0 = 6 to t = 100, from bounce-down to two
 //       impacts in a half cycle; a shift of x0 does not grow on the way
 //   S5  the whole decay from 6 to 0.03: chaotic in its middle
-//   S7  forced near resonance, f0 = 0.3 nu, undamped, from x0 = 1 to t = 2000: irregular, few impacts, long
-//   flights S8  a slow, a fast and a very fast force, from x0 = 0.1, the mass amid its travel, and the steady
-//   velocity of the empty
-//       structure, so that x moves by about 1 and the walls are met again and again
+//   S7  forced near resonance, f0 = 0.3 nu, undamped, from x0 = 1 to t = 2000: irregular, with long flights
+//   S8  a slow, a fast and a very fast force, from x0 = 0.1, the mass amid its travel, and the steady
+//       velocity of the empty structure, so that x moves by about 1 and the walls are met again and again
 // nu = 0.02, e = 0.6, k = 1e4; zeta = 0 but in S4 and S8, no force in S1, S2, S3, S5. (S6, the figures, is no
 // scene: figure_set.hpp.)
 std::vector<BenchScene> bench_scenes();

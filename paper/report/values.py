@@ -4,7 +4,8 @@ counting, picking, comparing and dividing; all come from what the program made:
     CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
     CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict; CLAIM.NAME a further number, NAME in "also"
     count.claims, count.reproduced, count.not-reproduced, count.corrected, count.derived, count.open
-    scene.NAME.FIELD        a number of a scene, defaults among them; run.NAME.half_cycles, .impacts, .end_time
+    scene.NAME.FIELD        a number of a scene, defaults among them, or one that a further run of the catalogue changes, of
+                            its scene or engine; run.NAME.half_cycles, .impacts, .end_time
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
     figNN.BLOCK.N.peak      column N where column 2 is greatest
     bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
@@ -142,6 +143,10 @@ class Values:
             self.known |= {f"run.{each['scene']}.half_cycles": len(run["half_cycles"]["amplitude"]),
                            f"run.{each['scene']}.impacts": sum(run["half_cycles"]["impacts"]),
                            f"run.{each['scene']}.end_time": run["end_time"]}
+        for each in self.catalogue["runs"]:
+            changed = {**each.get("set", {}), **each.get("engine", {})}
+            self.known |= {f"scene.{each['name']}.{what}": number for what, number in changed.items()
+                           if isinstance(number, (int, float))}
         for number, figure in self.figures.items():
             stem = stem_of(figure)
             table = build / f"series/exact/{stem}.dat"
