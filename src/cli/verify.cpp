@@ -277,10 +277,13 @@ int verify(Arguments& arguments) {
 
   const ClaimsFile read = read_claims_file(claims_file);
   const std::vector<Claim>& claims = read.claims;
-  const Catalogue catalogue = read_catalogue(catalogue_file);
+  // Who has no catalogue has no further runs either.
+  const bool has_catalogue = arguments.given("--catalogue") || fs::exists(catalogue_file);
+  const Catalogue catalogue = has_catalogue ? read_catalogue(catalogue_file) : Catalogue{};
   if (arguments.given("--catalogue")) check_figures(catalogue.figures, catalogue_file, claims);
   const RunNames names = runs_of(claims, catalogue.runs);
-  std::vector<fs::path> inputs{claims_file, catalogue_file};
+  std::vector<fs::path> inputs{claims_file};
+  if (has_catalogue) inputs.emplace_back(catalogue_file);
   for (const std::set<std::string>* list : {&names.scenes, &names.further})
     for (const std::string& name : *list) {
       const fs::path run = folders.file_of(name);

@@ -121,7 +121,8 @@ def known(b, tree):
 
     # Ensembles and threads.
     runs, claims = str(tree / "build" / "runs" / "exact"), str(scratch.SOURCE / "data" / "claims.json")
-    verify = ["verify", "--runs", runs, "--claims", claims, "--scenes", str(scratch.SOURCE / "data" / "scenes")]
+    catalogue = str(tree / "figures" / "catalogue.json")
+    verify = ["verify", "--runs", runs, "--claims", claims, "--catalogue", catalogue, "--scenes", str(scratch.SOURCE / "data" / "scenes")]
     for members in ("1000000000", "10000", "101"):
         b.rejects("--members: must be a whole number >= 1 and <= 100", [*verify, "--members", members])
     for threads in ("0", "-1", "100000", "1e9", "99999999999999999999"):

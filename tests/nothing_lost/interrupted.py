@@ -64,7 +64,7 @@ def programs(options, tree, folder, moments, check):
                       "-o", "out.json"], ["out.json"]),
         "series": ([program, "series", "--catalogue", catalogue, "--runs", runs, "--scenes", scenes,
                     "--threads", "4", "-o", "."], []),
-        "verify": ([program, "verify", "--claims", claims, "--runs", runs, "--scenes", scenes,
+        "verify": ([program, "verify", "--claims", claims, "--catalogue", catalogue, "--runs", runs, "--scenes", scenes,
                     "--threads", "4", "-o", "verdicts.json"], ["verdicts.json"]),
     }
     for name, (command, files) in commands.items():

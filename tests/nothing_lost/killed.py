@@ -192,8 +192,8 @@ def main():
                         str(tree / "build" / "series" / "exact" / loss), f"Figure {number}", "./fig",
                         scratch.VERSION],
                ["fig.svg", "fig.pdf", "fig.png"]),
-        victim("verify", [program, "verify", "--claims", str(tree / "data" / "claims.json"), "--runs", claimed,
-                          "--scenes", scenes, "--members", "1", "-o", "verdicts.json", "--markdown", "claims.md"],
+        victim("verify", [program, "verify", "--claims", str(tree / "data" / "claims.json"), "--catalogue", catalogue,
+                          "--runs", claimed, "--scenes", scenes, "--members", "1", "-o", "verdicts.json", "--markdown", "claims.md"],
                ["verdicts.json", "claims.md"]),
     ]
     for each in victims:
