@@ -5,20 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forced_scene.hpp"
 #include "impact_damper/steady/two_impact_orbit.hpp"
 
 using namespace impact_damper;
 
 namespace {
 
-Scene forced(double nu, double zeta, double frequency, double amplitude) {
-  Scene scene;
-  scene.mass_ratio = nu;
-  scene.damping_ratio = zeta;
-  scene.force_frequency = frequency;
-  scene.force_amplitude = amplitude;
-  return scene;
-}
 Branches found_from(const Scene& scene, const ParameterRange& range, const std::vector<State<double>>& starts,
                     const BranchRule& rule = {}, const Engine& engine = Restitution{}) {
   return find_branches(scene, engine, range, rule, starts, {}, [](std::int64_t) {});
@@ -37,7 +30,7 @@ SteadyState simulated(const Orbit& orbit, Parameter parameter, double value) {
 }  // namespace
 
 TEST_CASE("the branch of the steady motion of two impacts is the closed form, past its fold") {
-  const Scene scene = forced(0.02, 0.1, 0.9, 0.0655307);
+  const Scene scene = forced_scene(0.02, 0.1, 0.9, 0.0655307);
   const Branches found = found_from(scene, {Parameter::force_frequency, 0.9, 2.5},
                                     {two_impact_orbits(scene).at(0).state, {0, 0, 0.5, 0}});
   REQUIRE(found.starts.size() == 2);
@@ -81,7 +74,7 @@ TEST_CASE("the branch of the steady motion of two impacts is the closed form, pa
 }
 
 TEST_CASE("branches of mirror images and of twice the period begin where simulations show them") {
-  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.05);
   const Parameter parameter = Parameter::force_amplitude;
   const Branches found = found_from(scene, {parameter, 0.05, 0.12}, {two_impact_orbits(scene).at(0).state});
   REQUIRE(found.starts[0].branch == 0);
@@ -128,7 +121,7 @@ TEST_CASE("branches of mirror images and of twice the period begin where simulat
 }
 
 TEST_CASE("a mass that is not struck is followed to where it grazes, and simulation leads on") {
-  const Scene scene = forced(0.02, 0.05, 0.8, 0.1);
+  const Scene scene = forced_scene(0.02, 0.05, 0.8, 0.1);
   const Branches found =
       found_from(scene, {Parameter::force_amplitude, 0.1, 0.3}, {{0.1, 0, 0.4, 0}, {0.1, 0, 0.45, 0}});
   // Both rest elsewhere, which is one motion.
@@ -153,7 +146,7 @@ TEST_CASE("a mass that is not struck is followed to where it grazes, and simulat
 }
 
 TEST_CASE("a start on a branch that is known begins no other, and starts without an orbit say why") {
-  Scene scene = forced(0.02, 0.02, 0.9, 0.06);
+  Scene scene = forced_scene(0.02, 0.02, 0.9, 0.06);
   State<double> start = two_impact_orbits(scene).at(0).state;
   start.w += 1e-3;
   const ParameterRange range{Parameter::force_amplitude, 0.06, 0.061};
@@ -180,7 +173,7 @@ TEST_CASE("a start on a branch that is known begins no other, and starts without
 }
 
 TEST_CASE("branches do not depend on the number of threads, and more than were asked for are told") {
-  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.05);
   const State<double> start = two_impact_orbits(scene).at(0).state;
   const auto found = [&](std::int64_t threads) {
     std::int64_t last = 0;
@@ -201,7 +194,7 @@ TEST_CASE("branches do not depend on the number of threads, and more than were a
 }
 
 TEST_CASE("what is not valid is rejected, with its fields") {
-  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.05);
   const auto fails = [&](const ParameterRange& range, const BranchRule& rule) {
     CHECK_THROWS_AS(found_from(scene, range, {{}}, rule), InvalidArguments);
   };

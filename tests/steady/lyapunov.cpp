@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forced_scene.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/orbits.hpp"
@@ -15,11 +16,7 @@ using namespace impact_damper;
 namespace {
 
 Scene forced(double nu, double zeta, double frequency, double amplitude) {
-  Scene scene;
-  scene.mass_ratio = nu;
-  scene.damping_ratio = zeta;
-  scene.force_frequency = frequency;
-  scene.force_amplitude = amplitude;
+  Scene scene = forced_scene(nu, zeta, frequency, amplitude);
   scene.x0 = 0.3;
   scene.y0 = 0.4;
   scene.w0 = 0.2;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "forced_scene.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/two_impact_orbit.hpp"
 #include "reference.hpp"
@@ -15,14 +16,6 @@ using namespace impact_damper;
 
 namespace {
 
-Scene forced(double nu, double zeta, double frequency, double amplitude) {
-  Scene scene;
-  scene.mass_ratio = nu;
-  scene.damping_ratio = zeta;
-  scene.force_frequency = frequency;
-  scene.force_amplitude = amplitude;
-  return scene;
-}
 double linear_amplitude(const Scene& scene) {
   const double w = scene.force_frequency;
   return std::fabs(scene.force_amplitude) / std::hypot(1 - w * w, 2 * scene.damping_ratio * w);
@@ -61,8 +54,8 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     reference::Random random(seed);
-    Scene scene = forced(random.log_uniform(1e-4, 1), random.log_uniform(5e-3, 0.5), random.uniform(0.5, 1.6),
-                         random.log_uniform(0.05, 1));
+    Scene scene = forced_scene(random.log_uniform(1e-4, 1), random.log_uniform(5e-3, 0.5),
+                               random.uniform(0.5, 1.6), random.log_uniform(0.05, 1));
     scene.restitution = random.uniform(0.2, 0.9);
     for (const TwoImpactOrbit& expected : two_impact_orbits(scene)) {
       State<double> guess = expected.state;
@@ -106,7 +99,7 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
 }
 
 TEST_CASE("Newton's iteration converges quadratically") {
-  const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  const Scene scene = forced_scene(0.02, 0.05, 0.9, 0.1);
   const TwoImpactOrbit exact = two_impact_orbits(scene).at(0);
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{.calibration = Calibration::two_body})}) {
     State<double> guess = exact.state;
@@ -129,7 +122,7 @@ TEST_CASE("Newton's iteration converges quadratically") {
 TEST_CASE(
     "a branch through both folds closes, and is the closed form throughout, also where impacts pass phase "
     "0") {
-  const Scene scene = forced(0.02, 0.1, 0.9, 0.0655307);
+  const Scene scene = forced_scene(0.02, 0.1, 0.9, 0.0655307);
   const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   REQUIRE(first.end == OrbitEnd::converged);
   const Branch branch = follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5});
@@ -161,7 +154,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a heavy secondary mass, too, is followed both ways through its impacts at phase 0") {
-  const Scene scene = forced(0.5, 0.1, 1.2, 0.224362);
+  const Scene scene = forced_scene(0.5, 0.1, 1.2, 0.224362);
   const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   REQUIRE(first.end == OrbitEnd::converged);
   for (const bool upwards : {true, false}) {
@@ -182,7 +175,7 @@ TEST_CASE("a heavy secondary mass, too, is followed both ways through its impact
 }
 
 TEST_CASE("near a fold no step leads from one side of the branch to the other") {
-  const Scene scene = forced(0.5, 0.1, 1.4, 0.309605);
+  const Scene scene = forced_scene(0.5, 0.1, 1.4, 0.309605);
   const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   const Branch branch =
       follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5, .upwards = false});
@@ -204,7 +197,7 @@ TEST_CASE(
     return two_impact_orbits(changed).at(0);
   };
   {
-    const Scene scene = forced(0.02, 0.02, 0.9, 0.04);
+    const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.04);
     const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
     const Branch branch = follow(first, Parameter::force_amplitude, {.least = 0.03, .most = 0.07});
     const BranchEvent* event = first_of(branch, BranchEventKind::symmetry_breaking);
@@ -219,7 +212,7 @@ TEST_CASE(
     CHECK(branch.orbits.back().scene.force_amplitude == 0.07);
   }
   {
-    const Scene scene = forced(0.02, 0.02, 1.2, 0.06);
+    const Scene scene = forced_scene(0.02, 0.02, 1.2, 0.06);
     const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
     const Branch branch =
         follow(first, Parameter::force_amplitude, {.least = 0.0385, .most = 0.07, .upwards = false});
@@ -238,7 +231,7 @@ TEST_CASE(
 TEST_CASE("a secondary mass that is not struck grazes both walls where the linear amplitude is 1/2") {
   for (const double nu : {1e-6, 0.02, 1e6}) {
     for (const double frequency : {0.8, 1.0, 1.7}) {
-      const Scene scene = forced(nu, 0.05, frequency, 0.02);
+      const Scene scene = forced_scene(nu, 0.05, frequency, 0.02);
       const Orbit idle = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.symmetric = true});
       REQUIRE(idle.end == OrbitEnd::converged);
       CHECK(idle.impacts.empty());
@@ -264,7 +257,7 @@ TEST_CASE("a secondary mass that is not struck grazes both walls where the linea
 
 TEST_CASE("orbits of two impacts end in the same grazing, from the other side") {
   for (const double nu : {0.02, 0.1}) {
-    const Scene scene = forced(nu, 0.1, 0.9, 0.08);
+    const Scene scene = forced_scene(nu, 0.1, 0.9, 0.08);
     const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
     REQUIRE(first.end == OrbitEnd::converged);
     const Branch branch =
@@ -277,7 +270,7 @@ TEST_CASE("orbits of two impacts end in the same grazing, from the other side") 
 }
 
 TEST_CASE("compliant walls tend to rigid ones, with the root of the stiffness") {
-  Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  Scene scene = forced_scene(0.02, 0.05, 0.9, 0.1);
   const TwoImpactOrbit rigid = two_impact_orbits(scene).at(0);
   double before = 0;
   for (const double stiffness : {1e6, 1e8, 1e10}) {
@@ -298,8 +291,8 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
     Engine engine;
     State<double> guess;
   };
-  const Scene light = forced(0.02, 0.05, 0.9, 0.1);
-  Scene strong = forced(0.1, 0.02, 0.95, 0.3);
+  const Scene light = forced_scene(0.02, 0.05, 0.9, 0.1);
+  Scene strong = forced_scene(0.1, 0.02, 0.95, 0.3);
   strong.wall_stiffness = 1e5;
   const std::vector<Kind> kinds{{light, Restitution{}, two_impact_orbits(light).at(0).state},
                                 {light, Exact{}, two_impact_orbits(light).at(0).state},
@@ -339,7 +332,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
 }
 
 TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds such an orbit as any other") {
-  const Scene scene = forced(0.1, 0.02, 0.95, 0.3);
+  const Scene scene = forced_scene(0.1, 0.02, 0.95, 0.3);
   const State<double> near = settled(scene, Restitution{}, two_impact_orbits(scene).at(0).state, 40);
   const Orbit orbit = find_orbit(scene, Restitution{}, 1, near);
   REQUIRE(orbit.end == OrbitEnd::converged);
@@ -358,7 +351,7 @@ TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds suc
 }
 
 TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip one of twice the period") {
-  Scene scene = forced(0.02, 0.02, 0.9, 0.06);
+  Scene scene = forced_scene(0.02, 0.02, 0.9, 0.06);
   const Orbit symmetric = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   CHECK(symmetric.symmetric);
   CHECK(!symmetric.stable());
@@ -380,8 +373,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   REQUIRE(joined);
   CHECK(down.end == BranchEnd::joined);
   CHECK(down.orbits.back().scene.force_amplitude == joined->parameter);
-  const Orbit below = find_orbit(forced(0.02, 0.02, 0.9, 0.05), Restitution{}, 1,
-                                 two_impact_orbits(forced(0.02, 0.02, 0.9, 0.05)).at(0).state);
+  const Orbit below = find_orbit(forced_scene(0.02, 0.02, 0.9, 0.05), Restitution{}, 1,
+                                 two_impact_orbits(forced_scene(0.02, 0.02, 0.9, 0.05)).at(0).state);
   const Branch main = follow(below, Parameter::force_amplitude, {.least = 0.04, .most = 0.07});
   const BranchEvent* left = first_of(main, BranchEventKind::symmetry_breaking);
   REQUIRE(left);
@@ -432,7 +425,7 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
 }
 
 TEST_CASE("steps of the parameter are as short as asked for, and events say between which orbits they are") {
-  const Scene scene = forced(0.02, 0.02, 0.9, 0.04);
+  const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.04);
   const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   const Branch branch = follow(first, Parameter::force_amplitude,
                                {.least = 0.03, .most = 0.07, .largest_step = 1, .largest_change = 3e-4});
@@ -456,7 +449,7 @@ TEST_CASE("steps of the parameter are as short as asked for, and events say betw
 }
 
 TEST_CASE("a branch ends where it is more unstable than asked for, unless grazing is the cause") {
-  const Scene scene = forced(0.02, 0.02, 0.9, 0.05);
+  const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.05);
   const Orbit first = find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   const Branch branch =
       follow(first, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .max_multiplier = 5});
@@ -469,7 +462,7 @@ TEST_CASE("a branch ends where it is more unstable than asked for, unless grazin
   CHECK(instability(last) > 5);
   CHECK(instability(last - 1) <= 5);
 
-  const Scene grazing = forced(0.5, 0.1, 1.4, 0.309605);
+  const Scene grazing = forced_scene(0.5, 0.1, 1.4, 0.309605);
   const Orbit impacting = find_orbit(grazing, Restitution{}, 1, two_impact_orbits(grazing).at(0).state);
   CHECK(follow(impacting, Parameter::force_frequency,
                {.least = 0.3, .most = 2.5, .upwards = false, .max_multiplier = 100})
@@ -477,7 +470,7 @@ TEST_CASE("a branch ends where it is more unstable than asked for, unless grazin
 }
 
 TEST_CASE("what cannot be followed or found says so") {
-  const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
+  const Scene scene = forced_scene(0.02, 0.05, 0.9, 0.1);
   const Orbit none = find_orbit(scene, Restitution{}, 1, {0, 0, 0.5, 0}, {.max_iterations = 1});
   CHECK(none.end == OrbitEnd::no_convergence);
   CHECK(follow(none, Parameter::force_amplitude, {.least = 0.01, .most = 1}).end == BranchEnd::not_an_orbit);
