@@ -319,7 +319,7 @@ TEST_CASE("any other byte makes another digest, which is told unless something p
   const std::string text = run_text(full_run()), other_digest =
                                                      "r.json: /provenance/sha256: must be the digest of the "
                                                      "content, got another one: the file was altered or laid "
-                                                     "out anew since it was written; make the run again";
+                                                     "out anew since it was written; make it again";
   for (const auto& [old, by] :
        std::vector<std::pair<std::string, std::string>>{{"\"x0\": 6,", "\"x0\": 6.5,"},
                                                         {"7.25", "7.5"},

@@ -17,7 +17,6 @@ namespace impact_damper::cli {
 namespace {
 
 constexpr const char* this_command = "impact-damper response";
-constexpr std::int64_t most_values = 100'000;  // of an axis
 
 enum class Kind { sweep, basin, orbits, lyapunov };
 constexpr std::array kinds{Kind::sweep, Kind::basin, Kind::orbits, Kind::lyapunov};
@@ -369,7 +368,7 @@ std::string swept(const Request& asked) {
   warn_of(sweeps, asked.sweep);
   return asked.format == Format::csv
              ? sweep_csv(scene, axis, sweeps, asked.units)
-             : sweep_text(scene, asked.engine, asked.sweep, axis, sweeps, asked.file.scales);
+             : response_text(SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps}, asked.file.scales);
 }
 
 std::string mapped(const Request& asked) {
@@ -381,7 +380,8 @@ std::string mapped(const Request& asked) {
   warn_of(map, asked.basin.steady);
   return asked.format == Format::csv
              ? basin_csv(first, second, map, asked.units)
-             : basin_text(scene, asked.engine, asked.basin, first, second, map, asked.file.scales);
+             : response_text(BasinResponse{scene, asked.engine, asked.basin, first, second, map},
+                             asked.file.scales);
 }
 
 std::string followed(const Request& asked) {
@@ -392,7 +392,8 @@ std::string followed(const Request& asked) {
   warn_of(found, asked.orbits);
   return asked.format == Format::csv
              ? orbits_csv(*asked.range, found, asked.units)
-             : orbits_text(scene, asked.engine, asked.orbits, *asked.range, found, asked.file.scales);
+             : response_text(orbits_response(scene, asked.engine, asked.orbits, *asked.range, found),
+                             asked.file.scales);
 }
 
 std::string averaged(const Request& asked) {
@@ -406,7 +407,8 @@ std::string averaged(const Request& asked) {
   warn_of(found);
   return asked.format == Format::csv
              ? lyapunov_csv(found, asked.units)
-             : lyapunov_text(scene, asked.engine, periods, discard, found, asked.file.scales);
+             : response_text(LyapunovResponse{scene, asked.engine, periods, discard, found},
+                             asked.file.scales);
 }
 
 std::string text_of(const Request& asked) {

@@ -502,7 +502,7 @@ TEST_CASE("no result depends on the number of threads") {
   std::string first;
   for (const std::int64_t threads : {1, 2, 5}) {
     const auto sweeps = sweep(scene, compliant, axis, rule, starts, threads, [](std::int64_t) {});
-    const std::string text = sweep_text(scene, compliant, rule, axis, sweeps);
+    const std::string text = response_text(SweepResponse{scene, compliant, rule, axis, sweeps});
     if (first.empty()) first = text;
     CHECK(text == first);
   }

@@ -337,6 +337,23 @@ std::optional<std::size_t> ObjectReader::word(std::string_view key,
   return std::nullopt;
 }
 
+bool ObjectReader::words(std::string_view key, const std::vector<std::string_view>& words,
+                         std::vector<std::size_t>& target) {
+  std::vector<std::string> texts;
+  if (!array(key, texts, TextRule{})) return false;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const auto found = std::ranges::find(words, texts[i]);
+    if (found == words.end()) {
+      reject(key, i, "must be one of " + listed(words, "or") + ", got the string " + in_quotes(texts[i]));
+      return false;
+    }
+    indices.push_back(static_cast<std::size_t>(found - words.begin()));
+  }
+  target = std::move(indices);
+  return true;
+}
+
 std::optional<ObjectReader> ObjectReader::optional_object(std::string_view key) {
   const Json* const value = find(key);
   if (!value || value->is_null()) return std::nullopt;

@@ -91,6 +91,9 @@ class ObjectReader {
   }
   // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
+  // The same of each element of an array. False if it is no array of such words; nothing if it is missing.
+  bool words(std::string_view key, const std::vector<std::string_view>& words,
+             std::vector<std::size_t>& target);
 
   // Objects within. An optional one that is missing (or null) is absent.
   ObjectReader required_object(std::string_view key);

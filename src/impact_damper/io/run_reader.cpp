@@ -8,6 +8,7 @@
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -52,11 +53,14 @@ class Columns {
   std::optional<std::size_t> length_;
 };
 
-// False, having said so, unless there is a value that is allowed, or none where none is needed: a run file
-// has all options, elsewhere one that is missing keeps its default.
+// Whether an engine may lack an option that every run file has, and then keeps its default: a run file may
+// not; a response file has null for what follows from each of its runs; elsewhere any may be missing.
+enum class Lacking { nothing, null, any };
+
+// False, having said so, unless there is a value that is allowed, or none where none is needed.
 template <class Value>
-bool read_option(ObjectReader& object, const OptionInfo& option, bool may_be_missing, Value& value) {
-  if ((may_be_missing || !option.in_every_file) && !object.has(option.name)) return true;
+bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking, Value& value) {
+  if ((lacking == Lacking::any || !option.in_every_file) && !object.has(option.name)) return true;
   if constexpr (std::is_enum_v<Value>) {
     if (!object.require(option.name)) return false;
     const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
@@ -65,6 +69,8 @@ bool read_option(ObjectReader& object, const OptionInfo& option, bool may_be_mis
   } else if constexpr (std::is_same_v<Value, bool>) {
     return object.required(option.name, value);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    if (lacking == Lacking::null && option.in_every_file)
+      return object.required(option.name, value, option.range);
     double number = 0;  // null is no number
     if (!object.required(option.name, number, option.range)) return false;
     value = number;
@@ -75,7 +81,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, bool may_be_mis
 }
 
 // Absent if any of it is not valid.
-std::optional<Engine> read_engine(ObjectReader& object, bool options_may_be_missing) {
+std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
   if (!object.require("name")) return std::nullopt;
   const std::optional<std::size_t> name = object.word("name", engine_names());
   if (!name) {
@@ -85,7 +91,7 @@ std::optional<Engine> read_engine(ObjectReader& object, bool options_may_be_miss
   Engine engine = default_engines()[*name];
   bool all_read = true;
   for_each_option(engine, [&](const OptionInfo& option, auto& value) {
-    all_read = read_option(object, option, options_may_be_missing, value) && all_read;
+    all_read = read_option(object, option, lacking, value) && all_read;
   });
   if (!all_read) return std::nullopt;
   return engine;
@@ -175,25 +181,6 @@ History read_history(ObjectReader object) {
   return history;
 }
 
-// Six numbers of three scales: they must go together.
-void check_units(ObjectReader object) {
-  SiUnits units{};
-  bool all_read = true;
-  for (const SiUnit& unit : si_units)
-    all_read = object.required(unit.name, units.*unit.member, above(0)) && all_read;
-  if (!all_read) return;
-  const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
-    constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
-    if (std::abs(given - wanted) <= rounding * std::abs(wanted)) return;
-    object.reject(
-        name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
-  };
-  must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
-  must_be("energy_J", units.energy, units.mass * units.velocity * units.velocity,
-          "mass_kg times velocity_m_per_s squared");
-  must_be("force_N", units.force, units.energy / units.length, "energy_J divided by length_m");
-}
-
 // Every field of a run file's scene is there, absent stops as null.
 Scene read_full_scene(ObjectReader& object) {
   for (const SceneField& field : scene_fields) object.require(field.name);
@@ -212,23 +199,13 @@ void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   }
 }
 
-// Whether a run file ends with the digest of what stands before it.
-bool is_sealed(std::string_view text) {
-  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
-  if (text.size() < length) return false;
-  const std::string_view seal = text.substr(text.size() - length),
-                         digest = seal.substr(seal_begin.size(), digits);
-  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
-         digest == sha256(text.substr(0, text.size() - length));
-}
-
 Run read_whole(JsonDocument document, bool sealed) {
   Run run;
   ObjectReader object = document.root();
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_full_scene(scene);
-  if (const std::optional<Engine> whole = read_engine(engine, false)) {
+  if (const std::optional<Engine> whole = read_engine(engine, Lacking::nothing)) {
     run.engine = *whole;
     check_together(scene, engine, run);
   }
@@ -236,7 +213,7 @@ Run read_whole(JsonDocument document, bool sealed) {
                   {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
                    StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
   object.required("end_time", run.end_time, at_least(0));
-  if (const auto section = object.optional_object("units")) check_units(*section);
+  check_units(object);
   if (const auto section = object.optional_object("half_cycles"))
     run.half_cycles = read_half_cycles(*section);
   if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section);
@@ -247,20 +224,7 @@ Run read_whole(JsonDocument document, bool sealed) {
     object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
                                 " impacts, got " + std::to_string(run.energy->impact_loss.size()));
   }
-  ObjectReader made_by = object.required_object("provenance");  // who made the file, not what is in it
-  for (const std::string& key : made_by.keys()) {
-    std::string any;
-    made_by.optional(key, any);
-  }
-  made_by.require("sha256");
-  document.finish();
-  if (!sealed) {  // says nothing new beside other problems
-    made_by.reject(
-        "sha256",
-        "must be the digest of the content, got another one: the file was altered or laid out anew "
-        "since it was written; make the run again");
-    document.finish();
-  }
+  finish_sealed(document, object, sealed);
   return run;
 }
 
@@ -278,7 +242,58 @@ Run parse_run(const std::string& name, const std::string& text) {
   return read_whole(JsonDocument::parse(name, text), is_sealed(text));
 }
 
-std::optional<Engine> read_engine(ObjectReader& object) { return read_engine(object, true); }
+std::optional<Engine> read_engine_of_response(ObjectReader& engine) {
+  return read_engine(engine, Lacking::null);
+}
+
+void check_units(ObjectReader& root) {
+  std::optional<ObjectReader> section = root.optional_object("units");
+  if (!section) return;
+  ObjectReader& object = *section;
+  SiUnits units{};
+  bool all_read = true;
+  for (const SiUnit& unit : si_units)
+    all_read = object.required(unit.name, units.*unit.member, above(0)) && all_read;
+  if (!all_read) return;
+  const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
+    constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
+    if (std::abs(given - wanted) <= rounding * std::abs(wanted)) return;
+    object.reject(
+        name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
+  };
+  must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
+  must_be("energy_J", units.energy, units.mass * units.velocity * units.velocity,
+          "mass_kg times velocity_m_per_s squared");
+  must_be("force_N", units.force, units.energy / units.length, "energy_J divided by length_m");
+}
+
+bool is_sealed(std::string_view text) {
+  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
+  if (text.size() < length) return false;
+  const std::string_view seal = text.substr(text.size() - length),
+                         digest = seal.substr(seal_begin.size(), digits);
+  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
+         digest == sha256(text.substr(0, text.size() - length));
+}
+
+void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed) {
+  ObjectReader made_by = root.required_object("provenance");  // who made the file, not what is in it
+  for (const std::string& key : made_by.keys()) {
+    std::string any;
+    made_by.optional(key, any);
+  }
+  made_by.require("sha256");
+  document.finish();
+  if (!sealed) {  // says nothing new beside other problems
+    made_by.reject(
+        "sha256",
+        "must be the digest of the content, got another one: the file was altered or laid out anew "
+        "since it was written; make it again");
+    document.finish();
+  }
+}
+
+std::optional<Engine> read_engine(ObjectReader& object) { return read_engine(object, Lacking::any); }
 
 Engine parse_engine(const std::string& name, const std::string& text) {
   JsonDocument document = JsonDocument::parse(name, text);

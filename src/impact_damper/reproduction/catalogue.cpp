@@ -1,6 +1,7 @@
 #include "impact_damper/reproduction/catalogue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -8,9 +9,21 @@
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
+#include "impact_damper/steady/response_parts.hpp"
 
 namespace impact_damper {
 namespace {
+
+using Changes = std::map<std::string, double, std::less<>>;
+Scene changed(const Changes& changes, Scene scene) {
+  const auto change = [&](std::string_view name, auto& number) {
+    if (const auto found = changes.find(name); found != changes.end()) number = found->second;
+  };
+  for (const SceneField& field : scene_fields) change(field.name, scene.*field.member);
+  change("until_time", scene.until_time);
+  change("until_amplitude", scene.until_amplitude);
+  return scene;
+}
 
 constexpr TextRule a_number{1, 8, true};           // of a figure
 constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
@@ -142,30 +155,113 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
 }
 
 // Each number in its range; together with the scene's others the engine checks them.
-void read_changes(ObjectReader item, CatalogueRun& run) {
-  std::vector<std::string_view> names{"until_time", "until_amplitude"};
+Changes read_changes(ObjectReader item, std::vector<std::string_view> names) {
+  Changes changes;
   for (const SceneField& field : scene_fields) names.push_back(field.name);
   for (const std::string_view name : names) {
     double value = 0;
-    if (item.has(name) && item.optional(name, value)) run.set.emplace(name, value);
+    if (item.has(name) && item.optional(name, value)) changes.emplace(name, value);
   }
   Scene scene;
   scene.until_time = 1;  // a scene needs a stop
-  for (const Problem& problem : problems_of(changed_scene(run, scene)))
+  for (const Problem& problem : problems_of(changed(changes, scene)))
     item.reject(problem.field, problem.message);
+  return changes;
+}
+
+// Name and scene of a run or a response.
+void read_names(ObjectReader& item, const Catalogue& catalogue, std::string& name, std::string& scene) {
+  if (item.required("name", name, a_name) &&
+      (find_run(catalogue.runs, name) || find_response(catalogue.responses, name) ||
+       find_scene(catalogue, name)))
+    item.reject("name", "must be given once among scenes, runs and responses, got the string " +
+                            in_quotes(name));
+  if (item.required("scene", scene, a_name) && !find_scene(catalogue, scene))
+    item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(scene));
 }
 
 CatalogueRun read_run_entry(ObjectReader& item, const Catalogue& catalogue) {
   CatalogueRun run;
-  if (item.required("name", run.name, a_name) &&
-      (find_run(catalogue.runs, run.name) || find_scene(catalogue, run.name)))
-    item.reject("name", "must be given once among scenes and runs, got the string " + in_quotes(run.name));
-  if (item.required("scene", run.scene, a_name) && !find_scene(catalogue, run.scene))
-    item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(run.scene));
-  if (const std::optional<ObjectReader> changes = item.optional_object("set")) read_changes(*changes, run);
+  read_names(item, catalogue, run.name, run.scene);
+  if (const std::optional<ObjectReader> changes = item.optional_object("set"))
+    run.set = read_changes(*changes, {"until_time", "until_amplitude"});
   if (std::optional<ObjectReader> engine = item.optional_object("engine")) run.engine = read_engine(*engine);
   run.record = read_record(item);
   return run;
+}
+
+std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
+  std::vector<Axis> axes;
+  const std::vector<ObjectReader> entries = item.required_objects("vary", 2);
+  if (entries.size() != count && item.has("vary"))
+    item.reject("vary", "must be " + std::string(count == 1 ? "one number" : "two numbers") + ", got " +
+                            std::to_string(entries.size()));
+  for (ObjectReader entry : entries)
+    if (const auto axis = read_axis(entry)) axes.push_back(*axis);
+  axes.resize(count);
+  return axes;
+}
+
+// What is asked for, but the scene.
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+                SweepResponse& asked) {
+  if (rule) read_rule(*rule, true, asked.rule);
+  asked.axis = read_axes(item, 1)[0];
+  if (is_initial_value(asked.axis.number))
+    item.reject("vary", "must be no initial value in a sweep, which carries the motion along");
+  for (const State<double>& start : starts) asked.sweeps.push_back({start, {}, {}});
+}
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+                BasinResponse& asked) {
+  if (rule) read_rule(*rule, true, asked.rule);
+  const std::vector<Axis> axes = read_axes(item, 2);
+  asked.first = axes[0];
+  asked.second = axes[1];
+  if (asked.first.number == asked.second.number) item.reject("vary", "must be two different numbers");
+  if (asked.first.count * asked.second.count > most_rows)
+    item.reject("vary", "must give at most " + std::to_string(most_rows) + " points, got " +
+                            std::to_string(asked.first.count * asked.second.count));
+  if (!starts.empty()) item.reject("start", "must not be given for a basin");
+}
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+                OrbitsResponse& asked) {
+  if (rule) read_rule(*rule, true, asked.rule);
+  std::vector<ObjectReader> entries = item.required_objects("vary", 2);
+  if (entries.size() != 1 && item.has("vary"))
+    item.reject("vary", "must be one number, got " + std::to_string(entries.size()));
+  for (ObjectReader& entry : entries)
+    if (const auto range = read_range(entry)) asked.range = *range;
+  for (const State<double>& start : starts) asked.starts.push_back({{}, 0, {}, start});
+}
+
+CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catalogue) {
+  CatalogueResponse response;
+  read_names(item, catalogue, response.name, response.scene);
+  if (const std::optional<ObjectReader> changes = item.optional_object("set"))
+    response.set = read_changes(*changes, {});
+  const std::array<Response, 3> kinds{SweepResponse{}, BasinResponse{}, OrbitsResponse{}};
+  std::vector<std::string_view> words;
+  for (const Response& each : kinds) words.push_back(kind_of(each));
+  const auto kind = item.require("kind") ? item.word("kind", words) : std::nullopt;
+  if (!kind) {
+    item.keys();  // what else is allowed depends on the kind
+    return response;
+  }
+  response.asked = kinds[*kind];
+  std::optional<ObjectReader> rule = item.optional_object("rule"), engine = item.optional_object("engine");
+  std::vector<State<double>> starts;
+  for (const ObjectReader& start : item.optional_objects("start", 100)) starts.push_back(read_state(start));
+  std::visit(
+      [&](auto& asked) {
+        if constexpr (!std::is_same_v<decltype(asked), LyapunovResponse&>)
+          read_asked(item, rule ? &*rule : nullptr, starts, asked);
+        if (!engine) return;
+        if (const std::optional<Engine> read = read_engine(*engine)) asked.engine = *read;
+        if (std::holds_alternative<Cem>(asked.engine))
+          engine->reject("name", "must be exact or restitution, got cem");
+      },
+      response.asked);
+  return response;
 }
 
 Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
@@ -229,6 +325,8 @@ Catalogue read_whole(JsonDocument document) {
   }
   for (ObjectReader item : root.optional_objects("runs", 1000))
     catalogue.runs.push_back(read_run_entry(item, catalogue));
+  for (ObjectReader item : root.optional_objects("responses", 1000))
+    catalogue.responses.push_back(read_response_entry(item, catalogue));
   for (ObjectReader item : root.required_objects("figures", 1000)) {
     catalogue.figures.push_back(read_figure(item, catalogue));
   }
@@ -301,14 +399,22 @@ const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_
   return found == runs.end() ? nullptr : &*found;
 }
 
-Scene changed_scene(const CatalogueRun& run, Scene scene) {
-  const auto change = [&](std::string_view name, auto& number) {
-    if (const auto found = run.set.find(name); found != run.set.end()) number = found->second;
-  };
-  for (const SceneField& field : scene_fields) change(field.name, scene.*field.member);
-  change("until_time", scene.until_time);
-  change("until_amplitude", scene.until_amplitude);
-  return scene;
+const CatalogueResponse* find_response(const std::vector<CatalogueResponse>& responses,
+                                       std::string_view name) {
+  const auto found = std::ranges::find(responses, name, &CatalogueResponse::name);
+  return found == responses.end() ? nullptr : &*found;
+}
+
+Scene changed_scene(const CatalogueRun& run, Scene scene) { return changed(run.set, scene); }
+
+Response asked_for(const CatalogueResponse& response, const Scene& scene) {
+  Response asked = response.asked;
+  std::visit([&](auto& each) { each.scene = changed(response.set, scene); }, asked);
+  if (auto* const sweeps = std::get_if<SweepResponse>(&asked))
+    sweeps->sweeps.insert(sweeps->sweeps.begin(), {release_of(sweeps->scene), {}, {}});
+  if (auto* const orbits = std::get_if<OrbitsResponse>(&asked))
+    orbits->starts.insert(orbits->starts.begin(), {{}, 0, {}, release_of(orbits->scene)});
+  return asked;
 }
 
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {

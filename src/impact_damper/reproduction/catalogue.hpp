@@ -10,6 +10,9 @@
 //                 "record": ["half_cycles"]},
 //                {"name": "nu2-e06.restitution", "scene": "nu2-e06", "engine": {"name": "restitution"},
 //                 "record": ["half_cycles"]}],
+//    "responses": [{"name": "nu2-e06.sweep-30", "scene": "nu2-e06", "set": {"force_amplitude": 0.006},
+//                   "kind": "sweep", "rule": {"max_periods": 1000},
+//                   "vary": [{"number": "force_frequency", "from": 0.95, "to": 1.05, "count": 101}]}],
 //    "figures": [{"figure": "8", "title": "...", "table": "loss_factor", "ordinate": "eta",
 //                 "varied": "mass_ratio", "curves": [{"scene": "nu2-e06", "half_cycles": 10}],
 //                 "down_to": 0.1, "script": "fig08.gp", "claims": ["..."]}]}
@@ -26,6 +29,7 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/run.hpp"
+#include "impact_damper/steady/response_file.hpp"
 
 namespace impact_damper {
 
@@ -62,6 +66,19 @@ struct CatalogueRun {
 // `scene` with the numbers of `run` in place of its own.
 Scene changed_scene(const CatalogueRun& run, Scene scene);
 
+// Steady motions of a scene, some numbers of which are changed, under a force: NAME.json beside the runs. The
+// component element method cannot find them, so they are the same whatever engine the runs are by.
+struct CatalogueResponse {
+  std::string name;                                // of its file, without .json; no scene's and no run's
+  std::string scene;                               // one of the catalogue's
+  std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
+  // All that is asked for but the scene, and nothing that is found. A sweep and orbits begin with the scene's
+  // own release, which stands not here, then with those given.
+  Response asked;
+};
+// The same for that scene, whole.
+Response asked_for(const CatalogueResponse& response, const Scene& scene);
+
 struct FigureCurve {
   std::string scene;
   // loss_factor tables only:
@@ -88,6 +105,7 @@ struct Catalogue {
   std::int64_t members = 1;  // of each scene's ensemble that are run, the scene itself among them; 1 to 100
   std::vector<CatalogueScene> scenes;
   std::vector<CatalogueRun> runs;
+  std::vector<CatalogueResponse> responses;
   std::vector<Figure> figures;
 };
 
@@ -97,9 +115,11 @@ inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
 Catalogue read_catalogue(const std::filesystem::path& file);
 Catalogue parse_catalogue(const std::string& name, const std::string& text);
 
-// The scene, run or figure of that name; a null pointer if there is none.
+// The scene, run, response or figure of that name; a null pointer if there is none.
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);
 const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_view name);
+const CatalogueResponse* find_response(const std::vector<CatalogueResponse>& responses,
+                                       std::string_view name);
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
 
 // The name of its table and pictures without their endings: its script's, "fig08" for fig08.gp.

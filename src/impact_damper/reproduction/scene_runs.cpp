@@ -1,5 +1,6 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include "impact_damper/analysis/consistency.hpp"
@@ -49,10 +50,12 @@ void require_engine(const Run& run, const fs::path& file, const Engine& engine, 
                                     ": runs of several engines are not put together"}});
 }
 
-// Reads a run file; if there is none, what is thrown names the command that makes it.
-Run read_or_name_command(const fs::path& file, const std::string& command) {
+// Reads a file; if there is none, what is thrown names the command that makes it.
+template <class Content>
+Content read_or_name_command(Content (*read)(const fs::path&), const fs::path& file,
+                             const std::string& command) {
   try {
-    return read_run(file);
+    return read(file);
   } catch (const IoError& error) {
     std::error_code ignored;
     if (fs::exists(file, ignored)) throw;
@@ -60,12 +63,19 @@ Run read_or_name_command(const fs::path& file, const std::string& command) {
   }
 }
 
+void reject(std::vector<Problem> problems, const char* head, const fs::path& file) {
+  for (Problem& problem : problems) problem.message.insert(0, head);
+  if (!problems.empty()) throw InputError(file.string(), problems);
+}
+
 }  // namespace
 
-void require_consistent(const Run& run, const std::filesystem::path& file) {
-  std::vector<Problem> problems = inconsistencies_of(run);
-  for (Problem& problem : problems) problem.message.insert(0, "contradicts the rest of the run: ");
-  if (!problems.empty()) throw InputError(file.string(), problems);
+void require_consistent(const Run& run, const fs::path& file) {
+  reject(inconsistencies_of(run), "contradicts the rest of the run: ", file);
+}
+
+void require_consistent(const Response& response, const fs::path& file) {
+  reject(inconsistencies_of(response), "contradicts the rest of the response: ", file);
 }
 
 void require_scene(const Run& run, const std::filesystem::path& file,
@@ -104,7 +114,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
     const fs::path file = member_file(run_file, member);
     Run& run = others[static_cast<std::size_t>(i)];
     run =
-        read_or_name_command(file, "impact-damper run --members " + std::to_string(options.members) + " -o " +
+        read_or_name_command(read_run, file, "impact-damper run --members " + std::to_string(options.members) + " -o " +
                                        run_file.string() + ", with the other options that made that run");
     require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
                   "member " + number + " of the ensemble of " + run_file.string());
@@ -121,7 +131,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
 Run SceneRuns::read(const std::string& scene) const {
   const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
   Run run =
-      read_or_name_command(file, "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
+      read_or_name_command(read_run, file, "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                      ", with --record, --engine and --members as needed");
   require_scene(run, file, scene_file);
   require_consistent(run, file);
@@ -132,7 +142,7 @@ Run SceneRuns::read(const CatalogueRun& wanted) const {
   const Run of_scene = read(wanted.scene);
   const fs::path file = file_of(wanted.name);
   Run run = read_or_name_command(
-      file, "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() + " -o " +
+      read_run, file, "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() + " -o " +
                 file.string() + ", with what run " + wanted.name + " of the catalogue sets, and --members");
   require_scene(run, file, changed_scene(wanted, of_scene.scene), "run " + wanted.name + " of the catalogue");
   if (wanted.engine)
@@ -141,6 +151,28 @@ Run SceneRuns::read(const CatalogueRun& wanted) const {
     require_same_engine(run, file, of_scene, file_of(wanted.scene));
   require_consistent(run, file);
   return run;
+}
+
+Response SceneRuns::read(const CatalogueResponse& wanted) const {
+  const fs::path file = file_of(wanted.name), scene_file = scenes / (wanted.scene + ".json");
+  const Response asked = asked_for(wanted, read_scene(scene_file));
+  Response response = read_or_name_command(
+      read_response, file,
+      "impact-damper response " + std::string(kind_of(asked)) + " --scene " + scene_file.string() + " -o " +
+          file.string() + ", with what response " + wanted.name + " of the catalogue sets and varies");
+  const auto parts = asked_of(asked), given = asked_of(response);
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < std::max(parts.size(), given.size()); ++i) {
+    const bool surplus = i >= parts.size(), missing = i >= given.size();
+    if (!surplus && !missing && parts[i] == given[i]) continue;
+    problems.push_back({surplus ? given[i].first : parts[i].first,
+                        "must be " + (surplus ? "none" : parts[i].second) + " as in response " + wanted.name +
+                            " of the catalogue, got " + (missing ? "none" : given[i].second)});
+    if (i == 0 || surplus || missing || parts[i].first != given[i].first) break;  // another kind
+  }
+  if (!problems.empty()) throw InputError(file.string(), problems);
+  require_consistent(response, file);
+  return response;
 }
 
 }  // namespace impact_damper

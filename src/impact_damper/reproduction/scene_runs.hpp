@@ -15,6 +15,8 @@ namespace impact_damper {
 
 // Throws InputError, naming `file`, unless the run agrees with itself (consistency.hpp).
 void require_consistent(const Run& run, const std::filesystem::path& file);
+// The same of a response (response_file.hpp).
+void require_consistent(const Response& response, const std::filesystem::path& file);
 
 // Throws InputError, naming both files, unless the run is one of the scene in `scene_file`, number by number.
 // Throws what reading that throws.
@@ -53,6 +55,8 @@ struct SceneRuns {
   // The further run, consistent, of its scene with its changes and by its engine, or that of the scene's run,
   // which is read as well. Throws the same.
   Run read(const CatalogueRun& wanted) const;
+  // The response, consistent, of what the catalogue asks for. Throws the same; no run is read.
+  Response read(const CatalogueResponse& wanted) const;
 };
 
 }  // namespace impact_damper

@@ -697,6 +697,16 @@ double Scene::*member_of(Parameter parameter) {
   return {};
 }
 
+std::string_view name_of(Parameter parameter) {
+  switch (parameter) {
+    case Parameter::force_frequency:
+      return "force_frequency";
+    case Parameter::force_amplitude:
+      return "force_amplitude";
+  }
+  return {};
+}
+
 std::string_view name_of(OrbitEnd end) {
   switch (end) {
     case OrbitEnd::converged:

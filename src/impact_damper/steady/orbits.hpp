@@ -59,6 +59,7 @@ Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const St
 
 enum class Parameter { force_frequency, force_amplitude };
 double Scene::*member_of(Parameter parameter);
+std::string_view name_of(Parameter parameter);  // the enumerator's own name, and that of the scene's field
 
 enum class BranchEventKind {
   fold,               // the branch turns back in the parameter: multiplier +1

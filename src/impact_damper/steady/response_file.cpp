@@ -1,186 +1,64 @@
 #include "impact_damper/steady/response_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "impact_damper/analysis/design.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/steady/response_columns.hpp"
 
 namespace impact_damper {
 namespace {
 
 using Layout = JsonWriter::Layout;
-using Numbers = std::vector<std::optional<double>>;
 
-// What a column measures: its suffix in SI, and what one dimensionless unit of it is there.
-struct Quantity {
-  std::string_view suffix;
-  double (*unit)(const SiUnits&);
-};
-constexpr Quantity ratio{"", [](const SiUnits&) { return 1.0; }};
-constexpr Quantity length{"_m", [](const SiUnits& u) { return u.length; }};
-constexpr Quantity velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
-constexpr Quantity force{"_N", [](const SiUnits& u) { return u.force; }};
-constexpr Quantity power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
 constexpr Quantity rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
-constexpr Quantity frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
 
-Quantity quantity_of(const double Scene::*number) {
-  if (number == &Scene::x0 || number == &Scene::y0) return length;
-  if (number == &Scene::v0 || number == &Scene::w0) return velocity;
-  if (number == &Scene::force_amplitude) return force;
-  if (number == &Scene::force_frequency) return frequency;
-  return ratio;
+OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
+  return {.value = value,
+          .period = orbit.periods,
+          .symmetric = orbit.symmetric,
+          .stable = orbit.stable(),
+          .impacts = {std::ranges::count(orbit.impacts, Wall::left, &OrbitImpact::wall),
+                      std::ranges::count(orbit.impacts, Wall::right, &OrbitImpact::wall)},
+          .sticking = orbit.sticking,
+          .amplitude = amplitude,
+          .multipliers = orbit.multipliers,
+          .slowest_impact = orbit.slowest_impact,
+          .nearest_miss = orbit.nearest_miss,
+          .state = release_of(orbit.scene)};
 }
-
-struct Column {
-  std::string_view name;
-  Quantity quantity;
-  Numbers numbers;
-};
-
-// What happened at each value, in a word.
-std::string_view end_of(const SteadyState& steady) {
-  if (steady.stop_reason != StopReason::time) return name_of(steady.stop_reason);
-  return steady.period ? "periodic" : "not_periodic";
-}
-
-std::vector<Column> columns_of(const std::vector<SteadyState>& way) {
-  std::vector<Column> columns;
-  const auto add = [&](std::string_view name, const Quantity& quantity, auto&& number) {
-    Column column{name, quantity, {}};
-    for (const SteadyState& each : way) column.numbers.push_back(number(each));
-    columns.push_back(std::move(column));
-  };
-  const auto add_mean = [&](std::string_view name, const Quantity& quantity, double SteadyMeans::*number) {
-    add(name, quantity, [&](const SteadyState& s) -> std::optional<double> {
-      if (!s.means) return std::nullopt;
-      return (*s.means).*number;
-    });
-  };
-  // What is not known where a budget ended a run.
-  const auto add_measured = [&](std::string_view name, const Quantity& quantity, auto&& number) {
-    add(name, quantity, [&](const SteadyState& s) -> std::optional<double> {
-      if (!s.means) return std::nullopt;
-      return double(number(s));
-    });
-  };
-  add("period", ratio, [](const SteadyState& s) -> std::optional<double> {
-    if (!s.period) return std::nullopt;
-    return double(*s.period);
-  });
-  add("transient_periods", ratio, [](const SteadyState& s) { return double(s.transient_periods); });
-  add("contraction", ratio, [](const SteadyState& s) { return s.contraction; });
-  add_measured("measured_periods", ratio, [](const SteadyState& s) { return s.measured_periods; });
-  add_measured("impacts_left", ratio, [](const SteadyState& s) { return s.impacts[0]; });
-  add_measured("impacts_right", ratio, [](const SteadyState& s) { return s.impacts[1]; });
-  add_measured("symmetric", ratio, [](const SteadyState& s) { return s.symmetric; });
-  add_mean("amplitude", length, &SteadyMeans::amplitude);
-  add_measured("amplitude_scatter", length, [](const SteadyState& s) { return s.amplitude_scatter; });
-  add_mean("fundamental", length, &SteadyMeans::fundamental);
-  add_mean("lag_deg", ratio, &SteadyMeans::lag_deg);
-  add_mean("power", power, &SteadyMeans::power);
-  add_measured("power_scatter", power, [](const SteadyState& s) { return s.power_scatter; });
-  add_mean("viscous_power", power, &SteadyMeans::viscous_power);
-  add_mean("impact_power", power, &SteadyMeans::impact_power);
-  add("x", length, [](const SteadyState& s) { return s.state.x; });
-  add("v", velocity, [](const SteadyState& s) { return s.state.v; });
-  add("y", length, [](const SteadyState& s) { return s.state.y; });
-  add("w", velocity, [](const SteadyState& s) { return s.state.w; });
-  return columns;
-}
-
-// A point of a branch, or an event on it.
-struct BranchPoint {
-  const Orbit* orbit;
-  double value, amplitude;
-  std::string_view event{};
-};
-
-std::vector<BranchPoint> points_of(const FollowedBranch& followed, double Scene::*number) {
-  std::vector<BranchPoint> points;
+std::vector<OrbitPoint> points_of(const FollowedBranch& followed, double Scene::*number) {
+  std::vector<OrbitPoint> points;
   for (std::size_t i = 0; i < followed.branch.orbits.size(); ++i) {
     const Orbit& orbit = followed.branch.orbits[i];
-    points.push_back({&orbit, orbit.scene.*number, followed.amplitudes[i]});
+    points.push_back(point_of(orbit, orbit.scene.*number, followed.amplitudes[i]));
   }
   return points;
 }
-BranchPoint point_of_event(const FollowedBranch& followed, std::size_t i) {
-  const BranchEvent& event = followed.branch.events[i];
-  return {&event.orbit, event.parameter, followed.event_amplitudes[i], name_of(event.kind)};
-}
-// All of them, in their order along the branch.
-std::vector<BranchPoint> points_and_events_of(const FollowedBranch& followed, double Scene::*number) {
-  const std::vector<BranchPoint> points = points_of(followed, number);
-  std::vector<BranchPoint> all;
+// All points and events, in their order along the branch, and the names of the events among them.
+struct PointsAndEvents {
+  std::vector<OrbitPoint> points;
+  std::vector<std::string_view> events;
+};
+PointsAndEvents points_and_events_of(const FollowedBranch& followed, double Scene::*number) {
+  const std::vector<OrbitPoint> points = points_of(followed, number);
+  PointsAndEvents all;
+  const auto add = [&](const OrbitPoint& point, std::string_view event) {
+    all.points.push_back(point);
+    all.events.push_back(event);
+  };
   for (std::size_t i = 0; i <= points.size(); ++i) {
-    for (std::size_t n = 0; n < followed.branch.events.size(); ++n)
-      if (followed.branch.events[n].orbits_before == std::int64_t(i))
-        all.push_back(point_of_event(followed, n));
-    if (i < points.size()) all.push_back(points[i]);
+    for (std::size_t n = 0; n < followed.branch.events.size(); ++n) {
+      const BranchEvent& event = followed.branch.events[n];
+      if (event.orbits_before == std::int64_t(i))
+        add(point_of(event.orbit, event.parameter, followed.event_amplitudes[n]), name_of(event.kind));
+    }
+    if (i < points.size()) add(points[i], "");
   }
   return all;
 }
 
-double impacts_on(Wall wall, const Orbit& orbit) {
-  return double(std::ranges::count(orbit.impacts, wall, &OrbitImpact::wall));
-}
-
-std::vector<Column> columns_of(const std::vector<BranchPoint>& points) {
-  std::vector<Column> columns;
-  const auto add = [&](std::string_view name, const Quantity& quantity, auto&& number) {
-    Column column{name, quantity, {}};
-    for (const BranchPoint& each : points) column.numbers.push_back(number(*each.orbit));
-    columns.push_back(std::move(column));
-  };
-  add("period", ratio, [](const Orbit& o) { return double(o.periods); });
-  add("symmetric", ratio, [](const Orbit& o) { return double(o.symmetric); });
-  add("stable", ratio, [](const Orbit& o) { return double(o.stable()); });
-  add("impacts_left", ratio, [](const Orbit& o) { return impacts_on(Wall::left, o); });
-  add("impacts_right", ratio, [](const Orbit& o) { return impacts_on(Wall::right, o); });
-  add("sticking", ratio, [](const Orbit& o) { return double(o.sticking); });
-  Column amplitudes{"amplitude", length, {}};
-  for (const BranchPoint& each : points) amplitudes.numbers.push_back(each.amplitude);
-  columns.push_back(std::move(amplitudes));
-  static constexpr std::array<std::array<std::string_view, 2>, 4> names{
-      {{"multiplier_1_re", "multiplier_1_im"},
-       {"multiplier_2_re", "multiplier_2_im"},
-       {"multiplier_3_re", "multiplier_3_im"},
-       {"multiplier_4_re", "multiplier_4_im"}}};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    add(names[i][0], ratio, [&](const Orbit& o) { return o.multipliers[i].re; });
-    add(names[i][1], ratio, [&](const Orbit& o) { return o.multipliers[i].im; });
-  }
-  add("slowest_impact", velocity, [](const Orbit& o) { return o.slowest_impact; });
-  add("nearest_miss", length, [](const Orbit& o) { return o.nearest_miss; });
-  add("x", length, [](const Orbit& o) { return o.scene.x0; });
-  add("v", velocity, [](const Orbit& o) { return o.scene.v0; });
-  add("y", length, [](const Orbit& o) { return o.scene.y0; });
-  add("w", velocity, [](const Orbit& o) { return o.scene.w0; });
-  return columns;
-}
-
-// The amplitude without the damper and with its mass locked in, (M12.6), at each value of the axis. Infinite
-// at the resonance of an undamped oscillator: absent.
-std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
-  Column empty{"empty_amplitude", length, {}}, locked{"locked_amplitude", length, {}};
-  for (std::int64_t i = 0; i < axis.count; ++i) {
-    const Scene there = axis.at(scene, i);
-    const auto add = [&](Column& column, double mass) {
-      const double amplitude =
-          linear_response(there.force_amplitude, mass, there.damping_ratio, there.force_frequency);
-      column.numbers.push_back(std::isfinite(amplitude) ? std::optional(amplitude) : std::nullopt);
-    };
-    add(empty, 1);
-    add(locked, 1 + there.mass_ratio);
-  }
-  return {empty, locked};
-}
-
-void write_rule(JsonWriter& out, const SteadyRule& rule) {
+void write_steady_rule(JsonWriter& out, const SteadyRule& rule) {
   out.fields("tolerance", rule.tolerance, "longest_period", rule.longest_period, "max_periods",
              rule.max_periods);
 }
@@ -191,6 +69,11 @@ std::string_view key_of(double Scene::*number) {
 
 void write_axis(JsonWriter& out, const Axis& axis) {
   out.fields("number", key_of(axis.number), "from", axis.from, "to", axis.to, "count", axis.count);
+}
+
+void write_range(JsonWriter& out, const ParameterRange& range) {
+  out.object("range", Layout::one_line, "number", name_of(range.parameter), "from", range.from,
+             "to", range.to);
 }
 
 std::optional<double> index_of(const std::optional<std::int64_t>& index) {
@@ -207,49 +90,121 @@ void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyS
   ends.reserve(way.size());
   for (const SteadyState& each : way) ends.emplace_back(end_of(each));
   out.field("end", ends);
-  for (const Column& column : columns_of(way)) out.field(column.name, column.numbers);
+  for (const Column& column : columns_of(steady_columns(), way)) out.field(column.name, column.numbers);
   out.close();
 }
 
-void write_branch(JsonWriter& out, const FollowedBranch& followed, double Scene::*number) {
-  const Branch& branch = followed.branch;
+void write_branch(JsonWriter& out, const OrbitBranch& branch) {
   out.open_object(Layout::lines);
-  out.fields("origin", name_of(followed.origin), "from", followed.from, "event", index_of(followed.event),
-             "end", name_of(branch.end));
-  const std::vector<BranchPoint> points = points_of(followed, number);
+  out.fields("origin", name_of(branch.origin), "from", branch.from, "event", index_of(branch.event), "end",
+             name_of(branch.end));
   std::vector<double> values;
-  values.reserve(points.size());
-  for (const BranchPoint& each : points) values.push_back(each.value);
+  values.reserve(branch.points.size());
+  for (const OrbitPoint& each : branch.points) values.push_back(each.value);
   out.field("values", values);
-  for (const Column& column : columns_of(points)) out.field(column.name, column.numbers);
+  for (const Column& column : columns_of(orbit_columns(), branch.points))
+    out.field(column.name, column.numbers);
   out.open_array("events", Layout::lines);
-  for (const BranchEvent& event : branch.events) {
+  for (const OrbitEvent& event : branch.events) {
     out.open_object(Layout::one_line);
-    out.fields("kind", name_of(event.kind), "value", event.parameter, "points_before", event.orbits_before);
-    write_state(out, "state", release_of(event.orbit.scene));
+    out.fields("kind", name_of(event.kind), "value", event.value, "points_before", event.points_before);
+    write_state(out, "state", event.state);
     out.close();
   }
   out.close();
   out.close();
 }
 
-// What all kinds of file begin with. The stops of a scene do not count, and are not written.
-JsonWriter begun(std::string_view kind, const Scene& scene, const Engine& engine,
-                 const std::optional<Scales>& scales) {
-  JsonWriter out("response");
-  out.open_object(Layout::lines);
-  out.fields("schema", response_schema, "kind", kind);
+// The stops of a scene do not count, and are not written.
+void write_scene(JsonWriter& out, const Scene& scene) {
   out.open_object("scene", Layout::one_line);
   for (const SceneField& field : scene_fields) out.field(field.name, scene.*field.member);
   out.close();
-  write_engine(out, engine);
-  if (scales) write_units(out, si_units_of(*scales));
-  return out;
 }
 
-std::string ended(JsonWriter& out) {
-  write_provenance(out);
-  return sealed(out.finish());
+void write_rule(JsonWriter& out, const SweepResponse& response) {
+  out.open_object("rule", Layout::one_line);
+  write_steady_rule(out, response.rule);
+  out.field("mean_periods", response.rule.mean_periods);
+  out.close();
+}
+void write_rule(JsonWriter& out, const BasinResponse& response) {
+  out.open_object("rule", Layout::one_line);
+  write_steady_rule(out, response.rule.steady);
+  out.field("capture_radius", response.rule.capture_radius);
+  out.close();
+}
+void write_rule(JsonWriter& out, const OrbitsResponse& response) {
+  const BranchRule& rule = response.rule;
+  out.open_object("rule", Layout::one_line);
+  write_steady_rule(out, rule.steady);
+  out.fields("largest_step", rule.largest_step, "max_multiplier", rule.max_multiplier, "max_points",
+             rule.max_points, "max_branches", rule.max_branches);
+  out.close();
+}
+void write_rule(JsonWriter& out, const LyapunovResponse& response) {
+  out.object("rule", Layout::one_line, "periods", response.periods, "discard", response.discard);
+}
+
+// What stands behind the rule.
+void write_rest(JsonWriter& out, const SweepResponse& response) {
+  out.open_object("axis", Layout::one_line);
+  write_axis(out, response.axis);
+  out.close();
+  out.field("values", response.axis.values());
+  for (const Column& column : linear_columns(response.scene, response.axis))
+    out.field(column.name, column.numbers);
+  out.open_array("sweeps", Layout::lines);
+  for (const Sweep& sweep : response.sweeps) {
+    out.open_object(Layout::lines);
+    write_state(out, "start", sweep.start);
+    write_way(out, "up", sweep.up);
+    write_way(out, "down", sweep.down);
+    out.close();
+  }
+  out.close();
+}
+void write_rest(JsonWriter& out, const BasinResponse& response) {
+  const Basin& basin = response.basin;
+  out.open_array("axes", Layout::lines);
+  for (const Axis* axis : {&response.first, &response.second}) {
+    out.open_object(Layout::one_line);
+    write_axis(out, *axis);
+    out.close();
+  }
+  out.close();
+  out.open_array("attractors", Layout::lines);
+  for (const Attractor& each : basin.attractors) {
+    out.open_object(Layout::one_line);
+    out.fields("idle", each.idle, "period", each.period, "impacts_left", each.impacts[0], "impacts_right",
+               each.impacts[1], "symmetric", each.symmetric, "points", each.points);
+    if (!each.states.empty()) write_state(out, "state", each.states.front());
+    out.close();
+  }
+  out.close();
+  out.field("undecided", std::int64_t(std::ranges::count(basin.attractor, undecided)));
+  out.field("attractor", std::vector<std::int64_t>(basin.attractor.begin(), basin.attractor.end()));
+}
+void write_rest(JsonWriter& out, const OrbitsResponse& response) {
+  write_range(out, response.range);
+  out.open_array("starts", Layout::lines);
+  for (const OrbitStart& start : response.starts) {
+    out.open_object(Layout::one_line);
+    out.fields("end", start.end, "transient_periods", start.transient_periods, "branch",
+               index_of(start.branch));
+    write_state(out, "state", start.state);
+    out.close();
+  }
+  out.close();
+  out.field("complete", response.complete);
+  out.open_array("branches", Layout::lines);
+  for (const OrbitBranch& each : response.branches) write_branch(out, each);
+  out.close();
+}
+void write_rest(JsonWriter& out, const LyapunovResponse& response) {
+  const LyapunovExponents& found = response.found;
+  out.fields("stop_reason", name_of(found.stop_reason), "exponents", found.exponents, "standard_errors",
+             found.standard_errors);
 }
 
 class CsvRow {
@@ -282,93 +237,97 @@ class CsvRow {
 
 std::string_view name_of(const Axis& axis) { return key_of(axis.number); }
 
-std::string sweep_text(const Scene& scene, const Engine& engine, const SteadyRule& rule, const Axis& axis,
-                       const std::vector<Sweep>& sweeps, const std::optional<Scales>& scales) {
-  JsonWriter out = begun("sweep", scene, engine, scales);
-  out.open_object("rule", Layout::one_line);
-  write_rule(out, rule);
-  out.field("mean_periods", rule.mean_periods);
-  out.close();
-  out.open_object("axis", Layout::one_line);
-  write_axis(out, axis);
-  out.close();
-  out.field("values", axis.values());
-  for (const Column& column : linear_columns(scene, axis)) out.field(column.name, column.numbers);
-  out.open_array("sweeps", Layout::lines);
-  for (const Sweep& sweep : sweeps) {
-    out.open_object(Layout::lines);
-    write_state(out, "start", sweep.start);
-    write_way(out, "up", sweep.up);
-    write_way(out, "down", sweep.down);
-    out.close();
+OrbitsResponse orbits_response(const Scene& scene, const Engine& engine, const BranchRule& rule,
+                               const ParameterRange& range, const Branches& branches) {
+  OrbitsResponse response{.scene = scene,
+                          .engine = engine,
+                          .rule = rule,
+                          .range = range,
+                          .starts = {},
+                          .complete = branches.complete,
+                          .branches = {}};
+  for (const BranchStart& start : branches.starts)
+    response.starts.push_back(
+        {std::string(end_of(start)), start.steady.transient_periods, start.branch, start.state});
+  for (const FollowedBranch& each : branches.branches) {
+    OrbitBranch branch{.origin = each.origin,
+                       .from = each.from,
+                       .event = each.event,
+                       .end = each.branch.end,
+                       .points = points_of(each, member_of(range.parameter)),
+                       .events = {}};
+    for (const BranchEvent& event : each.branch.events)
+      branch.events.push_back(
+          {event.kind, event.parameter, event.orbits_before, release_of(event.orbit.scene)});
+    response.branches.push_back(std::move(branch));
   }
-  out.close();
-  return ended(out);
+  return response;
 }
 
-std::string basin_text(const Scene& scene, const Engine& engine, const BasinRule& rule, const Axis& first,
-                       const Axis& second, const Basin& basin, const std::optional<Scales>& scales) {
-  JsonWriter out = begun("basin", scene, engine, scales);
-  out.open_object("rule", Layout::one_line);
-  write_rule(out, rule.steady);
-  out.field("capture_radius", rule.capture_radius);
-  out.close();
-  out.open_array("axes", Layout::lines);
-  for (const Axis* axis : {&first, &second}) {
-    out.open_object(Layout::one_line);
-    write_axis(out, *axis);
-    out.close();
-  }
-  out.close();
-  out.open_array("attractors", Layout::lines);
-  for (const Attractor& each : basin.attractors) {
-    out.open_object(Layout::one_line);
-    out.fields("idle", each.idle, "period", each.period, "impacts_left", each.impacts[0], "impacts_right",
-               each.impacts[1], "symmetric", each.symmetric, "points", each.points);
-    if (!each.states.empty()) write_state(out, "state", each.states.front());
-    out.close();
-  }
-  out.close();
-  out.field("undecided", std::int64_t(std::ranges::count(basin.attractor, undecided)));
-  out.field("attractor", std::vector<std::int64_t>(basin.attractor.begin(), basin.attractor.end()));
-  return ended(out);
+std::string_view kind_of(const Response& response) {
+  return std::visit([](const auto& each) { return each.kind; }, response);
 }
 
-std::string orbits_text(const Scene& scene, const Engine& engine, const BranchRule& rule,
-                        const ParameterRange& range, const Branches& branches,
-                        const std::optional<Scales>& scales) {
-  double Scene::*const number = member_of(range.parameter);
-  JsonWriter out = begun("orbits", scene, engine, scales);
-  out.open_object("rule", Layout::one_line);
-  write_rule(out, rule.steady);
-  out.fields("largest_step", rule.largest_step, "max_multiplier", rule.max_multiplier, "max_points",
-             rule.max_points, "max_branches", rule.max_branches);
-  out.close();
-  out.object("range", Layout::one_line, "number", key_of(number), "from", range.from, "to", range.to);
-  out.open_array("starts", Layout::lines);
-  for (const BranchStart& start : branches.starts) {
-    out.open_object(Layout::one_line);
-    out.fields("end", end_of(start), "transient_periods", start.steady.transient_periods, "branch",
-               index_of(start.branch));
-    write_state(out, "state", start.state);
-    out.close();
-  }
-  out.close();
-  out.field("complete", branches.complete);
-  out.open_array("branches", Layout::lines);
-  for (const FollowedBranch& each : branches.branches) write_branch(out, each, number);
-  out.close();
-  return ended(out);
+std::string response_text(const Response& response, const std::optional<Scales>& scales) {
+  return std::visit(
+      [&](const auto& each) {
+        JsonWriter out("response");
+        out.open_object(Layout::lines);
+        out.fields("schema", response_schema, "kind", each.kind);
+        write_scene(out, each.scene);
+        write_engine(out, each.engine);
+        if (scales) write_units(out, si_units_of(*scales));
+        write_rule(out, each);
+        write_rest(out, each);
+        write_provenance(out);
+        return sealed(out.finish());
+      },
+      response);
 }
 
-std::string lyapunov_text(const Scene& scene, const Engine& engine, std::int64_t periods,
-                          std::int64_t skipped, const LyapunovExponents& found,
-                          const std::optional<Scales>& scales) {
-  JsonWriter out = begun("lyapunov", scene, engine, scales);
-  out.object("rule", Layout::one_line, "periods", periods, "discard", skipped);
-  out.fields("stop_reason", name_of(found.stop_reason), "exponents", found.exponents, "standard_errors",
-             found.standard_errors);
-  return ended(out);
+std::vector<std::pair<std::string, std::string>> asked_of(const Response& response) {
+  std::vector<std::pair<std::string, std::string>> parts{{"/kind", std::string(kind_of(response))}};
+  const auto add = [&](const std::string& pointer, auto&& write) {
+    JsonWriter out("response");
+    out.open_object(Layout::one_line);
+    write(out);
+    out.close();
+    std::string text = out.finish();  // {"name": PART}
+    const std::size_t begin = text.find(": ") + 2;
+    parts.emplace_back(pointer, text.substr(begin, text.size() - begin - 1));
+  };
+  const auto add_axis = [&](const std::string& pointer, const Axis& axis) {
+    add(pointer, [&](JsonWriter& out) {
+      out.open_object("axis", Layout::one_line);
+      write_axis(out, axis);
+      out.close();
+    });
+  };
+  const auto add_start = [&](const std::string& pointer, const State<double>& start) {
+    add(pointer, [&](JsonWriter& out) { write_state(out, "start", start); });
+  };
+  std::visit(
+      [&](const auto& each) {
+        for (const SceneField& field : scene_fields)
+          add("/scene/" + std::string(field.name),
+              [&](JsonWriter& out) { out.field(field.name, each.scene.*field.member); });
+        add("/engine", [&](JsonWriter& out) { write_engine(out, each.engine); });
+        add("/rule", [&](JsonWriter& out) { write_rule(out, each); });
+      },
+      response);
+  if (const auto* const sweeps = std::get_if<SweepResponse>(&response)) {
+    add_axis("/axis", sweeps->axis);
+    for (std::size_t i = 0; i < sweeps->sweeps.size(); ++i)
+      add_start("/sweeps/" + std::to_string(i) + "/start", sweeps->sweeps[i].start);
+  } else if (const auto* const basin = std::get_if<BasinResponse>(&response)) {
+    add_axis("/axes/0", basin->first);
+    add_axis("/axes/1", basin->second);
+  } else if (const auto* const orbits = std::get_if<OrbitsResponse>(&response)) {
+    add("/range", [&](JsonWriter& out) { write_range(out, orbits->range); });
+    for (std::size_t i = 0; i < orbits->starts.size(); ++i)
+      add_start("/starts/" + std::to_string(i) + "/state", orbits->starts[i].state);
+  }
+  return parts;
 }
 
 std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sweep>& sweeps,
@@ -382,13 +341,13 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     row.word("way");
     row.heading(name_of(axis), given);
     row.word("end");
-    for (const Column& column : columns_of(std::vector<SteadyState>{}))
+    for (const Column& column : columns_of(steady_columns(), std::vector<SteadyState>{}))
       row.heading(column.name, column.quantity);
     for (const Column& column : linear) row.heading(column.name, column.quantity);
   }
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
     const auto add_way = [&](std::string_view name, const std::vector<SteadyState>& way) {
-      const std::vector<Column> columns = columns_of(way);
+      const std::vector<Column> columns = columns_of(steady_columns(), way);
       for (std::size_t i = 0; i < way.size(); ++i) {
         CsvRow row(text, units);
         row.word(std::to_string(n));
@@ -434,16 +393,16 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
     row.word("branch");
     row.word("event");
     row.heading(key_of(number), varied);
-    for (const Column& column : columns_of(std::vector<BranchPoint>{}))
+    for (const Column& column : columns_of(orbit_columns(), std::vector<OrbitPoint>{}))
       row.heading(column.name, column.quantity);
   }
   for (std::size_t n = 0; n < branches.branches.size(); ++n) {
-    const std::vector<BranchPoint> points = points_and_events_of(branches.branches[n], number);
-    const std::vector<Column> columns = columns_of(points);
+    const auto& [points, events] = points_and_events_of(branches.branches[n], number);
+    const std::vector<Column> columns = columns_of(orbit_columns(), points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       CsvRow row(text, units);
       row.word(std::to_string(n));
-      row.word(points[i].event);
+      row.word(events[i]);
       row.number(points[i].value, varied);
       for (const Column& column : columns) row.number(column.numbers[i], column.quantity);
     }

@@ -4,10 +4,14 @@
 // (io/run_file.hpp). All numbers are dimensionless, with "units" for a scene in units.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/steady/basin.hpp"
 #include "impact_damper/steady/branches.hpp"
 #include "impact_damper/steady/lyapunov.hpp"
@@ -16,19 +20,109 @@
 namespace impact_damper {
 
 inline constexpr std::string_view response_schema = "impact-damper/response/1";
+inline constexpr FileKind response_kind{"response", std::size_t{1} << 27};
 
-// Throw NumericalError, with the name of the column, if a number is not finite.
-std::string sweep_text(const Scene& scene, const Engine& engine, const SteadyRule& rule, const Axis& axis,
-                       const std::vector<Sweep>& sweeps, const std::optional<Scales>& scales = {});
-std::string basin_text(const Scene& scene, const Engine& engine, const BasinRule& rule, const Axis& first,
-                       const Axis& second, const Basin& basin, const std::optional<Scales>& scales = {});
-std::string orbits_text(const Scene& scene, const Engine& engine, const BranchRule& rule,
-                        const ParameterRange& range, const Branches& branches,
-                        const std::optional<Scales>& scales = {});
-// periods, skipped: what lyapunov_exponents() was asked for.
-std::string lyapunov_text(const Scene& scene, const Engine& engine, std::int64_t periods,
-                          std::int64_t skipped, const LyapunovExponents& found,
-                          const std::optional<Scales>& scales = {});
+// What a file holds, by kind: what was asked for, and what was found. The stops of a scene do not count, and
+// no file has them.
+struct SweepResponse {
+  static constexpr std::string_view kind = "sweep";
+  Scene scene;
+  Engine engine;
+  SteadyRule rule;
+  Axis axis;
+  std::vector<Sweep> sweeps;
+};
+
+struct BasinResponse {
+  static constexpr std::string_view kind = "basin";
+  Scene scene;
+  Engine engine;
+  BasinRule rule;
+  Axis first, second;
+  Basin basin;  // of an attractor's states the first one only; no `stopped`
+};
+
+// A point of a branch.
+struct OrbitPoint {
+  double value = 0;                     // of the number that varies
+  std::int64_t period = 1;              // in periods of the force
+  bool symmetric = false, stable = false;
+  ImpactCounts impacts{};               // in one period of its own
+  std::int64_t sticking = 0;            // in one period of its own
+  double amplitude = 0;                 // largest |x|
+  Multipliers multipliers{};
+  std::optional<double> slowest_impact, nearest_miss;
+  State<double> state{};                // at phase 0 of the force
+};
+struct OrbitEvent {
+  BranchEventKind kind = BranchEventKind::fold;
+  double value = 0;
+  std::int64_t points_before = 0;
+  State<double> state{};
+};
+struct OrbitBranch {
+  BranchOrigin origin = BranchOrigin::start;
+  std::int64_t from = 0;              // as in FollowedBranch
+  std::optional<std::int64_t> event;  // as there
+  BranchEnd end = BranchEnd::not_an_orbit;
+  std::vector<OrbitPoint> points;
+  std::vector<OrbitEvent> events;
+};
+struct OrbitStart {
+  std::string end;  // end_of(BranchStart)
+  std::int64_t transient_periods = 0;
+  std::optional<std::int64_t> branch;
+  State<double> state{};
+};
+struct OrbitsResponse {
+  static constexpr std::string_view kind = "orbits";
+  Scene scene;
+  Engine engine;
+  BranchRule rule;
+  ParameterRange range;
+  std::vector<OrbitStart> starts;
+  bool complete = true;
+  std::vector<OrbitBranch> branches;
+};
+OrbitsResponse orbits_response(const Scene& scene, const Engine& engine, const BranchRule& rule,
+                               const ParameterRange& range, const Branches& branches);
+
+struct LyapunovResponse {
+  static constexpr std::string_view kind = "lyapunov";
+  Scene scene;
+  Engine engine;
+  std::int64_t periods = 0, discard = 0;  // of the force: averaged over, and before these
+  LyapunovExponents found;
+};
+
+using Response = std::variant<SweepResponse, BasinResponse, OrbitsResponse, LyapunovResponse>;
+std::string_view kind_of(const Response& response);
+
+// The text of its file. Throws NumericalError, with the name of the column, if a number is not finite.
+std::string response_text(const Response& response, const std::optional<Scales>& scales = {});
+
+// What was asked for: each part as JSON, under its pointer. Two responses of the same parts are of the same
+// question, so they are equal.
+std::vector<std::pair<std::string, std::string>> asked_of(const Response& response);
+
+// The response in a file or a text. The check is strict: every key is known and none missing, columns are
+// equally long, whatever follows from what was asked for (the axis's values, the linear amplitudes) is so, and
+// the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a line for
+// everything that is not valid; these lines begin with the name of the file, or with `name`.
+Response read_response(const std::filesystem::path& file);
+Response parse_response(const std::string& name, const std::string& text);
+
+// The contradictions between the numbers of a response that are found without simulating, Problem::field being
+// the JSON pointer into its file. The rules:
+//   sweep: the force's power is that of the fundamental and, of a periodic motion, equals what damper and
+//     impacts take out; a symmetric motion strikes both walls equally often; as many periods are measured as
+//     the rule says; only a motion that is not periodic scatters; |x| does not exceed the amplitude;
+//   basin: no motion without impacts but the idle one; a symmetric one strikes both walls equally often; those
+//     that most points end in come first;
+//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both walls equally often; |x| does not exceed the amplitude; branches and events
+//     refer to what is there;
+//   lyapunov: as many exponents as errors, none unless the run was completed.
+std::vector<Problem> inconsistencies_of(const Response& response);
 
 // One table (RFC 4180, lines end with LF). A row for each steady state: the number of its sweep, counted from
 // 0, "up" or "down", the axis's value, and the columns of the JSON file. With `units` in SI, frequencies in

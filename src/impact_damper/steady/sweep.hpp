@@ -11,6 +11,7 @@
 namespace impact_damper {
 
 // A number of a scene, and the values it takes: `count` >= 2, equally spaced, both ends included, from < to.
+inline constexpr std::int64_t most_values = 100'000;  // that command line and files allow
 struct Axis {
   double Scene::*number = &Scene::force_frequency;
   double from = 0, to = 0;

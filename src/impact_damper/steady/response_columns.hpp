@@ -1,0 +1,64 @@
+// The columns of response files: written and read by the same table.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/base/text.hpp"
+#include "impact_damper/steady/response_file.hpp"
+
+namespace impact_damper {
+
+// What a column measures: its suffix in SI, and what one dimensionless unit of it is there.
+struct Quantity {
+  std::string_view suffix;
+  double (*unit)(const SiUnits&);
+};
+Quantity quantity_of(const double Scene::*number);
+
+// A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent where
+// the number belongs to them.
+template <class Row>
+struct RowColumn {
+  std::string_view name;
+  Quantity quantity;
+  NumberRange range;  // of what a file may hold
+  bool is_whole;
+  // Whether a number may be absent on its own, not only where `get` of a row says so whose other numbers are
+  // read.
+  bool may_be_absent;
+  std::optional<double> (*get)(const Row&);
+  void (*set)(Row&, double);
+};
+std::span<const RowColumn<SteadyState>> steady_columns();
+std::span<const RowColumn<OrbitPoint>> orbit_columns();
+
+// Numbers under a name.
+struct Column {
+  std::string_view name;
+  Quantity quantity;
+  std::vector<std::optional<double>> numbers;
+};
+template <class Row>
+std::vector<Column> columns_of(std::span<const RowColumn<Row>> table, const std::vector<Row>& rows) {
+  std::vector<Column> columns;
+  for (const RowColumn<Row>& each : table) {
+    Column column{each.name, each.quantity, {}};
+    column.numbers.reserve(rows.size());
+    for (const Row& row : rows) column.numbers.push_back(each.get(row));
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+// The amplitude without the damper and with its mass locked in, (M12.6), at each value of the axis. Infinite
+// at the resonance of an undamped oscillator: absent.
+std::vector<Column> linear_columns(const Scene& scene, const Axis& axis);
+
+// What happened at a value of a sweep, in a word: "periodic", "not_periodic" or the budget that ended it.
+std::string_view end_of(const SteadyState& steady);
+
+}  // namespace impact_damper

@@ -1,0 +1,22 @@
+// Parts of a response that the catalogue has, too, read from an object of a document, which collects the
+// problems.
+#pragma once
+
+#include <optional>
+
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/steady/response_file.hpp"
+
+namespace impact_damper {
+
+// {"x", "v", "y", "w"}.
+State<double> read_state(ObjectReader object);
+// {"number", "from", "to", "count"}, {"number", "from", "to"}; absent if there are problems.
+std::optional<Axis> read_axis(ObjectReader& object);
+std::optional<ParameterRange> read_range(ObjectReader& object);
+// What is not given keeps its default, unless nothing may be missing.
+void read_rule(ObjectReader& object, bool may_be_missing, SteadyRule& rule);
+void read_rule(ObjectReader& object, bool may_be_missing, BasinRule& rule);
+void read_rule(ObjectReader& object, bool may_be_missing, BranchRule& rule);
+
+}  // namespace impact_damper
