@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -177,9 +178,9 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   return out.finish() + '\n';
 }
 
-// What claims rest on: runs of scenes and further runs, whose scenes' runs are among them.
+// What claims rest on: runs of scenes, further runs, whose scenes' runs are among them, and responses.
 struct RunNames {
-  std::set<std::string> scenes, further;
+  std::set<std::string> scenes, further, responses;
 };
 RunNames runs_of(const std::vector<Claim>& claims, const std::vector<CatalogueRun>& further) {
   RunNames names;
@@ -189,6 +190,7 @@ RunNames runs_of(const std::vector<Claim>& claims, const std::vector<CatalogueRu
       names.scenes.insert(run ? run->scene : name);
       if (run) names.further.insert(name);
     }
+    names.responses.insert(call.responses.begin(), call.responses.end());
   };
   for (const Claim& claim : claims) {
     add(claim.measure);
@@ -214,9 +216,10 @@ void check_figures(const std::vector<Figure>& figures, const fs::path& file,
   if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
-// Every run that a claim rests on, before anything is measured: consistent, of its scene, and those of scenes
-// all of one engine.
-void check_runs(const SceneRuns& folders, const RunNames& names, const std::vector<CatalogueRun>& further) {
+// Every run and response that a claim rests on, before anything is measured: consistent, of its scene, and
+// the runs of scenes all of one engine. Returns the responses.
+std::map<std::string, Response> checked(const SceneRuns& folders, const RunNames& names,
+                                        const Catalogue& catalogue) {
   std::optional<Run> first;
   for (const std::string& scene : names.scenes) {
     Run run = folders.read(scene);
@@ -224,15 +227,29 @@ void check_runs(const SceneRuns& folders, const RunNames& names, const std::vect
       require_same_engine(run, folders.file_of(scene), *first, folders.file_of(*names.scenes.begin()));
     if (!first) first = std::move(run);
   }
-  for (const std::string& name : names.further) folders.read(*find_run(further, name));
+  for (const std::string& name : names.further) folders.read(*find_run(catalogue.runs, name));
+  std::map<std::string, Response> responses;
+  for (const std::string& name : names.responses) {
+    const CatalogueResponse* const asked = find_response(catalogue.responses, name);
+    if (!asked)
+      throw InvalidArguments({{"--claims", "must name responses of the catalogue, got " + in_quotes(name)}});
+    responses[name] = folders.read(*asked);
+  }
+  return responses;
 }
 
 // Which changes of a number turn a verdict, instead of the verdicts.
 int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::set<std::string>& scenes,
-               const std::vector<CatalogueRun>& further, const EnsembleOptions& ensemble,
-               const std::optional<std::string>& json_file, const std::optional<std::string>& markdown_file) {
-  PowerInput input{
-      .claims = std::move(claims), .runs = {}, .further = further, .ensemble = ensemble, .left_out = {}};
+               const Catalogue& catalogue, std::map<std::string, Response> responses,
+               const EnsembleOptions& ensemble, const std::optional<std::string>& json_file,
+               const std::optional<std::string>& markdown_file) {
+  PowerInput input{.claims = std::move(claims),
+                   .runs = {},
+                   .further = catalogue.runs,
+                   .asked = catalogue.responses,
+                   .responses = std::move(responses),
+                   .ensemble = ensemble,
+                   .left_out = {}};
   for (const std::string& scene : scenes) input.runs[scene] = folders.read(scene);
   PowerTable table;
   if (!input.runs.empty()) table.engine = name_of(input.runs.begin()->second.engine);
@@ -291,16 +308,19 @@ int verify(Arguments& arguments) {
       for (std::int64_t member = 2; member <= most_members; ++member)
         inputs.push_back(member_file(run, member));
     }
+  for (const std::string& name : names.responses) inputs.push_back(folders.file_of(name));
   arguments.reject_overwriting("--output", verdicts_file, inputs);
   arguments.reject_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
   for (const auto& file : {verdicts_file, markdown_file})
     if (file) require_writable(*file);
 
-  check_runs(folders, names, catalogue.runs);
+  std::map<std::string, Response> responses = checked(folders, names, catalogue);
   if (power)
-    return find_power(folders, claims, names.scenes, catalogue.runs, ensemble, verdicts_file, markdown_file);
+    return find_power(folders, claims, names.scenes, catalogue, std::move(responses), ensemble, verdicts_file,
+                      markdown_file);
   Runs runs(runs_folder, ensemble, catalogue.runs);
+  for (auto& [name, response] : responses) runs.put(name, std::move(response));
   std::vector<Verified> all;
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
@@ -345,8 +365,8 @@ Command verify_command() {
   command.options = {
       {"--claims", "FILE", "what the paper reports; default data/claims.json"},
       {"--runs", "FOLDER",
-       "folder of run files, NAME.json of each scene and further run,\n"
-       "with the other members of its ensemble (run --members);\n"
+       "folder of run files, NAME.json of each scene, further run and\n"
+       "response, with the other members of its ensemble (run --members);\n"
        "default build/runs/exact"},
       scenes_option(),
       {.name = "--power",

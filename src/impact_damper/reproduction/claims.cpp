@@ -47,6 +47,12 @@ MeasureCall read_measure(ObjectReader object) {
                                   std::to_string(measure.most_scenes) + " scenes, got " +
                                   std::to_string(count));
   }
+  if (measure.most_responses > 0 &&
+      object.required("responses", call.responses, a_name, measure.most_responses) &&
+      call.responses.size() < measure.least_responses)
+    object.reject("responses", "must name " + std::to_string(measure.least_responses) + " to " +
+                                   std::to_string(measure.most_responses) + " responses, got " +
+                                   std::to_string(call.responses.size()));
   for (const std::string_view number : measure.numbers) {
     double value = 0;
     if (!object.required(number, value)) continue;

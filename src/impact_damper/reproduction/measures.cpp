@@ -66,7 +66,19 @@ const std::vector<Run>& Runs::ensemble(const std::string& name) {
   return runs;
 }
 
+const Response& Runs::response(const std::string& name) {
+  const auto found = found_.find(name);
+  if (found != found_.end()) return found->second;
+  if (folder_) return found_.emplace(name, read_response(*folder_ / (name + ".json"))).first->second;
+  const CatalogueResponse* const wanted = find_response(responses_, name);
+  if (!wanted) throw std::invalid_argument("there is no response " + name);
+  return found_.emplace(name, found_for(asked_for(*wanted, file(wanted->scene).scene), options_.threads))
+      .first->second;
+}
+
 void Runs::put(const std::string& scene, Run run) {
+  for (const CatalogueResponse& response : responses_)
+    if (response.scene == scene) found_.erase(response.name);
   for (const CatalogueRun& further : further_)
     if (further.scene == scene) ensembles_.erase(further.name);
   std::vector<Run>& runs = ensembles_[scene];

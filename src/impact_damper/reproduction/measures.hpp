@@ -51,19 +51,27 @@ class Runs {
  public:
   explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},
                 std::vector<CatalogueRun> further = {}, AnalysisOptions analysis = {},
-                std::optional<WrongColumn> wrong = std::nullopt)
+                std::optional<WrongColumn> wrong = std::nullopt,
+                std::vector<CatalogueResponse> responses = {})
       : folder_(std::move(folder)),
         options_(options),
         further_(std::move(further)),
         analysis_(analysis),
-        wrong_(wrong) {}
+        wrong_(wrong),
+        responses_(std::move(responses)) {}
 
   // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put.
   const Run& file(const std::string& name);
   // From now on this run stands for the scene's file, and further runs of the scene start from its scene.
   void put(const std::string& scene, Run run);
+  // From now on this response is the one of that name, until another run stands for its scene: then it is made
+  // anew for that run's scene.
+  void put(const std::string& name, Response response) { found_.insert_or_assign(name, std::move(response)); }
   // The run file, then the other members; throws what read_members() throws.
   const std::vector<Run>& ensemble(const std::string& name);
+  // The catalogue's response of that name, read, or put, or made for the scene whose run was put. Throws as
+  // file() does.
+  const Response& response(const std::string& name);
   // The name of the engine of the scenes' runs read so far ("cem --locate" if it locates touch and release);
   // empty if none was or if they are of several.
   std::string engine() const;
@@ -80,7 +88,9 @@ class Runs {
   std::vector<CatalogueRun> further_;
   AnalysisOptions analysis_;
   std::optional<WrongColumn> wrong_;
+  std::vector<CatalogueResponse> responses_;
   std::map<std::string, std::vector<Run>> ensembles_;  // of one member while only the file was asked for
+  std::map<std::string, Response> found_;              // of responses_
 };
 
 // A measure finds its number in each member of an ensemble; one that no chaos enters finds it once.
@@ -91,6 +101,7 @@ struct Measure {
   std::vector<std::string_view> numbers;  // its parameters, all to be given
   Spread (*find)(Runs& runs, const MeasureCall& call);
   std::string_view meaning;
+  std::size_t least_responses = 0, most_responses = 0;
 };
 const std::vector<Measure>& measures();  // in the order of names
 

@@ -202,8 +202,9 @@ const auto by_name = [](const auto& table, std::string_view name) -> const auto&
 };
 
 Runs runs_with(const PowerInput& input, const Settings& settings, std::optional<WrongColumn> wrong = {}) {
-  Runs runs(std::nullopt, settings.ensemble, input.further, settings.analysis, wrong);
+  Runs runs(std::nullopt, settings.ensemble, input.further, settings.analysis, wrong, input.asked);
   for (const auto& [scene, run] : input.runs) runs.put(scene, run);
+  for (const auto& [name, response] : input.responses) runs.put(name, response);
   for (const auto& [scene, run] : input.runs) runs.ensemble(scene);
   return runs;
 }
@@ -215,12 +216,17 @@ std::vector<Verdict> verdicts_of(const std::vector<Claim>& claims, Runs& runs) {
   return verdicts;
 }
 
-bool looks_at(const Claim& claim, const PowerNumber& number, const std::vector<CatalogueRun>& further) {
+bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& input) {
   if (number.of == of_analysis || number.of == of_columns) return true;
-  return std::ranges::any_of(claim.measure.scenes, [&](const std::string& name) {
-    const CatalogueRun* const run = find_run(further, name);
-    return (run ? run->scene : name) == number.of;
-  });
+  return std::ranges::any_of(claim.measure.scenes,
+                             [&](const std::string& name) {
+                               const CatalogueRun* const run = find_run(input.further, name);
+                               return (run ? run->scene : name) == number.of;
+                             }) ||
+         std::ranges::any_of(claim.measure.responses, [&](const std::string& name) {
+           const CatalogueResponse* const asked = find_response(input.asked, name);
+           return asked && asked->scene == number.of;
+         });
 }
 
 }  // namespace
@@ -300,7 +306,7 @@ std::vector<std::string> Power::turned(const PowerNumber& number, double value, 
   std::optional<Runs> runs;
   for (std::size_t i = 0; i < input_.claims.size(); ++i) {
     const Claim& claim = input_.claims[i];
-    if (!looks_at(claim, number, input_.further)) continue;
+    if (!looks_at(claim, number, input_)) continue;
     try {
       if (!runs) runs = changed(number, value);
       if (judge(claim, measure(*runs, claim.measure).median) == verdicts_[i]) continue;

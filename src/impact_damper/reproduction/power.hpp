@@ -56,12 +56,14 @@ struct PowerRow {
   std::optional<Direction> up = {}, down = {};
 };
 
-// The runs that verdicts rest on, by scene, the further ones made of these, how an ensemble of each is made,
-// and claims to be left out.
+// The runs that verdicts rest on, by scene, the further ones made of these, the steady motions by name and how
+// they are asked for, how an ensemble of each run is made, and claims to be left out.
 struct PowerInput {
   std::vector<Claim> claims;
   std::map<std::string, Run> runs;
   std::vector<CatalogueRun> further;
+  std::vector<CatalogueResponse> asked;
+  std::map<std::string, Response> responses;
   EnsembleOptions ensemble;  // `threads` are those that search
   std::vector<std::string> left_out;
 };

@@ -268,6 +268,28 @@ std::string_view kind_of(const Response& response) {
   return std::visit([](const auto& each) { return each.kind; }, response);
 }
 
+Response found_for(Response asked, const Threads& threads) {
+  const auto ignored = [](std::int64_t) {};
+  if (auto* const sweeps = std::get_if<SweepResponse>(&asked)) {
+    std::vector<State<double>> starts;
+    for (const Sweep& each : sweeps->sweeps) starts.push_back(each.start);
+    sweeps->sweeps =
+        sweep(sweeps->scene, sweeps->engine, sweeps->axis, sweeps->rule, starts, threads, ignored);
+  } else if (auto* const map = std::get_if<BasinResponse>(&asked)) {
+    map->basin = basin(map->scene, map->engine, map->first, map->second, map->rule, threads, ignored);
+  } else if (auto* const orbits = std::get_if<OrbitsResponse>(&asked)) {
+    std::vector<State<double>> starts;
+    for (const OrbitStart& each : orbits->starts) starts.push_back(each.state);
+    return orbits_response(
+        orbits->scene, orbits->engine, orbits->rule, orbits->range,
+        find_branches(orbits->scene, orbits->engine, orbits->range, orbits->rule, starts, threads, ignored));
+  } else if (auto* const lyapunov = std::get_if<LyapunovResponse>(&asked)) {
+    lyapunov->found =
+        lyapunov_exponents(lyapunov->scene, lyapunov->engine, lyapunov->periods, lyapunov->discard);
+  }
+  return asked;
+}
+
 std::string response_text(const Response& response, const std::optional<Scales>& scales) {
   return std::visit(
       [&](const auto& each) {

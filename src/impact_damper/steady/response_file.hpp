@@ -98,6 +98,10 @@ struct LyapunovResponse {
 using Response = std::variant<SweepResponse, BasinResponse, OrbitsResponse, LyapunovResponse>;
 std::string_view kind_of(const Response& response);
 
+// The same question with what is found, in place of whatever it holds. Throws InvalidArguments as sweep(),
+// basin(), find_branches() and lyapunov_exponents() do.
+Response found_for(Response asked, const Threads& threads);
+
 // The text of its file. Throws NumericalError, with the name of the column, if a number is not finite.
 std::string response_text(const Response& response, const std::optional<Scales>& scales = {});
 
