@@ -1,4 +1,6 @@
 // `figures`: what the catalogue draws, as an aligned table.
+#include <algorithm>
+
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/io/file_output.hpp"
@@ -17,10 +19,16 @@ std::string joined(const std::vector<std::string>& words) {
 
 int list_figures(const std::string& file) {
   std::vector<std::vector<std::string>> rows{{"figure", "table", "script", "scenes", "title"}};
-  for (const Figure& figure : read_catalogue(file).figures) {
+  const Catalogue catalogue = read_catalogue(file);
+  for (const Figure& figure : catalogue.figures) {
     const bool drawn_only = figure.table == TableKind::drawing;
+    std::vector<std::string> scenes = scenes_of(figure);
+    for (const std::string& name : figure.responses) {
+      const std::string& scene = find_response(catalogue.responses, name)->scene;
+      if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+    }
     rows.push_back({figure.number, drawn_only ? "-" : file_stem(figure) + ".dat", figure.script,
-                    joined(scenes_of(figure)), figure.title});
+                    joined(scenes), figure.title});
   }
   write_standard_output(aligned(rows));
   return 0;

@@ -43,12 +43,28 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
   return figures;
 }
 
-// A figure's runs, and the members of the ensembles that it shows; what is wrong with one is reported under
-// the figure's name. All are of one engine, whatever figure they were read for.
+// Calls `read`; what is wrong with a file is reported under the figure's name.
+template <class Read>
+void for_figure(const Figure& figure, Read read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    std::vector<std::string> problems;
+    for (const std::string& problem : error.problems()) {
+      problems.push_back("figure " + figure.number + ": " + problem);
+    }
+    throw InputError(problems);
+  } catch (const IoError& error) {
+    throw IoError("figure " + figure.number + ": " + error.what());
+  }
+}
+
+// A figure's runs, and the members of the ensembles that it shows. All are of one engine, whatever figure they
+// were read for.
 void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
   for (const std::string& scene : scenes_of(figure)) {
     const fs::path file = folders.file_of(scene);
-    try {
+    for_figure(figure, [&] {
       if (!runs.contains(scene)) {
         const FigureRun source{file, folders.read(scene)};
         if (!runs.empty()) {
@@ -63,16 +79,18 @@ void load(const Figure& figure, const SceneRuns& folders, const Threads& threads
       ensemble.threads = threads;
       if (ensemble.members > std::int64_t(source.others.size()) + 1)
         source.others = read_members(source.run, file, ensemble);
-    } catch (const InputError& error) {
-      std::vector<std::string> problems;
-      for (const std::string& problem : error.problems()) {
-        problems.push_back("figure " + figure.number + ": " + problem);
-      }
-      throw InputError(problems);
-    } catch (const IoError& error) {
-      throw IoError("figure " + figure.number + ": " + error.what());
-    }
+    });
   }
+}
+
+// A figure's responses.
+void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
+          FigureResponses& responses) {
+  for (const std::string& name : figure.responses)
+    for_figure(figure, [&] {
+      if (!responses.contains(name))
+        responses[name] = {folders.file_of(name), folders.read(*find_response(catalogue.responses, name))};
+    });
 }
 
 int make_tables(Arguments& arguments) {
@@ -98,6 +116,8 @@ int make_tables(Arguments& arguments) {
     for (std::int64_t member = 2; member <= most_members; ++member)
       inputs.push_back(member_file(run, member));
   }
+  for (const CatalogueResponse& response : catalogue.responses)
+    inputs.push_back(folders.file_of(response.name));
   arguments.reject_overwriting("--output", output, inputs);
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
@@ -111,6 +131,7 @@ int make_tables(Arguments& arguments) {
   }
 
   FigureRuns runs;
+  FigureResponses responses;
   std::size_t made = 0;
   for (const Figure* figure : figures) {
     if (output) {
@@ -118,7 +139,8 @@ int make_tables(Arguments& arguments) {
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
     load(*figure, folders, threads, runs);
-    const Table table = figure_table(*figure, runs);
+    load(*figure, folders, catalogue, responses);
+    const Table table = figure_table(*figure, runs, responses);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     if (!output) {
       write_standard_output(text);
@@ -137,7 +159,8 @@ Command series_command() {
       {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
       {"--runs", "FOLDER",
        "folder of the runs, must be given: SCENE.json of each scene, with\n"
-       "the members of the ensembles that figures show (run --members)"},
+       "the members of the ensembles that figures show (run --members),\n"
+       "and NAME.json of each response that they draw"},
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

@@ -82,7 +82,7 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   for (ObjectReader item : figure.optional_objects("curves", 100)) {
     FigureCurve curve;
     item.required("scene", curve.scene, a_name);
-    if (table == TableKind::loss_factor) {
+    if (table == TableKind::loss_factor || table == TableKind::largest_response) {
       std::int64_t half_cycles = curve.loss_factor.half_cycles;
       item.optional("half_cycles", half_cycles, within(10, 18));
       if (half_cycles % 2 != 0) {
@@ -106,25 +106,48 @@ const char* missing_record(TableKind table, const Record& record) {
                                 : "half_cycles";
     case TableKind::decay:
     case TableKind::loss_factor:
+    case TableKind::largest_response:
       return record.half_cycles ? nullptr : "half_cycles";
     case TableKind::phase:
       return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
                                 : "half_cycles";
+    case TableKind::response:
+    case TableKind::response_map:
     case TableKind::drawing:
       return nullptr;
   }
   return nullptr;
 }
 
+// A null pointer if a table of this kind is made of such a response, else what it is made of.
+const char* wrong_response(TableKind table, const Response& asked) {
+  const auto* const sweep = std::get_if<SweepResponse>(&asked);
+  const auto* const basin = std::get_if<BasinResponse>(&asked);
+  const auto* const orbits = std::get_if<OrbitsResponse>(&asked);
+  if (table == TableKind::response)
+    return (sweep && sweep->axis.number == &Scene::force_frequency) ||
+                   (orbits && orbits->range.parameter == Parameter::force_frequency)
+               ? nullptr
+               : "a sweep or orbits over force_frequency";
+  if (table == TableKind::largest_response)
+    return sweep && sweep->axis.number == &Scene::force_amplitude ? nullptr : "a sweep over force_amplitude";
+  return basin && basin->first.number == &Scene::force_frequency &&
+                 basin->second.number == &Scene::force_amplitude
+             ? nullptr
+             : "a basin over force_frequency and force_amplitude, in this order";
+}
+
 void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& catalogue) {
   const std::size_t count = figure.curves.size();
-  const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase;
-  const bool drawn_only = figure.table == TableKind::drawing;
-  if (single ? count != 1 : drawn_only ? count != 0 : count == 0) {
+  const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase ||
+                      figure.table == TableKind::largest_response;
+  const bool none = figure.table == TableKind::drawing || figure.table == TableKind::response ||
+                    figure.table == TableKind::response_map;
+  if (single ? count != 1 : none ? count != 0 : count == 0) {
     item.reject("curves", "must be " +
-                              std::string(single       ? "one curve"
-                                          : drawn_only ? "empty"
-                                                       : "at least one curve") +
+                              std::string(single ? "one curve"
+                                          : none ? "empty"
+                                                 : "at least one curve") +
                               " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
                               std::to_string(count));
   }
@@ -151,6 +174,33 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
       item.reject("window", "must be the amplitude of a history window of scene " + name + ", got " +
                                 number_text(*figure.window));
     }
+  }
+}
+
+// The responses that a figure draws: known, and of kinds that its table is made of.
+void read_responses(ObjectReader& item, Figure& figure, const Catalogue& catalogue) {
+  const bool is_map = figure.table == TableKind::response_map;
+  if (!is_map && figure.table != TableKind::response && figure.table != TableKind::largest_response) return;
+  if (!item.required("responses", figure.responses, a_name, std::size_t{100})) return;
+  if (figure.responses.empty() || (is_map && figure.responses.size() != 1))
+    item.reject("responses", "must be " + std::string(is_map ? "one response" : "at least one response") +
+                                 ", got " + std::to_string(figure.responses.size()));
+  std::vector<double> forces;  // of sweeps over the frequency
+  for (std::size_t i = 0; i < figure.responses.size(); ++i) {
+    const CatalogueResponse* const response = find_response(catalogue.responses, figure.responses[i]);
+    if (!response) {
+      item.reject("responses", i,
+                  "must be a response of this catalogue, got the string " + in_quotes(figure.responses[i]));
+      continue;
+    }
+    if (const char* const wanted = wrong_response(figure.table, response->asked))
+      item.reject("responses", i, "must be " + std::string(wanted) + ", got " + in_quotes(response->name));
+    const double force = changed(response->set, Scene{}).force_amplitude;
+    const bool is_sweep = std::holds_alternative<SweepResponse>(response->asked);
+    if (figure.table == TableKind::response && !is_sweep &&
+        std::ranges::find(forces, force) == forces.end())
+      item.reject("responses", i, "must come after a sweep with its force, got " + in_quotes(response->name));
+    if (is_sweep) forces.push_back(force);
   }
 }
 
@@ -279,6 +329,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   item.optional("claims", figure.claims, a_name, 100);
   if (!item.required("table", figure.table,
                      {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
+                      TableKind::response, TableKind::largest_response, TableKind::response_map,
                       TableKind::drawing})) {
     item.keys();  // which others are known depends on the table
     return figure;
@@ -288,6 +339,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
   }
   figure.curves = read_curves(item, figure.table);
+  read_responses(item, figure, catalogue);
   if (figure.table == TableKind::loss_factor) {
     figure.ordinate = LossOrdinate::eta;
     item.required("ordinate", *figure.ordinate, ordinates);
@@ -302,9 +354,8 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     }
   }
   if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
-  if (figure.table != TableKind::motion && figure.table != TableKind::drawing) {
+  if (figure.table != TableKind::motion && !figure.curves.empty())
     item.required("down_to", figure.down_to.emplace(), amplitudes);
-  }
   check_curves(item, figure, catalogue);
   return figure;
 }
@@ -338,6 +389,12 @@ Catalogue read_whole(JsonDocument document) {
 
 std::string_view name_of(TableKind kind) {
   switch (kind) {
+    case TableKind::response:
+      return "response";
+    case TableKind::largest_response:
+      return "largest_response";
+    case TableKind::response_map:
+      return "response_map";
     case TableKind::motion:
       return "motion";
     case TableKind::decay:

@@ -39,7 +39,10 @@ enum class TableKind {
   decay,        // peak amplitude over time
   loss_factor,  // one of the ordinates of the averaged loss factor over amplitude
   phase,        // impact phase and stuck intervals over amplitude
-  drawing,      // none: a schematic that no run stands behind
+  response,     // amplitude over the frequency of a force, with the branches of periodic motions
+  largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
+  response_map,      // which steady motion there is, over frequency and amplitude of a force
+  drawing,           // none: a schematic that no run stands behind
 };
 std::string_view name_of(TableKind kind);
 std::string_view name_of(LossOrdinate ordinate);
@@ -81,16 +84,18 @@ Response asked_for(const CatalogueResponse& response, const Scene& scene);
 
 struct FigureCurve {
   std::string scene;
-  // loss_factor tables only:
+  // loss_factor and largest_response tables only:
   LossFactorOptions loss_factor;  // its window of averaging
   std::int64_t ensemble = 0;      // members of the ensemble whose spread is shown; 0 for none
 };
 
 struct Figure {
-  std::string number;  // "1" ... "15", "A", "B"
+  std::string number;  // "1" ... "15", "A" ... "E"
   std::string title;
   TableKind table = TableKind::drawing;
-  std::vector<FigureCurve> curves;              // one for motion and phase, none for a drawing
+  // One for motion, phase and largest_response, none for a drawing, response and response_map.
+  std::vector<FigureCurve> curves;
+  std::vector<std::string> responses;           // of the catalogue, for the tables of responses
   std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
   std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
   std::optional<Varied> varied;                 // if there is more than one curve

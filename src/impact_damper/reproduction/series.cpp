@@ -74,11 +74,11 @@ std::string options_text(const Engine& engine) {
 }
 
 // What all curves have in common, and what sets one apart, for the line under the title.
-std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs) {
+std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs, const Scene& scene) {
   std::string text;
   for (const Varied varied : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
     if (figure.varied == varied) continue;
-    text += (text.empty() ? "" : ", ") + equation(runs[0]->run.scene, varied);
+    text += (text.empty() ? "" : ", ") + equation(scene, varied);
   }
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     const int span = figure.curves[i].loss_factor.half_cycles;
@@ -87,8 +87,9 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
             " half cycles";
   }
   // The exact engine is the default; a figure made with another one says so.
-  if (!std::holds_alternative<Exact>(runs[0]->run.engine)) {
-    text += "; " + std::visit(EngineWords{runs}, runs[0]->run.engine);
+  if (!runs.empty() && !std::holds_alternative<Exact>(runs[0]->run.engine)) {
+    text += std::string(figure.responses.empty() ? "; " : "; free decay: ") +
+            std::visit(EngineWords{runs}, runs[0]->run.engine);
   }
   return text;
 }
@@ -105,6 +106,24 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRun*>&
       }
     }
   }
+}
+
+// All of the scene's walls and masses, whatever the force is.
+void check_comparable(const Figure& figure, const std::vector<const FigureResponse*>& sources,
+                      const Scene& scene) {
+  for (const FigureResponse* source : sources)
+    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio})
+      if (of(scene_of(source->response), same) != of(scene, same))
+        throw unusable(figure, source->file,
+                       "must have the same " + std::string(name_of(same)) + " as the figure's others");
+}
+
+// What a response was asked for, but for the scene.
+std::string question_of(const Response& response) {
+  std::string text;
+  for (const auto& [pointer, part] : asked_of(response))
+    if (!pointer.starts_with("/scene/")) text += (text.empty() ? "" : ", ") + pointer + " " + part;
+  return text;
 }
 
 void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& number,
@@ -182,18 +201,27 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene) {
   return members;
 }
 
-Table figure_table(const Figure& figure, const FigureRuns& runs) {
+Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses) {
   std::vector<const FigureRun*> sources;
   for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
+  std::vector<const FigureResponse*> found;
+  for (const std::string& name : figure.responses) found.push_back(&responses.at(name));
+  const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
   check_comparable(figure, sources);
+  check_comparable(figure, found, scene);
 
   Table table;
-  table.header = {"Figure " + figure.number + ": " + figure.title, "Parameters: " + subtitle(figure, sources),
+  table.header = {"Figure " + figure.number + ": " + figure.title, "Parameters: " + subtitle(figure, sources, scene),
                   "Script: " + figure.script};
   for (const std::string& scene : scenes_of(figure)) {
     const Run& run = runs.at(scene).run;
     table.header.push_back("Scene " + scene + ": " + scene_text(run.scene));
     table.header.push_back("  engine: " + options_text(run.engine));
+  }
+  for (const std::string& name : figure.responses) {
+    const Response& response = responses.at(name).response;
+    table.header.push_back("Response " + name + ": " + scene_text(scene_of(response)));
+    table.header.push_back("  " + question_of(response));
   }
   switch (figure.table) {
     case TableKind::motion:
@@ -218,13 +246,22 @@ Table figure_table(const Figure& figure, const FigureRuns& runs) {
     case TableKind::phase:
       add_phase_blocks(figure, *sources[0], table);
       break;
+    case TableKind::response:
+      add_response_blocks(figure, found, table);
+      break;
+    case TableKind::largest_response:
+      add_largest_blocks(figure, *sources[0], found, table);
+      break;
+    case TableKind::response_map:
+      add_map_blocks(figure, *found[0], table);
+      break;
     case TableKind::drawing:
       break;
   }
   try {
     check(table);
   } catch (const std::domain_error& error) {
-    throw unusable(figure, sources[0]->file, error.what());
+    throw unusable(figure, sources.empty() ? found[0]->file : sources[0]->file, error.what());
   }
   return table;
 }

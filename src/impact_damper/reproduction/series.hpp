@@ -20,13 +20,18 @@ struct FigureRun {
   std::vector<Run> others{};  // the other members of its ensemble, for curves that show one
 };
 using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
+struct FigureResponse {
+  std::filesystem::path file;  // as above
+  Response response;
+};
+using FigureResponses = std::map<std::string, FigureResponse>;  // by name
 
 // The members, the scene's own run among them, of the largest ensemble of that scene that the figure shows;
 // 0 if it shows none.
 std::int64_t members_shown(const Figure& figure, const std::string& scene);
 
 // The table of `figure`, which must not be a drawing; `runs` holds at least its scenes, with as many members
-// of each as the figure shows. Blocks by kind:
+// of each as the figure shows, `responses` at least the responses. Blocks by kind:
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks
@@ -39,9 +44,18 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //                "bounce-down-1" ...
 //   phase        "impacts", "stuck", "windows" and the closed forms "one-impact", "bounce-1" ...
 //                "bounce-4", "accumulation"
+//   response     of the first, second ... force: "panel-1" (f0 / nu); "empty-1" and "locked-1" (frequency,
+//                amplitude), the linear oscillators; "rising-1", "falling-1" what is periodic of the sweeps
+//                and "rising-open-1", "falling-open-1" what is not; "stable-1", "unstable-1" the branches of
+//                orbits that are struck. A block of no rows is not there
+//   largest_response  "prediction" (f0 / nu, amplitude) of the curve's decay, (M14.6), "beyond" its largest
+//                force, "band" the outline of the ensemble's; "rising", "falling" the largest amplitude of
+//                sweeps along the same forces
+//   response_map "cell" (width, height); "one-symmetric", "one-asymmetric", "each-2", "each-3", "other",
+//                "irregular", "idle" (frequency, f0 / nu), as far as they occur
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.
-Table figure_table(const Figure& figure, const FigureRuns& runs);
+Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses = {});
 
 }  // namespace impact_damper

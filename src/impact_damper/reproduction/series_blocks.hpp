@@ -31,4 +31,11 @@ void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& tabl
 // The same for any run, as far as there is something to show. Needs half cycles, impacts and contacts.
 void add_phase_parts(const Run& run, Table& table);
 
+const Scene& scene_of(const Response& response);
+void add_response_blocks(const Figure& figure, const std::vector<const FigureResponse*>& sources,
+                         Table& table);
+void add_largest_blocks(const Figure& figure, const FigureRun& decay,
+                        const std::vector<const FigureResponse*>& sources, Table& table);
+void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& table);
+
 }  // namespace impact_damper

@@ -113,9 +113,9 @@ void check_column(ObjectReader& object, std::string_view name,
   }
 }
 
-// The axis is valid for the scene at all its values, or problems are told.
+// Whether the scene is valid at both ends of the axis; says so if it is not.
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
-  for (std::int64_t i = 0; i < axis.count; i += axis.count - 1) {
+  for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
     for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {
       root.reject("scene", "with " + std::string(name_of(axis)) + " = " + number_text(axis.value(i)) + ": " +
                                problem.field + " " + problem.message);
@@ -163,7 +163,8 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
   if (both) {
     response.first = axes[0];
     response.second = axes[1];
-    for (const Axis& axis : axes) check_axis(root, response.scene, response.engine, axis);
+    if (check_axis(root, axes[1].at(response.scene, 0), response.engine, axes[0]))
+      check_axis(root, axes[0].at(response.scene, 0), response.engine, axes[1]);
     if (axes[0].number == axes[1].number) root.reject("axes", "must be of two different numbers");
   }
   Basin& basin = response.basin;

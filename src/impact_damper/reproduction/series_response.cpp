@@ -1,0 +1,265 @@
+// Figures C, D and E: steady motions under a force, over its frequency and its amplitude.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "impact_damper/analysis/design.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/series_blocks.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr const char *of_frequency = "frequency of the force, divided by Omega_n",
+                     *of_force = "f0 / nu, amplitude of the force divided by K epsilon and nu",
+                     *of_amplitude = "largest |x|, divided by the clearance";
+
+// Rows of two columns under a name; nothing where there are none.
+struct Points {
+  std::vector<double> x, y;
+  std::vector<std::size_t> gaps;
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  void interrupt() {
+    if (!x.empty()) gaps.push_back(x.size());
+  }
+};
+void add_block(Table& table, const std::string& name, const char* of_x, const std::string& legend,
+               const char* of_y, const Points& points, std::vector<std::string> notes = {}) {
+  if (points.x.empty()) return;
+  table.blocks.push_back({.name = name,
+                          .notes = std::move(notes),
+                          .columns = {{"x", of_x, points.x}, {legend, of_y, points.y}},
+                          .gaps = points.gaps});
+}
+
+// With the damper's mass locked in, or without it: resonance without damping leaves a gap.
+void add_linear_block(Table& table, const std::string& name, const std::string& legend, const Scene& scene,
+                      const Axis& axis, double mass) {
+  constexpr std::int64_t each = 4;  // points between two values of the axis
+  const Axis fine{axis.number, axis.from, axis.to, each * (axis.count - 1) + 1};
+  Points points;
+  for (const double frequency : fine.values()) {
+    const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
+    if (std::isfinite(amplitude)) {
+      points.add(frequency, amplitude);
+    } else {
+      points.interrupt();
+    }
+  }
+  add_block(table, name, of_frequency, legend, of_amplitude, points);
+}
+
+void add_ways(Table& table, const std::string& panel, const SweepResponse& response) {
+  Points rising, falling, rising_open, falling_open;
+  for (const Sweep& sweep : response.sweeps) {
+    for (std::size_t i = 0; i < sweep.up.size(); ++i) {
+      const double value = response.axis.value(std::int64_t(i));
+      const auto add = [&](const SteadyState& s, Points& periodic, Points& open) {
+        if (s.means) (s.period ? periodic : open).add(value, s.means->amplitude);
+      };
+      add(sweep.up[i], rising, rising_open);
+      add(sweep.down[i], falling, falling_open);
+    }
+  }
+  add_block(table, "rising-" + panel, of_frequency, "frequency rising", of_amplitude, rising);
+  add_block(table, "falling-" + panel, of_frequency, "frequency falling", of_amplitude, falling);
+  add_block(table, "rising-open-" + panel, of_frequency, "not periodic, rising", of_amplitude, rising_open);
+  add_block(table, "falling-open-" + panel, of_frequency, "not periodic, falling", of_amplitude,
+            falling_open);
+}
+
+// Each piece of a branch that is stable, or not, from the last point of the piece before.
+void add_branches(Table& table, const std::string& panel, const OrbitsResponse& response) {
+  Points stable, unstable;
+  for (const OrbitBranch& branch : response.branches) {
+    const OrbitPoint* before = nullptr;
+    for (const OrbitPoint& point : branch.points) {
+      if (point.impacts == ImpactCounts{}) {  // the empty box's motion
+        before = nullptr;
+        continue;
+      }
+      Points& piece = point.stable ? stable : unstable;
+      if (!before || before->stable != point.stable) {
+        piece.interrupt();
+        if (before) piece.add(before->value, before->amplitude);
+      }
+      piece.add(point.value, point.amplitude);
+      before = &point;
+    }
+  }
+  add_block(table, "stable-" + panel, of_frequency, "periodic, stable", of_amplitude, stable);
+  add_block(table, "unstable-" + panel, of_frequency, "periodic, unstable", of_amplitude, unstable);
+}
+
+InputError unusable(const Figure& figure, const FigureResponse& source, const std::string& why) {
+  return unusable(figure, source.file, why);
+}
+
+// The response as one of a kind; `wanted` says which.
+template <class Kind>
+const Kind& as(const Figure& figure, const FigureResponse& source) {
+  const auto* const response = std::get_if<Kind>(&source.response);
+  if (!response)
+    throw unusable(figure, source,
+                   "must be a " + std::string(Kind::kind) + ", got " +
+                       std::string(kind_of(source.response)));
+  return *response;
+}
+
+// The largest amplitude at each force over sweeps along the same forces.
+struct Largest {
+  Axis axis;
+  std::vector<double> up, down;
+
+  void add(const SweepResponse& response) {
+    for (const Sweep& sweep : response.sweeps) {
+      const auto larger = [](std::vector<double>& most, const std::vector<SteadyState>& way) {
+        most.resize(way.size(), 0);
+        for (std::size_t i = 0; i < way.size(); ++i)
+          if (way[i].means) most[i] = std::max(most[i], way[i].means->amplitude);
+      };
+      larger(up, sweep.up);
+      larger(down, sweep.down);
+    }
+  }
+};
+
+}  // namespace
+
+const Scene& scene_of(const Response& response) {
+  return std::visit([](const auto& each) -> const Scene& { return each.scene; }, response);
+}
+
+void add_response_blocks(const Figure& figure, const std::vector<const FigureResponse*>& sources,
+                         Table& table) {
+  std::vector<double> forces;  // of the panels
+  for (const FigureResponse* source : sources) {
+    const Scene& scene = scene_of(source->response);
+    const auto known = std::ranges::find(forces, scene.force_amplitude);
+    const std::string panel = std::to_string(known - forces.begin() + 1);
+    if (known == forces.end()) {
+      forces.push_back(scene.force_amplitude);
+      const SweepResponse& sweep = as<SweepResponse>(figure, *source);
+      const double force = scene.force_amplitude / scene.mass_ratio;
+      table.blocks.push_back({.name = "panel-" + panel,
+                              .columns = {{"force", of_force, {force}},
+                                          {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
+      add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
+      add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
+                       1 + scene.mass_ratio);
+    }
+    if (const auto* const orbits = std::get_if<OrbitsResponse>(&source->response)) {
+      add_branches(table, panel, *orbits);
+    } else {
+      add_ways(table, panel, as<SweepResponse>(figure, *source));
+    }
+  }
+}
+
+void add_largest_blocks(const Figure& figure, const FigureRun& decay,
+                        const std::vector<const FigureResponse*>& sources, Table& table) {
+  const double nu = decay.run.scene.mass_ratio;
+  std::vector<Largest> all;
+  for (const FigureResponse* source : sources) {
+    const SweepResponse& response = as<SweepResponse>(figure, *source);
+    const auto same = std::ranges::find_if(all, [&](const Largest& each) {
+      return each.axis.from == response.axis.from && each.axis.to == response.axis.to &&
+             each.axis.count == response.axis.count;
+    });
+    Largest& largest = same == all.end() ? all.emplace_back() : *same;
+    largest.axis = response.axis;
+    largest.add(response);
+  }
+  Points rising, falling;
+  for (const Largest& each : all) {
+    for (std::int64_t i = 0; i < each.axis.count; ++i) {
+      const double force = each.axis.value(i) / nu;
+      if (each.up[std::size_t(i)] > 0) rising.add(force, each.up[std::size_t(i)]);
+      if (each.down[std::size_t(i)] > 0) falling.add(force, each.down[std::size_t(i)]);
+    }
+  }
+
+  // A eta of the decay, and of its ensemble: (M14.6) turns them into forces.
+  Figure of_loss = figure;
+  of_loss.ordinate = LossOrdinate::eta;
+  Table losses;
+  add_loss_block(of_loss, figure.curves[0], decay, "1", "", losses);
+  const auto force_at = [&](double amplitude, double eta) {
+    return square_root(1 + nu) * amplitude * eta / nu;
+  };
+  Points beyond, prediction, band;
+  for (const TableBlock& block : losses.blocks) {
+    const std::vector<double>& amplitude = block.columns[0].values;
+    if (block.name == "curve-1") {
+      std::vector<double> force;
+      for (std::size_t i = 0; i < amplitude.size(); ++i)
+        force.push_back(force_at(amplitude[i], block.columns[1].values[i]));
+      const auto most = std::size_t(std::ranges::max_element(force) - force.begin());
+      for (std::size_t i = 0; i <= most; ++i) beyond.add(force[i], amplitude[i]);
+      for (std::size_t i = most; i < force.size(); ++i) prediction.add(force[i], amplitude[i]);
+    }
+    if (block.name == "band-1") {
+      for (std::size_t i = 0; i < amplitude.size(); ++i)
+        band.add(force_at(amplitude[i], block.columns[1].values[i]), amplitude[i]);
+      for (std::size_t i = amplitude.size(); i-- > 0;)
+        band.add(force_at(amplitude[i], block.columns[2].values[i]), amplitude[i]);
+    }
+  }
+  const std::string members = std::to_string(figure.curves[0].ensemble);
+  add_block(table, "band", of_force, members + " releases", of_amplitude, band,
+            {"the outline of what the ensemble of scene " + figure.curves[0].scene + " spans"});
+  add_block(table, "prediction", of_force, "predicted by the free decay", of_amplitude, prediction,
+            {"sqrt(1 + nu) A eta(A) / nu of scene " + figure.curves[0].scene + ", below its largest"});
+  add_block(table, "beyond", of_force, "the same beyond its largest force", of_amplitude, beyond);
+  add_block(table, "rising", of_force, "largest found, force rising", of_amplitude, rising,
+            {"the largest of all frequencies"});
+  add_block(table, "falling", of_force, "largest found, force falling", of_amplitude, falling,
+            {"the largest of all frequencies"});
+}
+
+void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& table) {
+  const BasinResponse& response = as<BasinResponse>(figure, source);
+  const double nu = response.scene.mass_ratio;
+  const Basin& basin = response.basin;
+  // What a point of the map shows, in the order of the legend.
+  const auto kind_at = [&](std::size_t i) -> std::pair<std::string, std::string> {
+    if (basin.attractor[i] == undecided) return {"irregular", "nothing periodic found"};
+    const Attractor& each = basin.attractors[std::size_t(basin.attractor[i])];
+    if (each.idle) return {"idle", "never struck"};
+    if (each.period == 1 && each.impacts[0] == each.impacts[1]) {
+      const std::string count = std::to_string(each.impacts[0]);
+      if (each.impacts[0] == 1)
+        return each.symmetric ? std::pair("one-symmetric", "one impact on each wall, symmetric")
+                              : std::pair("one-asymmetric", "one on each wall, not symmetric");
+      if (each.impacts[0] <= 3) return {"each-" + count, count + " on each wall"};
+    }
+    return {"other", "other periodic motions"};
+  };
+  const std::vector<std::string> order{"one-symmetric", "one-asymmetric", "each-2", "each-3",
+                                       "other",         "irregular",      "idle"};
+  std::map<std::string, std::pair<std::string, Points>> regimes;
+  for (std::size_t i = 0; i < basin.attractor.size(); ++i) {
+    const auto [name, legend] = kind_at(i);
+    auto& [heading, points] = regimes[name];
+    heading = legend;
+    const std::int64_t n = std::int64_t(i);
+    points.add(response.first.value(n % response.first.count),
+               response.second.value(n / response.first.count) / nu);
+  }
+  const auto step = [](const Axis& axis) { return (axis.to - axis.from) / double(axis.count - 1); };
+  table.blocks.push_back({.name = "cell",
+                          .notes = {"how far apart the points of the map are"},
+                          .columns = {{"width", of_frequency, {step(response.first)}},
+                                      {"height", of_force, {step(response.second) / nu}}}});
+  for (const std::string& name : order)
+    if (const auto found = regimes.find(name); found != regimes.end())
+      add_block(table, name, of_frequency, found->second.first, of_force, found->second.second);
+}
+
+}  // namespace impact_damper
