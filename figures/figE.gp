@@ -1,1 +1,30 @@
-plot NaN notitle
+# The map: a cell for each point, in the colour of its motion, with a mark that tells it in grey.
+eval require("cell", 1)
+stats table index "cell" using 1 nooutput
+width = STATS_max / 2
+stats table index "cell" using 2 nooutput
+height = STATS_max / 2
+regimes = "one-symmetric one-asymmetric each-2 each-3 other irregular idle"
+colours = "#0072B2 #56B4E9 #009E73 #E69F00 #CC79A7 #F0F0F0 #FFFFFF"
+eval canvas(720, 620)
+low_x = 1e9; high_x = -1e9; low_y = 1e9; high_y = -1e9
+there = ""
+do for [i=1:words(regimes)] {
+  block = word(regimes, i)
+  if (has(block)) {
+    eval require(block, 1)
+    there = there." ".i
+    stats table index block using 1 nooutput
+    low_x = STATS_min < low_x ? STATS_min : low_x; high_x = STATS_max > high_x ? STATS_max : high_x
+    stats table index block using 2 nooutput
+    low_y = STATS_min < low_y ? STATS_min : low_y; high_y = STATS_max > high_y ? STATS_max : high_y
+  }
+}
+set xrange [low_x - width:high_x + width]
+set yrange [low_y - height:high_y + height]
+set xlabel "frequency ω of the force"
+set ylabel "amplitude of the force f_0 / ν"
+set tics front
+set style fill solid 1 noborder
+unset key
+eval 'plot '.cells(there)

@@ -357,6 +357,7 @@ struct Request {
   Threads threads;
   Format format = Format::json;
   std::optional<SiUnits> units;  // of the CSV
+  bool quiet = false;
 };
 
 std::string swept(const Request& asked) {
@@ -365,7 +366,7 @@ std::string swept(const Request& asked) {
   Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
   const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, asked.starts, asked.threads,
                             [&](std::int64_t done) { progress(done); });
-  warn_of(sweeps, asked.sweep);
+  if (!asked.quiet) warn_of(sweeps, asked.sweep);
   return asked.format == Format::csv
              ? sweep_csv(scene, axis, sweeps, asked.units)
              : response_text(SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps}, asked.file.scales);
@@ -377,7 +378,7 @@ std::string mapped(const Request& asked) {
   Progress progress("points", first.count * second.count);
   const Basin map = basin(scene, asked.engine, first, second, asked.basin, asked.threads,
                           [&](std::int64_t done) { progress(done); });
-  warn_of(map, asked.basin.steady);
+  if (!asked.quiet) warn_of(map, asked.basin.steady);
   return asked.format == Format::csv
              ? basin_csv(first, second, map, asked.units)
              : response_text(BasinResponse{scene, asked.engine, asked.basin, first, second, map},
@@ -389,7 +390,7 @@ std::string followed(const Request& asked) {
   Progress progress("branches are followed", std::nullopt);
   const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
                                        asked.threads, [&](std::int64_t done) { progress(done); });
-  warn_of(found, asked.orbits);
+  if (!asked.quiet) warn_of(found, asked.orbits);
   return asked.format == Format::csv
              ? orbits_csv(*asked.range, found, asked.units)
              : response_text(orbits_response(scene, asked.engine, asked.orbits, *asked.range, found),
@@ -404,7 +405,7 @@ std::string averaged(const Request& asked) {
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {
         if (done % 100 == 0) progress(done);
       });
-  warn_of(found);
+  if (!asked.quiet) warn_of(found);
   return asked.format == Format::csv
              ? lyapunov_csv(found, asked.units)
              : response_text(LyapunovResponse{scene, asked.engine, periods, discard, found},
@@ -460,12 +461,13 @@ int respond(Arguments& arguments) {
         "--si", "is for --format csv; the JSON file is dimensionless, its units say what a unit is in SI");
   if (in_si && !asked.file.scales) arguments.reject("--si", "needs a scene in units, by --scene");
   asked.threads = threads_of(arguments);
+  asked.quiet = arguments.flag("--quiet");
   arguments.finish();
   if (output) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
-  warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
+  if (!asked.quiet) warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
   if (in_si) asked.units = si_units_of(*asked.file.scales);
 
   const std::string text = saying_options([&] { return text_of(asked); });
@@ -546,6 +548,8 @@ Options own_options() {
       "csv of a scene in units: columns in SI, as their names say\n(amplitude_m, force_frequency_Hz)",
       "Output", Option::Takes::nothing);
   add("-o,--output", "FILE", "write there instead of to stdout", "Output");
+  add("--quiet", "", "no warnings, such as of motions that are not periodic", "Output",
+      Option::Takes::nothing);
   options.push_back(threads_option());
   options.back().group = "Output";
   return options;

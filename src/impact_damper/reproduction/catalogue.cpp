@@ -119,6 +119,10 @@ const char* missing_record(TableKind table, const Record& record) {
   return nullptr;
 }
 
+bool is_without_curves(TableKind table) {
+  return table == TableKind::drawing || table == TableKind::response || table == TableKind::response_map;
+}
+
 // A null pointer if a table of this kind is made of such a response, else what it is made of.
 const char* wrong_response(TableKind table, const Response& asked) {
   const auto* const sweep = std::get_if<SweepResponse>(&asked);
@@ -141,8 +145,7 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
   const std::size_t count = figure.curves.size();
   const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase ||
                       figure.table == TableKind::largest_response;
-  const bool none = figure.table == TableKind::drawing || figure.table == TableKind::response ||
-                    figure.table == TableKind::response_map;
+  const bool none = is_without_curves(figure.table);
   if (single ? count != 1 : none ? count != 0 : count == 0) {
     item.reject("curves", "must be " +
                               std::string(single ? "one curve"
@@ -354,7 +357,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     }
   }
   if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
-  if (figure.table != TableKind::motion && !figure.curves.empty())
+  if (figure.table != TableKind::motion && !is_without_curves(figure.table))
     item.required("down_to", figure.down_to.emplace(), amplitudes);
   check_curves(item, figure, catalogue);
   return figure;
