@@ -2,15 +2,17 @@
 # oscillators.
 panels = system(sprintf("grep -c -x '# panel-[0-9]*' '%s' || true", table)) + 0
 do for [i=1:panels] { eval require(sprintf("panel-%d", i), 1); eval require(sprintf("empty-%d", i), 10) }
-eval canvas(720, 760)
+eval canvas(720, 780)
 set multiplot
+heading = title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "")
+unset title
 set logscale y
 set yrange [0.02:5]
 set ytics ("0.02" 0.02, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2, "0.5" 0.5, "1" 1, "2" 2, "5" 5)
 do for [decade in "0.01 0.1 1"] { do for [k=3:9] { if (k != 5) { set ytics add ("" k * decade 1) } } }
 set mytics default
-left(i) = i % 2 ? 0.095 : 0.560
-top(i) = i < 3 ? 0.885 : 0.510
+left(i) = i % 2 ? 0.105 : 0.555
+top(i) = i < 3 ? 0.900 : 0.545
 # A clause for a block that may not be there.
 of(i, kind, how) = !has(sprintf("%s-%d", kind, i)) ? "" : sprintf(', table index "%s-%d" using 1:2 with %s', kind, i, how)
 do for [i=1:panels] {
@@ -21,16 +23,16 @@ do for [i=1:panels] {
   stats table index sprintf("panel-%d", i) using 1 nooutput
   set label 1 sprintf("f_0 = %.2f ν", STATS_max) at graph 0.04,graph 0.93 left font ",14"
   set lmargin at screen left(i)
-  set rmargin at screen left(i) + 0.415
+  set rmargin at screen left(i) + 0.420
   set tmargin at screen top(i)
-  set bmargin at screen top(i) - 0.315
-  if (i > 1) { unset title }
+  set bmargin at screen top(i) - 0.320
+  if (i == 1) { set label 2 heading at screen 0.5,screen 0.965 center font ",15" } else { unset label 2 }
   if (i > 2) { set xlabel "frequency ω of the force" } else { unset xlabel }
-  if (i % 2) { set ylabel "largest amplitude A" offset 0.8,0 } else { unset ylabel }
+  if (i % 2) { set ylabel "largest amplitude A" offset 1.2,0; set format y } else { unset ylabel; set format y "" }
   unset key
   eval sprintf('plot table index "empty-%d" using 1:2 with lines lc rgb blue lw 1 dt (6,3)', i).\
     sprintf(', table index "locked-%d" using 1:2 with lines lc rgb vermillion lw 1 dt (6,3,1.5,3)', i).\
-    of(i, "unstable", "lines lc rgb green lw 1.4 dt (2,2)").\
+    of(i, "unstable", "lines lc rgb purple lw 1.6 dt (3,2)").\
     of(i, "rising-open", "points pt 8 ps 0.45 lc rgb black").\
     of(i, "falling-open", "points pt 10 ps 0.45 lc rgb orange").\
     of(i, "rising", "points pt 9 ps 0.6 lc rgb black").\
@@ -48,15 +50,15 @@ unset ylabel
 unset logscale
 set lmargin at screen 0.02
 set rmargin at screen 0.98
-set tmargin at screen 0.115
-set bmargin at screen 0.005
-set key inside center center maxrows 3 width 1
+set tmargin at screen 0.140
+set bmargin at screen 0.010
+set key inside center center maxrows 4 Left reverse width 2 font ",12"
 set xrange [0:1]
 set yrange [0:1]
 plot NaN with lines lc rgb blue lw 1 dt (6,3) title "without the secondary mass", \
      NaN with lines lc rgb vermillion lw 1 dt (6,3,1.5,3) title "secondary mass locked", \
      NaN with lines lc rgb green lw 1.6 title "periodic, stable", \
-     NaN with lines lc rgb green lw 1.4 dt (2,2) title "periodic, unstable", \
+     NaN with lines lc rgb purple lw 1.6 dt (3,2) title "periodic, unstable", \
      NaN with points pt 9 ps 0.6 lc rgb black title "frequency rising", \
      NaN with points pt 11 ps 0.6 lc rgb orange title "frequency falling", \
      NaN with points pt 8 ps 0.6 lc rgb black title "not periodic, rising", \

@@ -26,5 +26,14 @@ set xlabel "frequency ω of the force"
 set ylabel "amplitude of the force f_0 / ν"
 set tics front
 set style fill solid 1 noborder
-unset key
-eval 'plot '.cells(there)
+set key outside center bottom maxrows 2 samplen 1.5
+# Boxes first, then the marks that tell them apart in grey.
+marks = "7 6 4 8 2 0 1"
+box(i) = sprintf('table index "%s" using 1:2:(width):(height) with boxxyerror fc rgb "%s" title columnheader(2)', word(regimes, i), word(colours, i))
+mark(i) = sprintf('table index "%s" using 1:2 with points pt %s ps 0.3 lc rgb "%s" notitle', \
+  word(regimes, i), word(marks, i), i == 1 ? "white" : "black")
+drawn = ""
+do for [i in there] { drawn = drawn.(strlen(drawn) ? ", " : "").box(i + 0) }
+do for [i in there] { drawn = drawn.", ".mark(i + 0) }
+eval 'plot '.drawn
+eval axes("ω", "f₀/ν", "")

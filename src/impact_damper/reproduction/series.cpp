@@ -213,9 +213,9 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureRes
   Table table;
   table.header = {"Figure " + figure.number + ": " + figure.title, "Parameters: " + subtitle(figure, sources, scene),
                   "Script: " + figure.script};
-  for (const std::string& scene : scenes_of(figure)) {
-    const Run& run = runs.at(scene).run;
-    table.header.push_back("Scene " + scene + ": " + scene_text(run.scene));
+  for (const std::string& name : scenes_of(figure)) {
+    const Run& run = runs.at(name).run;
+    table.header.push_back("Scene " + name + ": " + scene_text(run.scene));
     table.header.push_back("  engine: " + options_text(run.engine));
   }
   for (const std::string& name : figure.responses) {

@@ -74,22 +74,33 @@ void add_ways(Table& table, const std::string& panel, const SweepResponse& respo
             falling_open);
 }
 
-// Each piece of a branch that is stable, or not, from the last point of the piece before.
+// Each piece of a branch that is stable, or not, from the last point of the piece before. Of points closer than
+// what can be seen, which there are where an impact passes phase 0 of the force, the first is kept.
 void add_branches(Table& table, const std::string& panel, const OrbitsResponse& response) {
+  const double close = 1e-3 * (response.range.most() - response.range.least());
+  const auto is_close = [&](const OrbitPoint& a, const OrbitPoint& b) {
+    return std::abs(a.value - b.value) < close && std::abs(a.amplitude - b.amplitude) < 5e-3 * b.amplitude;
+  };
   Points stable, unstable;
   for (const OrbitBranch& branch : response.branches) {
-    const OrbitPoint* before = nullptr;
-    for (const OrbitPoint& point : branch.points) {
+    const OrbitPoint *before = nullptr, *kept = nullptr;
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+      const OrbitPoint& point = branch.points[i];
       if (point.impacts == ImpactCounts{}) {  // the empty box's motion
         before = nullptr;
         continue;
       }
       Points& piece = point.stable ? stable : unstable;
-      if (!before || before->stable != point.stable) {
+      const bool begins = !before || before->stable != point.stable,
+                 ends = i + 1 == branch.points.size() || branch.points[i + 1].stable != point.stable;
+      if (begins) {
         piece.interrupt();
         if (before) piece.add(before->value, before->amplitude);
       }
-      piece.add(point.value, point.amplitude);
+      if (begins || ends || !is_close(*kept, point)) {
+        piece.add(point.value, point.amplitude);
+        kept = &point;
+      }
       before = &point;
     }
   }
@@ -200,8 +211,9 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
       std::vector<double> force;
       for (std::size_t i = 0; i < amplitude.size(); ++i)
         force.push_back(force_at(amplitude[i], block.columns[1].values[i]));
-      const auto most = std::size_t(std::ranges::max_element(force) - force.begin());
-      for (std::size_t i = 0; i <= most; ++i) beyond.add(force[i], amplitude[i]);
+      // But for the first point: among the peaks that it is fitted to is the release.
+      const auto most = std::size_t(std::max_element(force.begin() + 1, force.end()) - force.begin());
+      for (std::size_t i = 1; i <= most; ++i) beyond.add(force[i], amplitude[i]);
       for (std::size_t i = most; i < force.size(); ++i) prediction.add(force[i], amplitude[i]);
     }
     if (block.name == "band-1") {
