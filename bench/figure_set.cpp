@@ -64,7 +64,7 @@ void make_all(const Work& work, Parts& parts, FigureSet& set) {
     ++set.scenes;
   }
   for (const Figure& figure : work.catalogue.figures) {
-    if (figure.table == TableKind::drawing) continue;
+    if (figure.table == TableKind::drawing || !figure.responses.empty()) continue;  // the paper's figures
     bool ensemble = false;
     for (const FigureCurve& curve : figure.curves) ensemble |= curve.ensemble > 0;
     const std::string kind =

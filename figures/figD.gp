@@ -5,13 +5,13 @@ eval require("falling", 10)
 eval canvas(720, 560)
 set logscale y
 set xrange [0:0.5]
-set yrange [0.03:20]
-set xlabel "amplitude of the force f_0 / ν"
+set yrange [0.03:14]
+set xlabel "amplitude f₀/ν of the force"
 set ylabel "largest steady amplitude A"
 set ytics ("0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "10" 10)
 do for [decade in "0.01 0.1 1"] { do for [k=2:9] { if (k != 3 && !(decade == 0.01 && k < 4)) { set ytics add ("" k * decade 1) } } }
 set mxtics 5
-set key top left
+set key top left Left reverse width 2
 band = !has("band") ? "" : 'table index "band" using 1:2 with filledcurves closed lc rgb sky title columnheader(2), '
 beyond = !has("beyond") ? "" : ', table index "beyond" using 1:2 with lines lc rgb blue lw 1.4 dt (3,3) title columnheader(2)'
 eval 'plot '.band.'table index "prediction" using 1:2 with lines lc rgb blue lw 1.8 title columnheader(2)'.beyond.\

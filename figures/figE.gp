@@ -23,10 +23,11 @@ do for [i=1:words(regimes)] {
 set xrange [low_x - width:high_x + width]
 set yrange [low_y - height:high_y + height]
 set xlabel "frequency ω of the force"
-set ylabel "amplitude of the force f_0 / ν"
+set ylabel "amplitude f₀/ν of the force"
 set tics front
 set style fill solid 1 noborder
-set key outside center bottom maxrows 2 samplen 1.5
+set bmargin at screen 0.200
+set key at screen 0.5,screen 0.055 center maxrows 2 samplen 1.5 Left reverse width 1 font ",12"
 # Boxes first, then the marks that tell them apart in grey.
 marks = "7 6 4 8 2 0 1"
 box(i) = sprintf('table index "%s" using 1:2:(width):(height) with boxxyerror fc rgb "%s" title columnheader(2)', word(regimes, i), word(colours, i))

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -121,12 +122,11 @@ const fs::path source = IMPACT_DAMPER_SOURCE;
 
 }  // namespace
 
-TEST_CASE("the project's catalogue has Figures 1 to 15, A and B, from eight distinct scenes") {
+TEST_CASE("the project's catalogue has Figures 1 to 15 and A to E, from eight distinct scenes") {
   const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
-  REQUIRE(catalogue.figures.size() == 17);
+  REQUIRE(catalogue.figures.size() == 20);
   for (int n = 1; n <= 15; ++n) CHECK(find_figure(catalogue, std::to_string(n)) != nullptr);
-  CHECK(find_figure(catalogue, "A") != nullptr);
-  CHECK(find_figure(catalogue, "B") != nullptr);
+  for (const char* letter : {"A", "B", "C", "D", "E"}) CHECK(find_figure(catalogue, letter) != nullptr);
   for (const Figure& figure : catalogue.figures) CHECK(fs::exists(source / "figures" / figure.script));
 
   // Those that measures compare with.
@@ -799,6 +799,200 @@ TEST_CASE(
     CHECK(column(band, 3)[i] == doctest::Approx(most).epsilon(1e-9));
   }
   CHECK(column(band, 1).size() > 100);
+}
+
+namespace {
+
+SteadyState steady_of(std::optional<std::int64_t> period, double amplitude) {
+  SteadyState state;
+  state.period = period;
+  state.means = SteadyMeans{.amplitude = amplitude};
+  return state;
+}
+SteadyState ended_state() {
+  SteadyState state;
+  state.stop_reason = StopReason::impact_budget;
+  return state;
+}
+
+const Scene driven{.mass_ratio = 0.02, .damping_ratio = 0.1, .force_amplitude = 0.006};
+
+using Rows = std::vector<std::vector<double>>;  // of columns
+void check_block(const Table& table, const std::string& name, const Rows& wanted,
+                 const std::vector<std::size_t>& gaps = {}) {
+  INFO(name);
+  const auto block = std::ranges::find(table.blocks, name, &TableBlock::name);
+  REQUIRE(block != table.blocks.end());
+  REQUIRE(block->columns.size() == wanted.size());
+  for (std::size_t c = 0; c < wanted.size(); ++c) CHECK(block->columns[c].values == wanted[c]);
+  CHECK(block->gaps == gaps);
+}
+bool has_block(const Table& table, const std::string& name) {
+  return std::ranges::find(table.blocks, name, &TableBlock::name) != table.blocks.end();
+}
+
+OrbitPoint point_at(double value, double amplitude, bool stable, ImpactCounts impacts = {1, 1}) {
+  OrbitPoint point;
+  point.value = value;
+  point.amplitude = amplitude;
+  point.stable = stable;
+  point.impacts = impacts;
+  return point;
+}
+
+}  // namespace
+
+TEST_CASE("a table of responses has the sweeps' motions, the branches' pieces and the linear oscillators") {
+  const Axis axis{&Scene::force_frequency, 0.5, 1, 2};
+  const SweepResponse sweep{
+      driven,
+      Exact{},
+      {},
+      axis,
+      {{{}, {steady_of(1, 0.3), steady_of({}, 0.4)}, {steady_of({}, 0.5), steady_of(2, 0.6)}},
+       {{}, {ended_state(), steady_of(1, 0.7)}, {steady_of(1, 0.8), ended_state()}}}};
+  OrbitsResponse orbits;
+  orbits.scene = driven;
+  orbits.range = {Parameter::force_frequency, 0.5, 1};
+  orbits.branches.resize(2);
+  orbits.branches[0].points = {point_at(0.5, 0.1, true), point_at(0.6, 0.2, true),
+                               point_at(0.6001, 0.2001, true),  // too close to be seen
+                               point_at(0.7, 0.25, true), point_at(0.65, 0.3, false)};
+  orbits.branches[1].points = {point_at(0.8, 0.01, false, {0, 0}), point_at(0.9, 0.4, true)};
+  SweepResponse other = sweep;
+  other.scene.force_amplitude = 0.004;
+  other.sweeps.resize(1);
+
+  Figure figure{.number = "C", .title = "t", .table = TableKind::response, .script = "figC.gp"};
+  figure.responses = {"a", "b", "c"};
+  const Table table = figure_table(
+      figure, {}, {{"a", {"a.json", sweep}}, {"b", {"b.json", orbits}}, {"c", {"c.json", other}}});
+  CHECK(table.header[1] == "Parameters: ν = 2 %, e = 0.6, ζ = 10 %");
+  check_block(table, "panel-1", {{0.3}, {0.3}});
+  check_block(table, "panel-2", {{0.2}, {0.2}});
+  check_block(table, "rising-1", {{0.5, 1}, {0.3, 0.7}});
+  check_block(table, "rising-open-1", {{1}, {0.4}});
+  check_block(table, "falling-1", {{1, 0.5}, {0.6, 0.8}});
+  check_block(table, "falling-open-1", {{0.5}, {0.5}});
+  check_block(table, "stable-1", {{0.5, 0.6, 0.7, 0.9}, {0.1, 0.2, 0.25, 0.4}}, {3});
+  check_block(table, "unstable-1", {{0.7, 0.65}, {0.25, 0.3}});
+  check_block(table, "rising-2", {{0.5}, {0.3}});
+  CHECK(!has_block(table, "stable-2"));
+  for (const auto& [name, mass] : {std::pair{"empty-1", 1.0}, {"locked-1", 1.02}}) {
+    const auto block = std::ranges::find(table.blocks, name, &TableBlock::name);
+    REQUIRE(block != table.blocks.end());
+    const std::vector<double>& frequency = block->columns[0].values;
+    REQUIRE(frequency == std::vector<double>{0.5, 0.625, 0.75, 0.875, 1});
+    for (std::size_t i = 0; i < frequency.size(); ++i) {
+      const std::complex<double> h(1 - mass * frequency[i] * frequency[i], 0.2 * frequency[i]);
+      CHECK(block->columns[1].values[i] == doctest::Approx(0.006 / std::abs(h)).epsilon(1e-13));
+    }
+  }
+  // Orbits of a force that no sweep is of, and a response of another damper.
+  figure.responses = {"b"};
+  CHECK_THROWS_AS(figure_table(figure, {}, {{"b", {"b.json", orbits}}}), InputError);
+  other.scene.restitution = 0.7;
+  figure.responses = {"a", "c"};
+  CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", sweep}}, {"c", {"c.json", other}}}),
+                       doctest::Contains("c.json: must have the same restitution"), InputError);
+}
+
+TEST_CASE("at resonance without damping a linear oscillator's curve is interrupted") {
+  Scene scene = driven;
+  scene.damping_ratio = 0;
+  const SweepResponse sweep{scene,
+                            Exact{},
+                            {},
+                            {&Scene::force_frequency, 0.5, 1.5, 3},
+                            {{{}, {steady_of(1, 1), steady_of(1, 1), steady_of(1, 1)}, {}}}};
+  Figure figure{.number = "C", .title = "t", .table = TableKind::response, .script = "figC.gp"};
+  figure.responses = {"a"};
+  const Table table = figure_table(figure, {}, {{"a", {"a.json", sweep}}});
+  const auto block = std::ranges::find(table.blocks, "empty-1", &TableBlock::name);
+  CHECK(block->columns[0].values == std::vector<double>{0.5, 0.625, 0.75, 0.875, 1.125, 1.25, 1.375, 1.5});
+  CHECK(block->gaps == std::vector<std::size_t>{4});
+}
+
+TEST_CASE(
+    "the table of the largest responses has the largest of sweeps along the same forces, and the decay's "
+    "prediction") {
+  const Axis axis{&Scene::force_amplitude, 0.002, 0.004, 2},
+      further{&Scene::force_amplitude, 0.006, 0.008, 2};
+  const auto sweep = [&](const Axis& along, double a, double b, double c, double d) {
+    Scene scene;  // zeta = 0, as the decay's
+    scene.force_amplitude = 0.001;
+    return SweepResponse{scene,
+                         Exact{},
+                         {},
+                         along,
+                         {{{}, {steady_of(1, a), steady_of({}, b)}, {steady_of(1, c), steady_of(1, d)}}}};
+  };
+  SweepResponse ended = sweep(further, 5, 6, 7, 8);
+  ended.sweeps[0].up[1] = ended_state();
+  Figure figure{.number = "D", .title = "t", .table = TableKind::largest_response, .script = "figD.gp"};
+  figure.curves = {{.scene = "decay", .ensemble = 2}};
+  figure.responses = {"a", "b", "c"};
+  // Straight envelopes: eta follows from the slope, A eta = -2 A'.
+  FigureRun decay{"decay.json", exponential_decay(0.01, 60)};
+  decay.run.scene.damping_ratio = 0;
+  decay.others.push_back(exponential_decay(0.012, 60));
+  const Table table = figure_table(figure, {{"decay", decay}},
+                                   {{"a", {"a.json", sweep(axis, 1, 2, 3, 4)}},
+                                    {"b", {"b.json", sweep(axis, 2, 1, 2, 5)}},
+                                    {"c", {"c.json", ended}}});
+  const double nu = decay.run.scene.mass_ratio;
+  check_block(table, "rising", {{0.002 / nu, 0.004 / nu, 0.006 / nu}, {2, 2, 5}});
+  check_block(table, "falling", {{0.002 / nu, 0.004 / nu, 0.006 / nu, 0.008 / nu}, {3, 5, 7, 8}});
+  // The loss factor of an exponential decay is 2 zeta, so the force falls with the amplitude: the largest is
+  // the first.
+  const auto prediction = std::ranges::find(table.blocks, "prediction", &TableBlock::name);
+  REQUIRE(prediction != table.blocks.end());
+  REQUIRE(prediction->columns[0].values.size() > 10);
+  for (std::size_t i = 0; i < prediction->columns[0].values.size(); ++i) {
+    const double amplitude = prediction->columns[1].values[i];
+    CHECK(prediction->columns[0].values[i] ==
+          doctest::Approx(std::sqrt(1 + nu) * amplitude * 0.02 / nu).epsilon(5e-3));
+  }
+  const auto band = std::ranges::find(table.blocks, "band", &TableBlock::name);
+  REQUIRE(band != table.blocks.end());
+  const std::vector<double>&force = band->columns[0].values, &at = band->columns[1].values;
+  REQUIRE(force.size() % 2 == 0);
+  for (std::size_t i = 0; i < force.size() / 2; ++i) {
+    CHECK(at[i] == at[at.size() - 1 - i]);
+    CHECK(force[i] == doctest::Approx(std::sqrt(1 + nu) * at[i] * 0.02 / nu).epsilon(1e-2));
+    CHECK(force[force.size() - 1 - i] ==
+          doctest::Approx(std::sqrt(1 + nu) * at[i] * 0.024 / nu).epsilon(1e-2));
+  }
+  const auto beyond = std::ranges::find(table.blocks, "beyond", &TableBlock::name);
+  REQUIRE(beyond != table.blocks.end());
+  CHECK(beyond->columns[1].values == std::vector<double>{prediction->columns[1].values[0]});
+  CHECK(beyond->columns[0].values == std::vector<double>{prediction->columns[0].values[0]});
+}
+
+TEST_CASE("the table of a map has each point under the motion that it ends in") {
+  BasinResponse map;
+  map.scene = driven;
+  map.first = {&Scene::force_frequency, 0.5, 1.5, 3};
+  map.second = {&Scene::force_amplitude, 0.02, 0.08, 3};
+  map.basin.attractors = {{false, 1, {1, 1}, true, 2},  {false, 1, {1, 1}, false, 1},
+                          {false, 1, {2, 2}, true, 1},  {false, 1, {3, 3}, false, 1},
+                          {false, 1, {1, 2}, false, 1}, {true, 1, {0, 0}, true, 1},
+                          {false, 2, {1, 1}, false, 1}};
+  map.basin.attractor = {0, 1, 2, 3, 4, 5, 6, undecided, 0};
+  Figure figure{.number = "E", .title = "t", .table = TableKind::response_map, .script = "figE.gp"};
+  figure.responses = {"a"};
+  const Table table = figure_table(figure, {}, {{"a", {"a.json", map}}});
+  check_block(table, "cell", {{0.5}, {1.5}});
+  check_block(table, "one-symmetric", {{0.5, 1.5}, {1, 4}});
+  check_block(table, "one-asymmetric", {{1}, {1}});
+  check_block(table, "each-2", {{1.5}, {1}});
+  check_block(table, "each-3", {{0.5}, {2.5}});
+  check_block(table, "other", {{1, 0.5}, {2.5, 4}});
+  check_block(table, "idle", {{1.5}, {2.5}});
+  check_block(table, "irregular", {{1}, {4}});
+  // Another kind of response cannot be drawn so.
+  CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", SweepResponse{driven}}}}),
+                       doctest::Contains("a.json: must be a basin, got sweep"), InputError);
 }
 
 }  // namespace impact_damper

@@ -82,8 +82,11 @@ def where(section: str) -> str:
     return re.sub(r"docs/mathematics\.md, (?:chapter )?([\d.]+)", r'<a href="#mathematics-\1">mathematics, \1</a>', escape(section))
 
 
-def scenes_of(figure: dict) -> list:
-    return list(dict.fromkeys(curve["scene"] for curve in figure.get("curves", [])))
+def scenes_of(values: Values, number: str) -> list:
+    """The scenes of its curves, and of the responses that it draws."""
+    figure, responses = values.figures[number], {each["name"]: each for each in values.catalogue["responses"]}
+    return list(dict.fromkeys([curve["scene"] for curve in figure.get("curves", [])] +
+                              [responses[name]["scene"] for name in figure.get("responses", [])]))
 
 
 def table_of(values: Values, number: str):
@@ -121,7 +124,7 @@ def parameters_of(values: Values, number: str) -> str:
 
 def made_from(values: Values, number: str) -> str:
     """What a figure is made from, as a sentence."""
-    figure, scenes = values.figures[number], scenes_of(values.figures[number])
+    figure, scenes = values.figures[number], scenes_of(values, number)
     table = table_of(values, number)
     parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + [f"table {table.name}" if table else ""]
     return (f"{parameters_of(values, number)}. " if parameters_of(values, number) else "") + \

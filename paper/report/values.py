@@ -147,6 +147,8 @@ class Values:
             changed = {**each.get("set", {}), **each.get("engine", {})}
             self.known |= {f"scene.{each['name']}.{what}": number for what, number in changed.items()
                            if isinstance(number, (int, float))}
+        for each in self.catalogue["responses"]:
+            self.known |= {f"scene.{each['name']}.{what}": number for what, number in each.get("set", {}).items()}
         for number, figure in self.figures.items():
             stem = stem_of(figure)
             table = build / f"series/exact/{stem}.dat"

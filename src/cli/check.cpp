@@ -96,7 +96,8 @@ Command check_command() {
   command.takes_more = true;
   command.footer =
       "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
-      "itself, and a run with the scene that it is named after, if --scenes has one. data/schema/ holds JSON Schemas of all these\n"
+      "itself, and a run with the scene that it is named after, if --scenes has one. data/schema/ holds JSON "
+      "Schemas of all these\n"
       "kinds.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"

@@ -369,7 +369,8 @@ std::string swept(const Request& asked) {
   if (!asked.quiet) warn_of(sweeps, asked.sweep);
   return asked.format == Format::csv
              ? sweep_csv(scene, axis, sweeps, asked.units)
-             : response_text(SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps}, asked.file.scales);
+             : response_text(SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps},
+                             asked.file.scales);
 }
 
 std::string mapped(const Request& asked) {

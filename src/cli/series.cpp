@@ -59,8 +59,8 @@ void for_figure(const Figure& figure, Read read) {
   }
 }
 
-// A figure's runs, and the members of the ensembles that it shows. All are of one engine, whatever figure they
-// were read for.
+// A figure's runs, and the members of the ensembles that it shows. All are of one engine, whatever figure
+// they were read for.
 void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
   for (const std::string& scene : scenes_of(figure)) {
     const fs::path file = folders.file_of(scene);

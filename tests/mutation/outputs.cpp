@@ -95,7 +95,12 @@ void list_tables(const std::filesystem::path& source) {
       if (curve.ensemble == 2 && drawn.others.empty())
         drawn.others.push_back(simulate(ensemble_of(drawn.run.scene)[1], Exact{}, {}));
     }
-    const Table table = figure_table(figure, runs);
+    FigureResponses responses;
+    for (const std::string& name : figure.responses) {
+      const CatalogueResponse& asked = *find_response(catalogue.responses, name);
+      responses[name] = {name, found_for(asked_for(asked, runs.at(asked.scene).run.scene), {})};
+    }
+    const Table table = figure_table(figure, runs, responses);
     for (const TableBlock& block : table.blocks)
       for (std::size_t c = 1; c <= block.columns.size(); ++c) {
         const std::string column = planted::family(block.name) + '.' + std::to_string(c);

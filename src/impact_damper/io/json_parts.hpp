@@ -18,8 +18,8 @@ void write_units(JsonWriter& out, const SiUnits& units);
 // "provenance", the last field, left open: sealed() ends it.
 void write_provenance(JsonWriter& out);
 
-// The engine of a response: every option of it must be there, null where it follows from each of the runs that
-// the response was made with. Absent if there are problems.
+// The engine of a response: every option of it must be there, null where it follows from each of the runs
+// that the response was made with. Absent if there are problems.
 std::optional<Engine> read_engine_of_response(ObjectReader& engine);
 // "units", if there: six numbers of three scales, which must go together.
 void check_units(ObjectReader& root);

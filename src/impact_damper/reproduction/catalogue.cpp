@@ -200,8 +200,7 @@ void read_responses(ObjectReader& item, Figure& figure, const Catalogue& catalog
       item.reject("responses", i, "must be " + std::string(wanted) + ", got " + in_quotes(response->name));
     const double force = changed(response->set, Scene{}).force_amplitude;
     const bool is_sweep = std::holds_alternative<SweepResponse>(response->asked);
-    if (figure.table == TableKind::response && !is_sweep &&
-        std::ranges::find(forces, force) == forces.end())
+    if (figure.table == TableKind::response && !is_sweep && std::ranges::find(forces, force) == forces.end())
       item.reject("responses", i, "must come after a sweep with its force, got " + in_quotes(response->name));
     if (is_sweep) forces.push_back(force);
   }
@@ -227,8 +226,8 @@ void read_names(ObjectReader& item, const Catalogue& catalogue, std::string& nam
   if (item.required("name", name, a_name) &&
       (find_run(catalogue.runs, name) || find_response(catalogue.responses, name) ||
        find_scene(catalogue, name)))
-    item.reject("name", "must be given once among scenes, runs and responses, got the string " +
-                            in_quotes(name));
+    item.reject("name",
+                "must be given once among scenes, runs and responses, got the string " + in_quotes(name));
   if (item.required("scene", scene, a_name) && !find_scene(catalogue, scene))
     item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(scene));
 }
@@ -330,10 +329,10 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
                     in_quotes(figure.script));
   }
   item.optional("claims", figure.claims, a_name, 100);
-  if (!item.required("table", figure.table,
-                     {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
-                      TableKind::response, TableKind::largest_response, TableKind::response_map,
-                      TableKind::drawing})) {
+  if (!item.required(
+          "table", figure.table,
+          {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase, TableKind::response,
+           TableKind::largest_response, TableKind::response_map, TableKind::drawing})) {
     item.keys();  // which others are known depends on the table
     return figure;
   }

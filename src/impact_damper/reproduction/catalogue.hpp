@@ -35,11 +35,11 @@ namespace impact_damper {
 
 // The kinds of table that a figure can draw.
 enum class TableKind {
-  motion,       // both walls and the secondary mass over time, in one window of the history
-  decay,        // peak amplitude over time
-  loss_factor,  // one of the ordinates of the averaged loss factor over amplitude
-  phase,        // impact phase and stuck intervals over amplitude
-  response,     // amplitude over the frequency of a force, with the branches of periodic motions
+  motion,            // both walls and the secondary mass over time, in one window of the history
+  decay,             // peak amplitude over time
+  loss_factor,       // one of the ordinates of the averaged loss factor over amplitude
+  phase,             // impact phase and stuck intervals over amplitude
+  response,          // amplitude over the frequency of a force, with the branches of periodic motions
   largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
   response_map,      // which steady motion there is, over frequency and amplitude of a force
   drawing,           // none: a schematic that no run stands behind

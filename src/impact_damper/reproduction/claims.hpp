@@ -50,9 +50,9 @@ std::string_view name_of(Source source);
 // How our value is found: a name out of measures.hpp, the runs it looks at and its numbers.
 struct MeasureCall {
   std::string name;
-  std::vector<std::string> scenes;     // and further runs of the catalogue, by their names
-  std::vector<std::string> responses;  // of the catalogue, by their names
+  std::vector<std::string> scenes;  // and further runs of the catalogue, by their names
   std::map<std::string, double> numbers;
+  std::vector<std::string> responses{};  // of the catalogue, by their names
 };
 
 struct Claim {

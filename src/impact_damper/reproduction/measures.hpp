@@ -64,8 +64,8 @@ class Runs {
   const Run& file(const std::string& name);
   // From now on this run stands for the scene's file, and further runs of the scene start from its scene.
   void put(const std::string& scene, Run run);
-  // From now on this response is the one of that name, until another run stands for its scene: then it is made
-  // anew for that run's scene.
+  // From now on this response is the one of that name, until another run stands for its scene: then it is
+  // made anew for that run's scene.
   void put(const std::string& name, Response response) { found_.insert_or_assign(name, std::move(response)); }
   // The run file, then the other members; throws what read_members() throws.
   const std::vector<Run>& ensemble(const std::string& name);

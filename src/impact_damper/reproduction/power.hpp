@@ -56,8 +56,8 @@ struct PowerRow {
   std::optional<Direction> up = {}, down = {};
 };
 
-// The runs that verdicts rest on, by scene, the further ones made of these, the steady motions by name and how
-// they are asked for, how an ensemble of each run is made, and claims to be left out.
+// The runs that verdicts rest on, by scene, the further ones made of these, the steady motions by name and
+// how they are asked for, how an ensemble of each run is made, and claims to be left out.
 struct PowerInput {
   std::vector<Claim> claims;
   std::map<std::string, Run> runs;

@@ -113,9 +113,9 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
     const std::string number = std::to_string(member);
     const fs::path file = member_file(run_file, member);
     Run& run = others[static_cast<std::size_t>(i)];
-    run =
-        read_or_name_command(read_run, file, "impact-damper run --members " + std::to_string(options.members) + " -o " +
-                                       run_file.string() + ", with the other options that made that run");
+    run = read_or_name_command(read_run, file,
+                               "impact-damper run --members " + std::to_string(options.members) + " -o " +
+                                   run_file.string() + ", with the other options that made that run");
     require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
                   "member " + number + " of the ensemble of " + run_file.string());
     if (run.engine != first.engine)
@@ -130,8 +130,8 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
 
 Run SceneRuns::read(const std::string& scene) const {
   const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
-  Run run =
-      read_or_name_command(read_run, file, "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
+  Run run = read_or_name_command(read_run, file,
+                                 "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                      ", with --record, --engine and --members as needed");
   require_scene(run, file, scene_file);
   require_consistent(run, file);
@@ -141,9 +141,10 @@ Run SceneRuns::read(const std::string& scene) const {
 Run SceneRuns::read(const CatalogueRun& wanted) const {
   const Run of_scene = read(wanted.scene);
   const fs::path file = file_of(wanted.name);
-  Run run = read_or_name_command(
-      read_run, file, "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() + " -o " +
-                file.string() + ", with what run " + wanted.name + " of the catalogue sets, and --members");
+  Run run = read_or_name_command(read_run, file,
+                                 "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() +
+                                     " -o " + file.string() + ", with what run " + wanted.name +
+                                     " of the catalogue sets, and --members");
   require_scene(run, file, changed_scene(wanted, of_scene.scene), "run " + wanted.name + " of the catalogue");
   if (wanted.engine)
     require_engine(run, file, *wanted.engine, "run " + wanted.name + " of the catalogue");

@@ -211,8 +211,8 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureRes
   check_comparable(figure, found, scene);
 
   Table table;
-  table.header = {"Figure " + figure.number + ": " + figure.title, "Parameters: " + subtitle(figure, sources, scene),
-                  "Script: " + figure.script};
+  table.header = {"Figure " + figure.number + ": " + figure.title,
+                  "Parameters: " + subtitle(figure, sources, scene), "Script: " + figure.script};
   for (const std::string& name : scenes_of(figure)) {
     const Run& run = runs.at(name).run;
     table.header.push_back("Scene " + name + ": " + scene_text(run.scene));

@@ -48,7 +48,7 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //                amplitude), the linear oscillators; "rising-1", "falling-1" what is periodic of the sweeps
 //                and "rising-open-1", "falling-open-1" what is not; "stable-1", "unstable-1" the branches of
 //                orbits that are struck. A block of no rows is not there
-//   largest_response  "prediction" (f0 / nu, amplitude) of the curve's decay, (M14.6), "beyond" its largest
+//   largest_response  "prediction" (f0 / nu, amplitude) of the curve's decay, (M14.7), "beyond" its largest
 //                force, "band" the outline of the ensemble's; "rising", "falling" the largest amplitude of
 //                sweeps along the same forces
 //   response_map "cell" (width, height); "one-symmetric", "one-asymmetric", "each-2", "each-3", "other",

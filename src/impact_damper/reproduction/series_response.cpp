@@ -55,33 +55,32 @@ void add_linear_block(Table& table, const std::string& name, const std::string& 
   add_block(table, name, of_frequency, legend, of_amplitude, points);
 }
 
-void add_ways(Table& table, const std::string& panel, const SweepResponse& response) {
-  Points rising, falling, rising_open, falling_open;
+// What is drawn of the steady motions under one force, from sweeps and from branches.
+struct Panel {
+  double force = 0;
+  Points rising, falling, rising_open, falling_open, stable, unstable;
+};
+
+void add_ways(Panel& panel, const SweepResponse& response) {
   for (const Sweep& sweep : response.sweeps) {
     for (std::size_t i = 0; i < sweep.up.size(); ++i) {
       const double value = response.axis.value(std::int64_t(i));
       const auto add = [&](const SteadyState& s, Points& periodic, Points& open) {
         if (s.means) (s.period ? periodic : open).add(value, s.means->amplitude);
       };
-      add(sweep.up[i], rising, rising_open);
-      add(sweep.down[i], falling, falling_open);
+      add(sweep.up[i], panel.rising, panel.rising_open);
+      add(sweep.down[i], panel.falling, panel.falling_open);
     }
   }
-  add_block(table, "rising-" + panel, of_frequency, "frequency rising", of_amplitude, rising);
-  add_block(table, "falling-" + panel, of_frequency, "frequency falling", of_amplitude, falling);
-  add_block(table, "rising-open-" + panel, of_frequency, "not periodic, rising", of_amplitude, rising_open);
-  add_block(table, "falling-open-" + panel, of_frequency, "not periodic, falling", of_amplitude,
-            falling_open);
 }
 
-// Each piece of a branch that is stable, or not, from the last point of the piece before. Of points closer than
-// what can be seen, which there are where an impact passes phase 0 of the force, the first is kept.
-void add_branches(Table& table, const std::string& panel, const OrbitsResponse& response) {
+// Each piece of a branch that is stable, or not, from the last point of the piece before. Of points closer
+// than what can be seen, which there are where an impact passes phase 0 of the force, the first is kept.
+void add_branches(Panel& panel, const OrbitsResponse& response) {
   const double close = 1e-3 * (response.range.most() - response.range.least());
   const auto is_close = [&](const OrbitPoint& a, const OrbitPoint& b) {
     return std::abs(a.value - b.value) < close && std::abs(a.amplitude - b.amplitude) < 5e-3 * b.amplitude;
   };
-  Points stable, unstable;
   for (const OrbitBranch& branch : response.branches) {
     const OrbitPoint *before = nullptr, *kept = nullptr;
     for (std::size_t i = 0; i < branch.points.size(); ++i) {
@@ -90,7 +89,7 @@ void add_branches(Table& table, const std::string& panel, const OrbitsResponse& 
         before = nullptr;
         continue;
       }
-      Points& piece = point.stable ? stable : unstable;
+      Points& piece = point.stable ? panel.stable : panel.unstable;
       const bool begins = !before || before->stable != point.stable,
                  ends = i + 1 == branch.points.size() || branch.points[i + 1].stable != point.stable;
       if (begins) {
@@ -104,8 +103,6 @@ void add_branches(Table& table, const std::string& panel, const OrbitsResponse& 
       before = &point;
     }
   }
-  add_block(table, "stable-" + panel, of_frequency, "periodic, stable", of_amplitude, stable);
-  add_block(table, "unstable-" + panel, of_frequency, "periodic, unstable", of_amplitude, unstable);
 }
 
 InputError unusable(const Figure& figure, const FigureResponse& source, const std::string& why) {
@@ -118,8 +115,7 @@ const Kind& as(const Figure& figure, const FigureResponse& source) {
   const auto* const response = std::get_if<Kind>(&source.response);
   if (!response)
     throw unusable(figure, source,
-                   "must be a " + std::string(Kind::kind) + ", got " +
-                       std::string(kind_of(source.response)));
+                   "must be a " + std::string(Kind::kind) + ", got " + std::string(kind_of(source.response)));
   return *response;
 }
 
@@ -149,27 +145,42 @@ const Scene& scene_of(const Response& response) {
 
 void add_response_blocks(const Figure& figure, const std::vector<const FigureResponse*>& sources,
                          Table& table) {
-  std::vector<double> forces;  // of the panels
+  std::vector<Panel> panels;
   for (const FigureResponse* source : sources) {
     const Scene& scene = scene_of(source->response);
-    const auto known = std::ranges::find(forces, scene.force_amplitude);
-    const std::string panel = std::to_string(known - forces.begin() + 1);
-    if (known == forces.end()) {
-      forces.push_back(scene.force_amplitude);
-      const SweepResponse& sweep = as<SweepResponse>(figure, *source);
-      const double force = scene.force_amplitude / scene.mass_ratio;
-      table.blocks.push_back({.name = "panel-" + panel,
-                              .columns = {{"force", of_force, {force}},
-                                          {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
-      add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
-      add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
-                       1 + scene.mass_ratio);
+    const auto known = std::ranges::find(panels, scene.force_amplitude, &Panel::force);
+    if (const auto* const orbits = std::get_if<OrbitsResponse>(&source->response);
+        orbits && known != panels.end()) {
+      add_branches(*known, *orbits);
+      continue;
     }
-    if (const auto* const orbits = std::get_if<OrbitsResponse>(&source->response)) {
-      add_branches(table, panel, *orbits);
-    } else {
-      add_ways(table, panel, as<SweepResponse>(figure, *source));
+    const SweepResponse& sweep = as<SweepResponse>(figure, *source);
+    if (known != panels.end()) {
+      add_ways(*known, sweep);
+      continue;
     }
+    panels.emplace_back().force = scene.force_amplitude;
+    add_ways(panels.back(), sweep);
+    const std::string panel = std::to_string(panels.size());
+    const double force = scene.force_amplitude / scene.mass_ratio;
+    table.blocks.push_back({.name = "panel-" + panel,
+                            .columns = {{"force", of_force, {force}},
+                                        {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
+    add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
+    add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
+                     1 + scene.mass_ratio);
+  }
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const Panel& panel = panels[i];
+    const auto add = [&](const char* name, const char* legend, const Points& points) {
+      add_block(table, name + std::to_string(i + 1), of_frequency, legend, of_amplitude, points);
+    };
+    add("rising-", "frequency rising", panel.rising);
+    add("falling-", "frequency falling", panel.falling);
+    add("rising-open-", "not periodic, rising", panel.rising_open);
+    add("falling-open-", "not periodic, falling", panel.falling_open);
+    add("stable-", "periodic, stable", panel.stable);
+    add("unstable-", "periodic, unstable", panel.unstable);
   }
 }
 
@@ -196,7 +207,7 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
     }
   }
 
-  // A eta of the decay, and of its ensemble: (M14.6) turns them into forces.
+  // A eta of the decay, and of its ensemble: (M14.7) turns them into forces.
   Figure of_loss = figure;
   of_loss.ordinate = LossOrdinate::eta;
   Table losses;
@@ -224,11 +235,11 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
     }
   }
   const std::string members = std::to_string(figure.curves[0].ensemble);
-  add_block(table, "band", of_force, members + " releases", of_amplitude, band,
+  add_block(table, "band", of_force, "the same of " + members + " releases", of_amplitude, band,
             {"the outline of what the ensemble of scene " + figure.curves[0].scene + " spans"});
   add_block(table, "prediction", of_force, "predicted by the free decay", of_amplitude, prediction,
             {"sqrt(1 + nu) A eta(A) / nu of scene " + figure.curves[0].scene + ", below its largest"});
-  add_block(table, "beyond", of_force, "the same beyond its largest force", of_amplitude, beyond);
+  add_block(table, "beyond", of_force, "beyond the largest force", of_amplitude, beyond);
   add_block(table, "rising", of_force, "largest found, force rising", of_amplitude, rising,
             {"the largest of all frequencies"});
   add_block(table, "falling", of_force, "largest found, force falling", of_amplitude, falling,

@@ -46,9 +46,7 @@ template <auto member>
 RowColumn<SteadyState> mean(std::string_view name, const Quantity& quantity, NumberRange range) {
   return always<SteadyState>(
       name, quantity, range,
-      [](const SteadyState& s) {
-        return s.means ? std::optional((*s.means).*member) : std::nullopt;
-      },
+      [](const SteadyState& s) { return s.means ? std::optional((*s.means).*member) : std::nullopt; },
       [](SteadyState& s, double value) {
         if (s.means) (*s.means).*member = value;
       });
@@ -58,9 +56,7 @@ RowColumn<SteadyState> measured(std::string_view name, const Quantity& quantity,
   return always<SteadyState>(
       name, quantity, range,
       [](const SteadyState& s) { return s.means ? std::optional(double(s.*member)) : std::nullopt; },
-      [](SteadyState& s, double value) {
-        s.*member = std::remove_reference_t<decltype(s.*member)>(value);
-      });
+      [](SteadyState& s, double value) { s.*member = std::remove_reference_t<decltype(s.*member)>(value); });
 }
 template <std::size_t wall>
 RowColumn<SteadyState> impacts_on(std::string_view name) {
@@ -75,9 +71,7 @@ template <auto member>
 RowColumn<OrbitPoint> of_point(std::string_view name, const Quantity& quantity, NumberRange range) {
   return always<OrbitPoint>(
       name, quantity, range, [](const OrbitPoint& p) { return std::optional(double(p.*member)); },
-      [](OrbitPoint& p, double value) {
-        p.*member = std::remove_reference_t<decltype(p.*member)>(value);
-      });
+      [](OrbitPoint& p, double value) { p.*member = std::remove_reference_t<decltype(p.*member)>(value); });
 }
 template <auto member>
 RowColumn<OrbitPoint> distance_of(std::string_view name, const Quantity& quantity) {

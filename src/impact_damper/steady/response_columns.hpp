@@ -19,8 +19,8 @@ struct Quantity {
 };
 Quantity quantity_of(const double Scene::*number);
 
-// A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent where
-// the number belongs to them.
+// A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent
+// where the number belongs to them.
 template <class Row>
 struct RowColumn {
   std::string_view name;

@@ -69,9 +69,9 @@ class Examination {
                 number_text(means.power));
     require(s.amplitude_scatter == 0 && s.power_scatter == 0, way + "amplitude_scatter" + row,
             "must be 0, as that of the power: the motion is periodic");
-    require(std::abs(s.state.x) <= means.amplitude + allowed, way + "x" + row,
-            "must not exceed the amplitude, " + number_text(means.amplitude) + ", got " +
-                number_text(s.state.x));
+    require(
+        std::abs(s.state.x) <= means.amplitude + allowed, way + "x" + row,
+        "must not exceed the amplitude, " + number_text(means.amplitude) + ", got " + number_text(s.state.x));
     examine_symmetry(way + "symmetric" + row, s.symmetric, *s.period, s.impacts);
   }
 
@@ -138,8 +138,9 @@ class Examination {
     const LyapunovExponents& found = response.found;
     const bool is_complete = found.stop_reason == StopReason::time;
     const std::size_t count = found.exponents.size();
-    require(is_complete ? count == 4 || count == 2 : count == 0, "/exponents",
-            "must be " + std::string(is_complete ? "four or two" : "none") + ", got " + std::to_string(count));
+    require(
+        is_complete ? count == 4 || count == 2 : count == 0, "/exponents",
+        "must be " + std::string(is_complete ? "four or two" : "none") + ", got " + std::to_string(count));
     require(found.standard_errors.size() == count, "/standard_errors",
             "must be as many as there are exponents, got " + std::to_string(found.standard_errors.size()));
   }
@@ -149,8 +150,6 @@ class Examination {
 
 }  // namespace
 
-std::vector<Problem> inconsistencies_of(const Response& response) {
-  return Examination().examined(response);
-}
+std::vector<Problem> inconsistencies_of(const Response& response) { return Examination().examined(response); }
 
 }  // namespace impact_damper

@@ -72,8 +72,8 @@ void write_axis(JsonWriter& out, const Axis& axis) {
 }
 
 void write_range(JsonWriter& out, const ParameterRange& range) {
-  out.object("range", Layout::one_line, "number", name_of(range.parameter), "from", range.from,
-             "to", range.to);
+  out.object("range", Layout::one_line, "number", name_of(range.parameter), "from", range.from, "to",
+             range.to);
 }
 
 std::optional<double> index_of(const std::optional<std::int64_t>& index) {

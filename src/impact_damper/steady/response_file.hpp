@@ -44,15 +44,15 @@ struct BasinResponse {
 
 // A point of a branch.
 struct OrbitPoint {
-  double value = 0;                     // of the number that varies
-  std::int64_t period = 1;              // in periods of the force
+  double value = 0;         // of the number that varies
+  std::int64_t period = 1;  // in periods of the force
   bool symmetric = false, stable = false;
-  ImpactCounts impacts{};               // in one period of its own
-  std::int64_t sticking = 0;            // in one period of its own
-  double amplitude = 0;                 // largest |x|
+  ImpactCounts impacts{};     // in one period of its own
+  std::int64_t sticking = 0;  // in one period of its own
+  double amplitude = 0;       // largest |x|
   Multipliers multipliers{};
   std::optional<double> slowest_impact, nearest_miss;
-  State<double> state{};                // at phase 0 of the force
+  State<double> state{};  // at phase 0 of the force
 };
 struct OrbitEvent {
   BranchEventKind kind = BranchEventKind::fold;
@@ -110,20 +110,22 @@ std::string response_text(const Response& response, const std::optional<Scales>&
 std::vector<std::pair<std::string, std::string>> asked_of(const Response& response);
 
 // The response in a file or a text. The check is strict: every key is known and none missing, columns are
-// equally long, whatever follows from what was asked for (the axis's values, the linear amplitudes) is so, and
-// the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a line for
+// equally long, whatever follows from what was asked for (the axis's values, the linear amplitudes) is so,
+// and the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a line for
 // everything that is not valid; these lines begin with the name of the file, or with `name`.
 Response read_response(const std::filesystem::path& file);
 Response parse_response(const std::string& name, const std::string& text);
 
-// The contradictions between the numbers of a response that are found without simulating, Problem::field being
-// the JSON pointer into its file. The rules:
+// The contradictions between the numbers of a response that are found without simulating, Problem::field
+// being the JSON pointer into its file. The rules:
 //   sweep: the force's power is that of the fundamental and, of a periodic motion, equals what damper and
 //     impacts take out; a symmetric motion strikes both walls equally often; as many periods are measured as
 //     the rule says; only a motion that is not periodic scatters; |x| does not exceed the amplitude;
-//   basin: no motion without impacts but the idle one; a symmetric one strikes both walls equally often; those
+//   basin: no motion without impacts but the idle one; a symmetric one strikes both walls equally often;
+//   those
 //     that most points end in come first;
-//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both walls equally often; |x| does not exceed the amplitude; branches and events
+//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both walls
+//   equally often; |x| does not exceed the amplitude; branches and events
 //     refer to what is there;
 //   lyapunov: as many exponents as errors, none unless the run was completed.
 std::vector<Problem> inconsistencies_of(const Response& response);

@@ -39,7 +39,8 @@ std::optional<std::int64_t> read_index(ObjectReader& object, std::string_view ke
   return index && *index >= 0 && *index < 1e15 ? std::optional(std::int64_t(*index)) : std::nullopt;
 }
 
-// The rows that the columns of `object` make. What `row` has before it is read tells which numbers are absent.
+// The rows that the columns of `object` make. What `row` has before it is read tells which numbers are
+// absent.
 template <class Row>
 void read_columns(ObjectReader& object, std::span<const RowColumn<Row>> table, std::vector<Row>& rows) {
   for (const RowColumn<Row>& column : table) {
@@ -99,8 +100,8 @@ void check_column(ObjectReader& object, std::string_view name,
   std::vector<std::optional<double>> given;
   if (!object.required(name, given)) return;
   if (given.size() != wanted.size()) {
-    object.reject(name, "must hold " + std::to_string(wanted.size()) + " numbers, got " +
-                            std::to_string(given.size()));
+    object.reject(
+        name, "must hold " + std::to_string(wanted.size()) + " numbers, got " + std::to_string(given.size()));
     return;
   }
   const auto text_of = [](const std::optional<double>& number) {
@@ -157,8 +158,7 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
   std::vector<Axis> axes;
   for (ObjectReader& item : items)
     if (const std::optional<Axis> axis = read_axis(item)) axes.push_back(*axis);
-  if (items.size() != 2)
-    root.reject("axes", "must be two axes, got " + std::to_string(items.size()));
+  if (items.size() != 2) root.reject("axes", "must be two axes, got " + std::to_string(items.size()));
   const bool both = axes.size() == 2;
   if (both) {
     response.first = axes[0];
@@ -169,7 +169,8 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
   }
   Basin& basin = response.basin;
   const bool with_states = both && is_initial_value(axes[0].number) && is_initial_value(axes[1].number);
-  for (ObjectReader item : root.required_objects("attractors", std::size_t(most_rows))) {
+  std::vector<ObjectReader> entries = root.required_objects("attractors", std::size_t(most_rows));
+  for (ObjectReader& item : entries) {
     Attractor& each = basin.attractors.emplace_back();
     item.required("idle", each.idle);
     item.required("period", each.period, within(1, 64));
@@ -195,14 +196,13 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
     if (index != undecided) ++points[std::size_t(index)];
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (basin.attractors[i].points != points[i])
-      root.reject("attractors/" + std::to_string(i) + "/points",
-                  "must be " + std::to_string(points[i]) + ", as many as end in it, got " +
-                      std::to_string(basin.attractors[i].points));
+      entries[i].reject("points", "must be " + std::to_string(points[i]) + ", as many as end in it, got " +
+                                      std::to_string(basin.attractors[i].points));
   }
   if (const auto count = std::ranges::count(attractor, std::int64_t(undecided));
       open_is_read && count != open)
-    root.reject("undecided", "must be " + std::to_string(count) + ", as many as the points that are -1, got " +
-                                 std::to_string(open));
+    root.reject("undecided", "must be " + std::to_string(count) +
+                                 ", as many as the points that are -1, got " + std::to_string(open));
 }
 
 OrbitBranch read_branch(ObjectReader& item) {
@@ -335,7 +335,8 @@ std::optional<Axis> read_axis(ObjectReader& object) {
   all_read = object.required("count", axis.count, within(2, double(most_values))) && all_read;
   if (!name || !all_read) return std::nullopt;
   if (!(axis.from < axis.to)) {
-    object.reject("to", "must be above \"from\", " + number_text(axis.from) + ", got " + number_text(axis.to));
+    object.reject("to",
+                  "must be above \"from\", " + number_text(axis.from) + ", got " + number_text(axis.to));
     return std::nullopt;
   }
   axis.number = scene_fields[*name].member;
@@ -344,8 +345,8 @@ std::optional<Axis> read_axis(ObjectReader& object) {
 
 std::optional<ParameterRange> read_range(ObjectReader& object) {
   ParameterRange range;
-  bool all_read = object.required("number", range.parameter,
-                                  {Parameter::force_frequency, Parameter::force_amplitude});
+  bool all_read =
+      object.required("number", range.parameter, {Parameter::force_frequency, Parameter::force_amplitude});
   all_read = object.required("from", range.from, above(0)) && all_read;
   all_read = object.required("to", range.to, above(0)) && all_read;
   if (all_read && range.from == range.to)

@@ -1,0 +1,288 @@
+// Response files read back as they were written, and what is altered in them is noticed: by the digest, and
+// where that is made anew by what follows from the rest.
+#include "impact_damper/steady/response_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/run_file.hpp"
+
+namespace {
+
+using namespace impact_damper;
+
+// Its release strikes at once.
+Scene active_scene() {
+  return {.mass_ratio = 0.1,
+          .damping_ratio = 0.01,
+          .x0 = 1,
+          .y0 = 0.5,
+          .force_amplitude = 0.05,
+          .force_frequency = 0.9};
+}
+
+SweepResponse asked_sweep() {
+  return {active_scene(),
+          Restitution{},
+          {.tolerance = 1e-8, .max_periods = 300, .mean_periods = 40},
+          {&Scene::force_frequency, 0.85, 1.15, 4},
+          {{{1, 0, 0.5, 0}, {}, {}}, {{-0.5, 0.1, 0.2, 0}, {}, {}}}};
+}
+SweepResponse ended_sweep() {
+  SweepResponse ended = asked_sweep();
+  Exact few;
+  few.budget.max_impacts = 3;
+  ended.engine = few;
+  return ended;
+}
+BasinResponse asked_basin() {
+  return {active_scene(),         Restitution{},          {.steady = {.tolerance = 1e-6, .max_periods = 200}},
+          {&Scene::x0, -1, 1, 5}, {&Scene::v0, -1, 1, 4}, {}};
+}
+BasinResponse asked_map() {
+  BasinResponse map = asked_basin();
+  map.scene.force_amplitude = 0;  // never: both axes change it
+  map.first = {&Scene::force_amplitude, 0.02, 0.2, 3};
+  map.second = {&Scene::force_frequency, 0.8, 1.2, 3};
+  return map;
+}
+OrbitsResponse asked_orbits() {
+  OrbitsResponse orbits{.scene = active_scene(),
+                        .engine = Restitution{},
+                        .rule = {},
+                        .range = {Parameter::force_amplitude, 0.05, 0.12},
+                        .starts = {{{}, 0, {}, {6, 0, 0, 0}}},
+                        .complete = true,
+                        .branches = {}};
+  orbits.scene.mass_ratio = 0.02;
+  orbits.scene.damping_ratio = 0.02;
+  return orbits;
+}
+LyapunovResponse asked_exponents() { return {active_scene(), Restitution{}, 40, 10, {}}; }
+
+// With something else in it, and the digest that belongs to it.
+std::string altered(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE_MESSAGE(at != std::string::npos, from);
+  text.replace(at, from.size(), to);
+  return sealed(text.substr(0, text.rfind(seal_begin)));
+}
+// The first number of the first column of that name replaced by what `change` makes of it.
+std::string changed(const std::string& text, const std::string& column, double (*change)(double)) {
+  const std::size_t at = text.find('"' + column + "\": [") + column.size() + 5;
+  const std::size_t end = text.find_first_of(",]", at);
+  const std::string whole =
+      text.substr(0, at) + number_text(change(std::stod(text.substr(at, end - at)))) + text.substr(end);
+  return sealed(whole.substr(0, whole.rfind(seal_begin)));
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    const Response response = parse_response("f", text);
+    const std::vector<Problem> problems = inconsistencies_of(response);
+    return problems.empty() ? "" : problems[0].field + ' ' + problems[0].message;
+  } catch (const InputError& error) {
+    return error.problems()[0];
+  }
+}
+
+TEST_CASE("a response of each kind reads back as it was written, byte by byte") {
+  for (const Response& asked :
+       {Response(asked_sweep()), Response(ended_sweep()), Response(asked_basin()), Response(asked_map()),
+        Response(asked_orbits()), Response(asked_exponents())}) {
+    const Response found = found_for(asked, 1);
+    const std::string text = response_text(found);
+    const Response read = parse_response("f", text);
+    CHECK(response_text(read) == text);
+    CHECK(kind_of(read) == kind_of(asked));
+    CHECK(asked_of(read) == asked_of(asked));
+    CHECK(complaint(text).empty());
+  }
+}
+
+TEST_CASE("what is read has the numbers that were found") {
+  const auto found = std::get<SweepResponse>(found_for(asked_sweep(), 1));
+  const auto read = std::get<SweepResponse>(parse_response("f", response_text(found)));
+  REQUIRE(read.sweeps.size() == 2);
+  CHECK(read.scene == found.scene);
+  CHECK(read.engine == found.engine);
+  CHECK(read.axis.number == &Scene::force_frequency);
+  int periodic = 0, open = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const SteadyState &a = found.sweeps[1].down[i], &b = read.sweeps[1].down[i];
+    CHECK(a.period == b.period);
+    CHECK(a.transient_periods == b.transient_periods);
+    CHECK(a.impacts == b.impacts);
+    CHECK(a.symmetric == b.symmetric);
+    CHECK(a.contraction == b.contraction);
+    CHECK(a.measured_periods == b.measured_periods);
+    REQUIRE(a.means);
+    REQUIRE(b.means);
+    CHECK(a.means->amplitude == b.means->amplitude);
+    CHECK(a.means->lag_deg == b.means->lag_deg);
+    CHECK(a.means->impact_power == b.means->impact_power);
+    CHECK(a.power_scatter == b.power_scatter);
+    CHECK(a.state.w == b.state.w);
+    periodic += a.period.has_value();
+    open += !a.period;
+  }
+  CHECK(periodic > 0);
+  CHECK(open > 0);
+
+  const auto ended = std::get<SweepResponse>(found_for(ended_sweep(), 1));
+  const auto read_ended = std::get<SweepResponse>(parse_response("f", response_text(ended)));
+  CHECK(read_ended.sweeps[0].up[0].stop_reason == StopReason::impact_budget);
+  CHECK(!read_ended.sweeps[0].up[0].means);
+
+  const auto basin = std::get<BasinResponse>(found_for(asked_basin(), 1));
+  const auto read_basin = std::get<BasinResponse>(parse_response("f", response_text(basin)));
+  CHECK(read_basin.basin.attractor == basin.basin.attractor);
+  REQUIRE(!basin.basin.attractors.empty());
+  CHECK(read_basin.basin.attractors[0].states[0].v == basin.basin.attractors[0].states[0].v);
+
+  const auto orbits = std::get<OrbitsResponse>(found_for(asked_orbits(), 1));
+  const auto read_orbits = std::get<OrbitsResponse>(parse_response("f", response_text(orbits)));
+  REQUIRE(orbits.branches.size() > 1);
+  CHECK(read_orbits.range.parameter == Parameter::force_amplitude);
+  const OrbitBranch &a = orbits.branches[1], &b = read_orbits.branches[1];
+  CHECK(a.origin == b.origin);
+  CHECK(a.event == b.event);
+  CHECK(a.end == b.end);
+  REQUIRE(a.points.size() == b.points.size());
+  CHECK(a.points.back().value == b.points.back().value);
+  CHECK(a.points.back().multipliers[3].im == b.points.back().multipliers[3].im);
+  CHECK(a.points.back().nearest_miss == b.points.back().nearest_miss);
+  CHECK(a.points.back().stable == b.points.back().stable);
+  REQUIRE(!b.events.empty());
+  CHECK(a.events[0].kind == b.events[0].kind);
+  CHECK(a.events[0].value == b.events[0].value);
+}
+
+TEST_CASE("what is asked for differs in each part that is another") {
+  const SweepResponse asked = asked_sweep();
+  const auto differences = [&](const SweepResponse& other) {
+    const auto a = asked_of(asked), b = asked_of(other);
+    std::string found;
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i)
+      if (i >= a.size() || i >= b.size() || a[i] != b[i]) found += (i < a.size() ? a : b)[i].first + ' ';
+    return found;
+  };
+  CHECK(differences(asked).empty());
+  SweepResponse other = asked;
+  other.scene.restitution = 0.7;
+  CHECK(differences(other) == "/scene/restitution ");
+  other = asked;
+  other.engine = Exact{};
+  CHECK(differences(other) == "/engine ");
+  other = asked;
+  other.rule.mean_periods = 41;
+  CHECK(differences(other) == "/rule ");
+  other = asked;
+  other.axis.count = 5;
+  CHECK(differences(other) == "/axis ");
+  other = asked;
+  other.sweeps[1].start.w = 1;
+  CHECK(differences(other) == "/sweeps/1/start ");
+  other = asked;
+  other.sweeps.pop_back();
+  CHECK(differences(other) == "/sweeps/1/start ");
+  OrbitsResponse orbits = asked_orbits();
+  orbits.range.to = 0.13;
+  const auto a = asked_of(asked_orbits()), b = asked_of(orbits);
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK((a[i] == b[i]) == (a[i].first != "/range"));
+}
+
+TEST_CASE("an altered response is noticed by its digest, and then by what follows from the rest") {
+  const std::string text = response_text(found_for(asked_sweep(), 1));
+  std::string other = text;
+  other.replace(other.find("\"x\": 1,"), 7, "\"x\": 2,");
+  CHECK(complaint(other).find("/provenance/sha256: must be the digest") != std::string::npos);
+
+  const auto says = [](const std::string& altered_text, const std::string& wanted) {
+    const std::string said = complaint(altered_text);
+    INFO(said);
+    CHECK(said.find(wanted) != std::string::npos);
+  };
+  says(altered(text, "\"kind\": \"sweep\"", "\"kind\": \"swept\""), "/kind: must be one of");
+  says(altered(text, "\"restitution\", \"acc", "\"cem\", \"acc"), "/engine");
+  says(altered(text, "\"mass_ratio\": 0.1", "\"mass_ratio\": 0.2"), "/locked_amplitude/0: must be");
+  says(altered(text, "\"damping_ratio\": 0.01", "\"damping_ratio\": 0.011"), "/empty_amplitude/0: must be");
+  says(altered(text, "\"mean_periods\": 40", "\"mean_periods\": 41"), "measured_periods");
+  says(altered(text, "\"count\": 4", "\"count\": 5"), "/values: must hold 5 numbers, got 4");
+  says(altered(text, "\"longest_period\": 16", "\"longest_period\": 0"), "/rule/longest_period: must be");
+  says(altered(text, "\"transient_periods\": [", "\"transient_periods\": [1,"),
+       "must be as long as the first");
+  says(altered(text, "\"amplitude\": [", "\"amplitude\": [null,"), "must be as long as the first");
+  says(altered(text, "\"down\": {", "\"don\": {"), "/sweeps/0/down: missing");
+  says(altered(text, "\"end\": [\"", "\"end\": [\"quasi"), "/sweeps/0/up/end/0: must be one of");
+
+  const auto percent = [](double value) { return value * 1.01; };
+  for (const char* column : {"power", "fundamental", "lag_deg"})
+    says(changed(text, column, percent), "/sweeps/0/up/power/0");
+  says(changed(text, "measured_periods", [](double value) { return value + 1; }), "measured_periods/0");
+  says(changed(text, "symmetric", [](double) { return 0.5; }), "must be a whole number");
+  says(changed(text, "transient_periods", [](double) { return 301.0; }), "must be <= max_periods");
+  says(changed(text, "viscous_power", [](double value) { return -value; }), "viscous_power/0");
+  says(altered(text, "not_periodic", "periodic"), "must be a number, got null");
+}
+
+TEST_CASE("the powers of a periodic motion balance, and no other may scatter") {
+  auto response = std::get<SweepResponse>(found_for(asked_sweep(), 1));
+  SteadyState* periodic = nullptr;
+  for (SteadyState& each : response.sweeps[0].up)
+    if (each.period) periodic = &each;
+  REQUIRE(periodic);
+  const SteadyState before = *periodic;
+  const auto said = [&] {
+    const std::vector<Problem> problems = inconsistencies_of(response);
+    *periodic = before;
+    return problems.empty() ? std::string() : problems[0].field + ' ' + problems[0].message;
+  };
+  CHECK(said().empty());
+  periodic->means->impact_power *= 1.01;
+  CHECK(said().find("what damper and impacts take out") != std::string::npos);
+  periodic->amplitude_scatter = 1e-9;
+  CHECK(said().find("amplitude_scatter") != std::string::npos);
+  periodic->means->amplitude = std::abs(before.state.x) * 0.99;
+  CHECK(said().find("must not exceed the amplitude") != std::string::npos);
+  periodic->symmetric = true;
+  periodic->impacts[0] = before.impacts[1] + 1;
+  CHECK(said().find("/symmetric") != std::string::npos);
+  periodic->period.reset();
+  periodic->measured_periods = response.rule.mean_periods;
+  CHECK(said().find("/contraction") != std::string::npos);
+}
+
+TEST_CASE("counts of a map and the points of orbits agree with the rest") {
+  const auto says = [](const std::string& altered_text, const std::string& wanted) {
+    const std::string said = complaint(altered_text);
+    INFO(said);
+    CHECK(said.find(wanted) != std::string::npos);
+  };
+  const Response map = found_for(asked_basin(), 1);
+  const std::string text = response_text(map);
+  const auto& attractors = std::get<BasinResponse>(map).basin.attractors;
+  REQUIRE(attractors.size() >= 2);
+  const std::string points = "\"points\": " + std::to_string(attractors[0].points);
+  says(altered(text, points, points + "0"), "/attractors/0/points: must be");
+  says(altered(text, "\"undecided\": ", "\"undecided\": 1"), "/undecided: must be");
+  says(altered(text, "\"attractor\": [", "\"attractor\": [99,"), "/attractor/0: must be a whole number");
+  says(altered(text, "\"attractor\": [", "\"attractor\": [0,"), "/attractor: must hold 20 points");
+  says(altered(text, "\"idle\": false", "\"idle\": true"), "/attractors/0/idle");
+
+  const std::string orbits = response_text(found_for(asked_orbits(), 1));
+  says(changed(orbits, "stable", [](double value) { return 1 - value; }), "/branches/0/stable/0");
+  says(changed(orbits, "multiplier_1_re", [](double) { return 0.0; }), "/branches/0/");
+  says(changed(orbits, "amplitude", [](double value) { return value / 100; }), "/branches/0/x/0");
+  says(changed(orbits, "impacts_left", [](double value) { return value + 1; }), "/branches/0/symmetric/0");
+  says(altered(orbits, "\"branch\": 0", "\"branch\": 99"), "/starts/0/branch");
+  says(altered(orbits, "\"event\": 0", "\"event\": 99"), "/event must be the index");
+
+  const std::string exponents = response_text(found_for(asked_exponents(), 1));
+  says(altered(exponents, "\"stop_reason\": \"time\"", "\"stop_reason\": \"step_budget\""), "/exponents");
+  says(altered(exponents, "\"standard_errors\": [", "\"standard_errors\": [1,"), "/standard_errors");
+}
+
+}  // namespace
