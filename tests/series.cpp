@@ -827,9 +827,6 @@ void check_block(const Table& table, const std::string& name, const Rows& wanted
   for (std::size_t c = 0; c < wanted.size(); ++c) CHECK(block->columns[c].values == wanted[c]);
   CHECK(block->gaps == gaps);
 }
-bool has_block(const Table& table, const std::string& name) {
-  return std::ranges::find(table.blocks, name, &TableBlock::name) != table.blocks.end();
-}
 
 OrbitPoint point_at(double value, double amplitude, bool stable, ImpactCounts impacts = {1, 1}) {
   OrbitPoint point;
@@ -918,14 +915,15 @@ TEST_CASE(
     "prediction") {
   const Axis axis{&Scene::force_amplitude, 0.002, 0.004, 2},
       further{&Scene::force_amplitude, 0.006, 0.008, 2};
-  const auto sweep = [&](const Axis& along, double a, double b, double c, double d) {
+  const auto sweep = [&](const Axis& along, double up1, double up2, double down1, double down2) {
     Scene scene;  // zeta = 0, as the decay's
     scene.force_amplitude = 0.001;
-    return SweepResponse{scene,
-                         Exact{},
-                         {},
-                         along,
-                         {{{}, {steady_of(1, a), steady_of({}, b)}, {steady_of(1, c), steady_of(1, d)}}}};
+    return SweepResponse{
+        scene,
+        Exact{},
+        {},
+        along,
+        {{{}, {steady_of(1, up1), steady_of({}, up2)}, {steady_of(1, down1), steady_of(1, down2)}}}};
   };
   SweepResponse ended = sweep(further, 5, 6, 7, 8);
   ended.sweeps[0].up[1] = ended_state();

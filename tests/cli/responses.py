@@ -316,6 +316,60 @@ for row, own in zip(in_si, plain):
     for column in ("exponent", "standard_error"):
         demand(math.isclose(float(row[f"{column}_per_s"]), float(own[column]) / time, rel_tol=1e-12), f"rates_si.csv: {row}")
 
+
+
+# All of them are valid to `check`, whose complaint about an altered one names it and the place.
+def check(*words):
+    return subprocess.run([str(program), "check", "response", *words], cwd=folder, capture_output=True, text=True)
+
+
+files = sorted(file.name for file in folder.glob("*.json") if '"impact-damper/response/1"' in file.read_text())
+demand(len(files) > 15, f"check: only {files}")
+done = check(*files)
+demand((done.returncode, done.stderr) == (0, "") and done.stdout == "".join(f"{name}: valid\n" for name in files), f"check: {done}")
+text = (folder / "exact.json").read_text()
+altered = text.replace('"mass_ratio": 0.1', '"mass_ratio": 0.11', 1)
+(folder / "altered.json").write_text(altered)
+done = check("altered.json")
+demand(done.returncode == 3 and "altered.json: /locked_amplitude/0: must be " in done.stderr, f"check: {done}")
+altered = text.replace('"end": ["periodic"', '"end": ["step_budget"', 1) if '"end": ["periodic"' in text else \
+    text.replace('"end": ["not_periodic"', '"end": ["step_budget"', 1)
+(folder / "altered.json").write_text(altered)
+done = check("altered.json")
+demand(done.returncode == 3 and "must be null, got " in done.stderr, f"check: {done}")
+
+# Tables and verdicts use a response only if it is the catalogue's.
+scenes = source / "data/scenes"
+(folder / "runs").mkdir()
+(folder / "catalogue.json").write_text(json.dumps({
+    "schema": "impact-damper/catalogue/1", "scenes": [{"scene": "nu2-e06", "record": ["half_cycles"]}],
+    "responses": [{"name": "low", "scene": "nu2-e06", "set": {"x0": 0, "force_amplitude": 0.008}, "kind": "sweep",
+                   "rule": {"max_periods": 100, "mean_periods": 10},
+                   "vary": [{"number": "force_frequency", "from": 0.95, "to": 1.01, "count": 3}]}],
+    "figures": [{"figure": "1", "title": "t", "table": "response", "responses": ["low"], "script": "fig01.gp"}]}))
+
+
+def series(code, says):
+    done = subprocess.run([str(program), "series", "--catalogue", "catalogue.json", "--runs", "runs", "--scenes", str(scenes)],
+                          cwd=folder, capture_output=True, text=True)
+    demand(done.returncode == code and says in done.stderr + done.stdout, f"series: not {says}: {done}")
+
+
+asked = ["--scene", scenes / "nu2-e06.json", "--quiet", "--x0", 0, "--force-amplitude", 0.008, "--max-periods", 100, "--mean-periods", 10]
+varied = ["--vary", "force_frequency=0.95:1.01:3"]
+series(5, "figure 1: runs/low.json: cannot be read: No such file or directory; made by: impact-damper response sweep --scene ")
+respond("runs/low.json", "sweep", *asked, *varied)
+series(0, "# empty-1")
+for words, says in ((["--restitution", 0.7], "/scene/restitution: must be 0.6 as in response low of the catalogue, got 0.7"),
+                    (["--engine", "restitution"], "/engine: must be "), (["--tolerance", 1e-6], "/rule: must be "),
+                    (["--start=1:0:0:0"], "/sweeps/1/start: must be none as in response low of the catalogue, got ")):
+    respond("runs/low.json", "sweep", *asked, *varied, *words)
+    series(3, f"figure 1: runs/low.json: {says}")
+respond("runs/low.json", "sweep", *asked, "--vary", "force_frequency=0.95:1.02:3")
+series(3, "/axis: must be ")
+respond("runs/low.json", "orbits", *asked[:-2], "--vary", "force_frequency=0.95:1.01")
+series(3, "/kind: must be sweep as in response low of the catalogue, got orbits")
+
 # Interrupted: one line that says what is left, and no file, also none half written.
 process = subprocess.Popen([str(program), "response", "basin", *map(str, forced), "--vary", "x0=-1:1:2000", "--vary",
                             "v0=-1:1:2000", "-o", "long.json"], cwd=folder, stderr=subprocess.PIPE, text=True)

@@ -173,7 +173,7 @@ def main():
                    stdout=subprocess.DEVNULL)
     claimed = str(other_tree / "build" / "runs" / "exact")
     tables = sorted(file.name for file in (tree / "build" / "series" / "exact").glob("*.dat"))
-    loss = next(file for file in reversed(tables) if file != "fig15.dat")
+    loss = next(file for file in reversed(tables) if file[3:5].isdigit() and file != "fig15.dat")
     number = str(int(loss[3:5]))
     script = str(tree / "figures" / loss.replace(".dat", ".gp"))
 

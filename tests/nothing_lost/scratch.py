@@ -62,7 +62,7 @@ def make_tree(folder, program, figures=None):
         catalogue = json.loads(file.read_text())
         catalogue["figures"] = [each for each in catalogue["figures"] if each["figure"] in figures]
         drawn = {curve["scene"] for each in catalogue["figures"] for curve in each.get("curves", [])}
-        for runs in ("scenes", "runs"):
+        for runs in ("scenes", "runs", "responses"):
             catalogue[runs] = [each for each in catalogue[runs] if each["scene"] in drawn]
         file.write_text(json.dumps(catalogue))
     (folder / "build" / "src").mkdir(parents=True)

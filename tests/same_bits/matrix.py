@@ -16,7 +16,7 @@ What is crossed with what:
                         all programs, once in each of the four surroundings, once in all at once without FMA and AVX2
 
 Each time all three engines run all scenes of the catalogue and those in scenes/ (forced and damped, the component
-element method also with its other ways to step), and all tables are made. The heap is filled with rubbish where the
+element method also with its other ways to step), the catalogue's responses are found, and all tables are made. The heap is filled with rubbish where the
 surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
@@ -148,6 +148,17 @@ def small_catalogues(work: Path) -> dict:
     return paths
 
 
+def respond(entry: dict) -> list:
+    """What `response` is asked for by an entry of the catalogue."""
+    words = [entry["kind"], "--scene", f"data/scenes/{entry['scene']}.json", "--quiet"]
+    for name, value in [*entry.get("set", {}).items(), *entry.get("rule", {}).items()]:
+        words.append(f"--{name.replace('_', '-')}={value}")
+    for axis in entry["vary"]:
+        count = f":{axis['count']}" if "count" in axis else ""
+        words.append(f"--vary={axis['number']}={axis['from']}:{axis['to']}{count}")
+    return words + [f"--start={s['x']}:{s['v']}:{s['y']}:{s['w']}" for s in entry.get("start", [])]
+
+
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
     """All runs and tables of one setting, below `results`."""
     shutil.rmtree(results, ignore_errors=True)
@@ -177,6 +188,12 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
             for number, way in enumerate(WAYS[engine]):
                 call([program, "run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
                       *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json"], **options)
+        for entry in catalogue["responses"]:  # with an engine of their own
+            file = runs / f"{entry['name']}.json"
+            if engine == ENGINES[0]:
+                call([program, "response", *respond(entry), "-o", file], **options)
+            else:
+                shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
         call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",
               "-o", tables], **options)
 
