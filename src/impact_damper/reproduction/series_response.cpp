@@ -62,15 +62,14 @@ struct Panel {
 };
 
 void add_ways(Panel& panel, const SweepResponse& response) {
+  const auto add = [&](const std::vector<SteadyState>& way, Points& periodic, Points& open) {
+    for (std::size_t i = 0; i < way.size(); ++i)
+      if (way[i].means)
+        (way[i].period ? periodic : open).add(response.axis.value(std::int64_t(i)), way[i].means->amplitude);
+  };
   for (const Sweep& sweep : response.sweeps) {
-    for (std::size_t i = 0; i < sweep.up.size(); ++i) {
-      const double value = response.axis.value(std::int64_t(i));
-      const auto add = [&](const SteadyState& s, Points& periodic, Points& open) {
-        if (s.means) (s.period ? periodic : open).add(value, s.means->amplitude);
-      };
-      add(sweep.up[i], panel.rising, panel.rising_open);
-      add(sweep.down[i], panel.falling, panel.falling_open);
-    }
+    add(sweep.up, panel.rising, panel.rising_open);
+    add(sweep.down, panel.falling, panel.falling_open);
   }
 }
 
