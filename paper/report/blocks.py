@@ -200,7 +200,7 @@ class Html(Form):
         rows = "".join(
             f'<tr><td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
             f'<td data-head="ours">{self.words(ours)}</td><td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
-            for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
+            for _, statement, paper, ours, verdict in rows_of(values, figure.get("claims", [])))
         table = table_of(values, number)
         # The page's script makes a link of it.
         data = f'<script type="text/csv" data-file="{table.name}">\n{shortened(table.read_text(encoding="utf-8"))}</script>' if table else ""
@@ -263,7 +263,7 @@ class Latex(Form):
         values, figure = self.values, self.values.figures[number]
         picture = values.build / f"figures/{stem_of(figure)}.pdf"
         rows = "\n\n".join(rf"\claim{{{self.words(statement)}}}{{{self.words(paper)}}}{{{self.words(ours)}}}{{{verdict}}}"
-                           for _, statement, paper, ours, verdict in rows_of(values, figure["claims"]))
+                           for _, statement, paper, ours, verdict in rows_of(values, figure.get("claims", [])))
         made = made_from(values, number).replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
         return raw("latex", rf"\begin{{paperfigure}}{{{number}}}{{{picture}}}") + f"\n\n**Figure {number}.** {caption}\n\n" + \
             raw("latex", rf"\madefrom{{{made}}}" + f"\n\n{rows}\n" + r"\end{paperfigure}")
