@@ -13,6 +13,9 @@ import shutil
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from asked import respond  # noqa: E402
+
 program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
@@ -35,7 +38,7 @@ def gnuplot_blocks(text):
 
 def wanted_rows(kind, name, headings, rows):
     """(block, curve, x, y, low, high) of each row, in the order of the file."""
-    ends = {**ENDS, **(ENDS_OF_PHASES if kind == "phase" else {})}
+    ends = {} if kind == "largest_response" else {**ENDS, **(ENDS_OF_PHASES if kind == "phase" else {})}
     family = re.sub(r"-\d+$", "", name)
     role = {column: ends.get((family, column), "y") for column in range(2, len(headings) + 1)}
     low, high = ([c for c in role if role[c] == end] for end in ("low", "high"))
@@ -58,6 +61,8 @@ for scene in catalogue["scenes"]:
     windows = [f"--history-below={w['amplitude']}:{w['length']}:{w['count']}" for w in scene.get("history_below", [])]
     run("run", "--scene", source / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]), *windows,
         "--members", str(catalogue["members"]), "-o", f"runs/{scene['scene']}.json")
+for entry in catalogue["responses"]:
+    run(*respond(entry, source / "data/scenes"), "-o", f"runs/{entry['name']}.json")
 series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", "runs",
           "-o", "tables"]
 run(*series)

@@ -33,10 +33,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from differences import compare_files
-
 SOURCE = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from asked import respond  # noqa: E402
+from differences import compare_files  # noqa: E402
+
 VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 COMPILERS = ["g++", "clang++"]
 # Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
@@ -148,17 +150,6 @@ def small_catalogues(work: Path) -> dict:
     return paths
 
 
-def respond(entry: dict) -> list:
-    """What `response` is asked for by an entry of the catalogue."""
-    words = [entry["kind"], "--scene", f"data/scenes/{entry['scene']}.json", "--quiet"]
-    for name, value in [*entry.get("set", {}).items(), *entry.get("rule", {}).items()]:
-        words.append(f"--{name.replace('_', '-')}={value}")
-    for axis in entry["vary"]:
-        count = f":{axis['count']}" if "count" in axis else ""
-        words.append(f"--vary={axis['number']}={axis['from']}:{axis['to']}{count}")
-    return words + [f"--start={s['x']}:{s['v']}:{s['y']}:{s['w']}" for s in entry.get("start", [])]
-
-
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
     """All runs and tables of one setting, below `results`."""
     shutil.rmtree(results, ignore_errors=True)
@@ -191,7 +182,7 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
         for entry in catalogue["responses"]:  # with an engine of their own
             file = runs / f"{entry['name']}.json"
             if engine == ENGINES[0]:
-                call([program, "response", *respond(entry), "-o", file], **options)
+                call([program, *respond(entry, "data/scenes"), "-o", file], **options)
             else:
                 shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
         call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",

@@ -147,9 +147,8 @@ TEST_CASE("no map depends on the number of threads") {
     for (const std::size_t i : {0, 1}) {
       const BasinRule rule{.steady = {.tolerance = 1e-6, .max_periods = 100}};
       const Axis& second = i == 0 ? v0 : f0;
-      const std::string text =
-          response_text(BasinResponse{scene, rigid, rule, x0, second,
-                                      basin(scene, rigid, x0, second, rule, threads, no_progress)});
+      const std::string text = response_text(BasinResponse{
+          scene, rigid, rule, x0, second, basin(scene, rigid, x0, second, rule, threads, no_progress)});
       if (maps[i].empty()) maps[i] = text;
       CHECK(text == maps[i]);
     }
