@@ -173,7 +173,8 @@ TEST_CASE("a predicted impact's departure from the straight line is its series a
     const double rate = oscillator.rate();
     const double fourth = oscillator.bound(x[4], x[5]);
     const auto found = predict_impact<double>(
-        u, departure_of(u), 2 / rate, [&](double u1, double t) { return omits_nothing(u1, fourth, rate, t); },
+        u, Departure<double, 5>{departure_of(u)}, 2 / rate,
+        [&](double u1, double t) { return omits_nothing(u1, fourth, rate, t); },
         [&](double t, double size) { return !(rate * t > 0.05 && size * 32 < t); });
     if (!found.exact) continue;
     ++exact;

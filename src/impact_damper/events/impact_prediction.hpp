@@ -100,9 +100,9 @@ struct Prediction {
   bool exact;
   Shifted<Real> gained;
 };
-template <class Real, std::size_t N, std::size_t pairs, class Enough, class GoOn>
+template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 [[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
-                                                              const PairedSeries<Real, pairs>& departure,
+                                                              const Departure& departure,
                                                               const Real& most, Enough&& enough,
                                                               GoOn&& go_on) {
   SearchCounter<Real>::prediction();
@@ -111,13 +111,13 @@ template <class Real, std::size_t N, std::size_t pairs, class Enough, class GoOn
   Real t = guess.time;
   const Real gap = (across ? Real(1) : Real(0)) - u[0];
   // First by few terms, as a parabola may be far off.
-  const SeriesAt<Real> rough = sum_of_first<Real, 3>(departure, t);
+  const SeriesAt<Real> rough = departure.template at<3>(t);
   const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
-  bool near = pairs <= 5;
+  bool near = Departure::all <= 5;
   for (int i = 0;; ++i) {
-    const SeriesAt<Real> at = near ? sum<Real>(departure, t) : sum_of_first<Real, 5>(departure, t);
+    const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const bool bends_little = absolute(bend) < Real(0.0625);

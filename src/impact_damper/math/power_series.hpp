@@ -23,16 +23,18 @@ struct SeriesAt {
 //     u' = O + 2s (E' + s O'),      u'' = 2 (E' + 3s O') + 4z (E'' + s O'').
 template <class Real, std::size_t pairs>
 using PairedSeries = std::array<SimdPair<Real>, pairs>;
-template <class Real, std::size_t summed, std::size_t pairs>
+template <class Real, std::size_t summed, bool without_line = false, std::size_t pairs>
 [[gnu::always_inline]] inline SeriesAt<Real> sum_of_first(const PairedSeries<Real, pairs>& c, const Real& s) {
   static_assert(summed >= 3 && summed <= pairs);
   const Real z = s * s;
   SimdPair<Real> second = c[summed - 1], before = c[summed - 2] + second * z;  // E''/2 and O''/2
-  SimdPair<Real> value = c[summed - 3] + before * z, first = before + second * z;
+  SimdPair<Real> value = before * z, first = before + second * z;
+  if (!(without_line && summed == 3)) value = c[summed - 3] + value;
   for (std::size_t n = summed - 3; n > 0; --n) {
     second = first + second * z;
     first = value + first * z;
-    value = c[n - 1] + value * z;
+    value = value * z;
+    if (!(without_line && n == 1)) value = c[n - 1] + value;
   }
   return {value[0] + s * value[1], value[1] + 2 * s * (first[0] + s * first[1]),
           2 * (first[0] + 3 * s * first[1]) + 8 * z * (second[0] + s * second[1])};
@@ -41,6 +43,21 @@ template <class Real, std::size_t pairs>
 [[gnu::always_inline]] inline SeriesAt<Real> sum(const PairedSeries<Real, pairs>& c, const Real& s) {
   return sum_of_first<Real, pairs>(c, s);
 }
+
+// What a series departs from its straight line c_0 + c_1 s by, times `times`: without these two terms.
+template <class Real, std::size_t pairs>
+struct Departure {
+  const PairedSeries<Real, pairs>& series;
+  Real times{1};
+  static constexpr std::size_t all = pairs;
+
+  // By the first `summed` pairs.
+  template <std::size_t summed = pairs>
+  [[gnu::always_inline]] SeriesAt<Real> at(const Real& s) const {
+    const SeriesAt<Real> by = sum_of_first<Real, summed, true>(series, s);
+    return {times * by.u, times * by.u1, times * by.u2};
+  }
+};
 
 // 1/n, by which the series are summed: a division is worth four products.
 template <class Real>
@@ -66,7 +83,7 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
 }();
 
 // The series about one instant of what a motion departs from a straight line by: from its second derivative
-// on.
+// on. (The first pair is zero.)
 template <class Real>
 [[gnu::always_inline]] inline PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
   const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;

@@ -27,6 +27,10 @@ class DrivenSeriesTable {
       each = power;
       power *= frequency;
     }
+    fast_ = frequency * frequency > 4 * oscillator.b();
+    const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
+    const Real h2 = re * re + im * im;
+    steady_ = {re / h2, im / h2, 1 / square_root(h2)};
     columns_[0] = column(oscillator, frequency, {1, 0}, {0, 0});
     columns_[1] = column(oscillator, frequency, {0, 1}, {0, 0});
     columns_[2] = column(oscillator, frequency, {0, 0}, {1, 0});
@@ -38,6 +42,14 @@ class DrivenSeriesTable {
   // By how much at most, per unit of time, a force of amplitude 1 increases the size (M3.4) of the n-th
   // derivative; n < 8.
   const Real& growth(std::size_t n) const { return growth_[n]; }
+  // Whether the force is so fast that the steady state may give the smaller bound (M3.4).
+  bool fast() const { return fast_; }
+  // The steady state that a force of amplitude 1 keeps up: in phase with the force and a quarter of a period
+  // behind it, and its amplitude.
+  struct Steady {
+    Real in_phase, behind, amplitude;
+  };
+  const Steady& steady() const { return steady_; }
   DrivenTerms<Real> terms_of(const Real& x, const Real& v, const Real& in_phase, const Real& across) const {
     DrivenTerms<Real> c;
     for (std::size_t n = 0; n < c.size(); ++n)
@@ -71,6 +83,8 @@ class DrivenSeriesTable {
   }
 
   Real reach_;
+  bool fast_;
+  Steady steady_;
   std::array<Real, 8> growth_;
   std::array<DrivenTerms<Real>, 4> columns_;
 };
@@ -78,18 +92,10 @@ class DrivenSeriesTable {
 template <class Real>
 class DrivenSeries {
  public:
-  explicit DrivenSeries(const DrivenTerms<Real>& terms) : c_(terms), departure_(terms) {
-    departure_[0] = SimdPair<Real>{Real(0), Real(0)};
-  }
+  explicit DrivenSeries(const DrivenTerms<Real>& terms) : c_(terms) {}
 
-  // By how much x and v differ from x0 + v0 t and v0, and x''.
-  SeriesAt<Real> departure(const Real& t) const { return sum<Real>(departure_, t); }
-  // The series of x - x0 - v0 t, multiplied by `times`.
-  DrivenTerms<Real> departure_times(const Real& times) const {
-    DrivenTerms<Real> all;
-    for (std::size_t n = 0; n < all.size(); ++n) all[n] = departure_[n] * times;
-    return all;
-  }
+  // By how much x and v differ from x0 + v0 t and v0, and x''; the first multiplied by `times`.
+  Departure<Real, driven_terms / 2> departure(const Real& times = Real(1)) const { return {c_, times}; }
   // The n-th derivative of x at the beginning, n < 8.
   Real derivative(std::size_t n) const {
     constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
@@ -114,7 +120,7 @@ class DrivenSeries {
   }
 
  private:
-  DrivenTerms<Real> c_, departure_;
+  DrivenTerms<Real> c_;
 };
 
 }  // namespace impact_damper

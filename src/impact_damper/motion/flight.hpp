@@ -230,7 +230,7 @@ class Flight {
     const bool late = !(guess_by_parabola(u, reach).time < reach);
     if (late && none()) return PredictedWall{};
     const Prediction<Real> predicted = predict_impact(
-        u, x.departure_times(-away_), reach, [](const Real&, const Real&) { return true; },
+        u, x.departure(-away_), reach, [](const Real&, const Real&) { return true; },
         [](const Real&, const Real&) { return true; });
     const Real& h = predicted.time;
     if (predicted.exact && h > 0 && h < reach) {
@@ -267,7 +267,7 @@ class Flight {
       };
 
       const Prediction<Real> predicted = predict_impact(
-          u, departure_of(u), most,
+          u, Departure<Real, 5>{departure_of(u)}, most,
           [&](const Real& u1, const Real& t) { return omits_nothing(u1, fourth, rate, t); },
           [&](const Real& t, const Real& size) { return !(rate * t > Real(0.05) && size * 32 < t); });
       Real h = predicted.time;

@@ -31,7 +31,8 @@ class ForcedMotion {
         begin_(begin),
         phase_(forcing.phase(begin)),
         x0_(x0),
-        v0_(v0) {}
+        v0_(v0),
+        cached_(series_of(*this)) {}
 
   struct Change {
     Real x, v;    // displacement and velocity at t
@@ -87,9 +88,22 @@ class ForcedMotion {
     if constexpr (forced) {
       // Under a fast force the steady state may give the smaller of the two bounds (M3.4). Else only the
       // bound that grows with `span` is computed, from the series, which is there already.
-      if (forcing_.frequency * forcing_.frequency > 4 * oscillator_.b()) return beginning().bound(n, span);
-      return oscillator_.bound(series().derivative(n), series().derivative(n + 1)) +
-             absolute(forcing_.amplitude) * oscillator_.series.growth(n) * span;
+      const DrivenSeriesTable<Real>& table = oscillator_.series;
+      const Real& f0 = forcing_.amplitude;
+      const Real d = series().derivative(n), next = series().derivative(n + 1);
+      const Real growing = oscillator_.bound(d, next) + absolute(f0) * table.growth(n) * span;
+      if (!table.fast()) return growing;
+      const auto& [in_phase, behind, amplitude] = table.steady();
+      const Real minus_square = -forcing_.frequency * forcing_.frequency;
+      Real power = f0;
+      for (std::size_t i = 1; i < n; i += 2) power *= minus_square;
+      const Real even = power * (in_phase * phase_.sin - behind * phase_.cos),
+                 odd = power * forcing_.frequency * (in_phase * phase_.cos + behind * phase_.sin);
+      const bool is_even = n % 2 == 0;
+      const Real s = is_even ? even : odd, s_next = is_even ? odd : Real(minus_square * even);
+      const Real size = absolute(power) * amplitude * (is_even ? Real(1) : forcing_.frequency);
+      const Real steady = size + oscillator_.bound(d - s, next - s_next);
+      return steady < growing ? steady : growing;
     } else {
       return beginning().bound(n, span);
     }
@@ -196,17 +210,16 @@ class ForcedMotion {
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
   // The series about the beginning under a force, and how long it holds.
-  const DrivenSeries<Real>& series() const {
-    if (!cached_.series) {
-      const Real& f0 = forcing_.amplitude;
-      cached_.series.emplace(oscillator_.series.terms_of(x0_, v0_, f0 * phase_.sin, f0 * phase_.cos));
+  const DrivenSeries<Real>& series() const { return cached_.series; }
+  // Asked for at the end of the series, and often twice in turn at another time.
+  const SeriesAt<Real>& departure(const Real& t) const {
+    if (t == cached_.time) return cached_.then;
+    if (t == reach()) {
+      if (!cached_.at_reach) cached_.at_reach = series().departure().at(t);
+      return *cached_.at_reach;
     }
-    return *cached_.series;
-  }
-  SeriesAt<Real> departure(const Real& t) const {
-    if (t != reach()) return series().departure(t);
-    if (!cached_.at_reach) cached_.at_reach = series().departure(t);
-    return *cached_.at_reach;
+    cached_.time = t;
+    return cached_.then = series().departure().at(t);
   }
   const Real& reach() const { return oscillator_.series.reach(); }
   // How long the motion is followed as one: under a force as long as the series holds. But a fast force or
@@ -304,13 +317,25 @@ class ForcedMotion {
   Real begin_;
   SinCos<Real> phase_;  // of the forcing at the beginning
   Real x0_, v0_;
-  // Made when first asked for; without a force never.
+  // All but the series made when first asked for; without a force never.
   struct Nothing {};
   struct Cached {
-    std::optional<DrivenSeries<Real>> series;
-    std::optional<SeriesAt<Real>> at_reach;
-    std::optional<Beginning> beginning;
+    DrivenSeries<Real> series;
+    Real time{-1};  // what was asked for last
+    SeriesAt<Real> then{};
+    std::optional<SeriesAt<Real>> at_reach{};
+    std::optional<Beginning> beginning{};
   };
+  static auto series_of(const ForcedMotion& motion) {
+    if constexpr (forced) {
+      const Real& f0 = motion.forcing_.amplitude;
+      const auto& [sin, cos] = motion.phase_;
+      return Cached{
+          DrivenSeries<Real>(motion.oscillator_.series.terms_of(motion.x0_, motion.v0_, f0 * sin, f0 * cos))};
+    } else {
+      return Nothing{};
+    }
+  }
   [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;
 };
 
