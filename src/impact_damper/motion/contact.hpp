@@ -174,7 +174,27 @@ class Contact {
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
 
  private:
-  SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : system_.forcing.phase(begin_ + t); }
+  SinCos<Real> phase_at(const Real& t) const {
+    if (t == 0) return phase_;
+    if constexpr (!forced) {
+      return system_.forcing.phase(begin_ + t);
+    } else {
+      if (last_.at_time(t).phase) return *last_.phase;
+      return last_.phase.emplace(system_.forcing.phase(begin_ + t));
+    }
+  }
+  // An oscillator's response to the force; p: its propagator until t.
+  DrivenResponse<Real> response(const Oscillator<Real>& oscillator, const Real& t,
+                                const Propagator<Real>& p) const {
+    if constexpr (!forced) {
+      return {};
+    } else {
+      Last& last = last_.at_time(t);
+      auto& known = &oscillator == &system_.slow ? last.slow : last.fast;
+      if (!known) known = oscillator.respond(system_.forcing, phase_, t, p);
+      return *known;
+    }
+  }
   Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
 
   // Bounds for a time t.
@@ -353,7 +373,7 @@ class Contact {
     ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
                           p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) {
-      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, phase_, t, p);
+      const DrivenResponse<Real> driven = response(oscillator, t, p);
       add_driven(to, oscillator, drive, driven, t);
     }
     return to;
@@ -368,7 +388,7 @@ class Contact {
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
       // (M5.10): what both parts have in common in x and q is left out where it would cancel.
-      const DrivenResponse<Real> driven = oscillator.respond(system_.forcing, phase_, t, p);
+      const DrivenResponse<Real> driven = response(oscillator, t, p);
       if (driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {
@@ -434,6 +454,19 @@ class Contact {
   State<Real> start_;
   Real wall_, inward_;
   mutable std::optional<ContactParts<Real>> parts_;
+  // Under a force, what was found for the time asked for last: a search asks for one several times in turn.
+  static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
+  struct Nothing {};
+  struct Last {
+    Real time{-1};
+    std::optional<SinCos<Real>> phase{};
+    std::optional<DrivenResponse<Real>> slow{}, fast{};
+    Last& at_time(const Real& t) {
+      if (t != time) *this = {t};
+      return *this;
+    }
+  };
+  [[no_unique_address]] mutable std::conditional_t<forced, Last, Nothing> last_;
 };
 
 }  // namespace impact_damper
