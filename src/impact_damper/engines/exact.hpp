@@ -59,7 +59,8 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
 
   while (!tracker.stopped()) {
     if (!in_contact) {
-      const auto met = pass_flight(system, tracker, state, at_rest_on_wall);
+      const Flight<Real, Force> flight(system, tracker.now(), state);
+      const auto met = pass_flight(system, tracker, flight, state, at_rest_on_wall);
       at_rest_on_wall = false;
       if (!met) break;
       wall = *met;

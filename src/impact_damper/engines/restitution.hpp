@@ -47,11 +47,10 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
   // time `accumulation` of bouncing too short to follow, or (at rest, not pushed) it is released.
   Wall wall = state.y <= Real(0.5) ? Wall::left : Wall::right;
   Real accumulation{0};
-  const auto sticks = [&] {
+  const auto sticks = [&](const Flight<Real, Force>& flight) {
     const Real away = wall == Wall::left ? 1 : -1;
     const Real speed = away * state.w;
     if (speed < 0) return false;
-    const Flight<Real, Force> flight(system, tracker.now(), state);
     const auto lead = flight.lead_of_y();
     const Real push = -away * lead[2];
     accumulation = 0;
@@ -77,9 +76,10 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     return true;
   };
 
-  bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0;
+  bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0, released = false;
   while (!tracker.stopped()) {
-    if (on_wall && sticks()) {
+    const Flight<Real, Force> flight(system, tracker.now(), state);
+    if (on_wall && !released && sticks(flight)) {
       const Real joined = nu * state.w / (1 + nu);
       if (observer.wants_energy() && state.w != 0) {
         const Real loss = joined * state.w / 2;
@@ -89,16 +89,18 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       }
       Stuck<Real, Force> stuck(system, tracker.now(), state.x, state.v + joined, wall);
       const Real begin = tracker.now() + accumulation;
-      const auto released = stuck.release(accumulation, tracker.remaining(), tracker.search());
-      if (released) state = stuck.released(*released);
-      tracker.pass(stuck, released ? *released : tracker.remaining(), state, Real(0));
+      const auto release = stuck.release(accumulation, tracker.remaining(), tracker.search());
+      if (release) state = stuck.released(*release);
+      tracker.pass(stuck, release ? *release : tracker.remaining(), state, Real(0));
       if (observer.wants_contacts() && begin <= tracker.now()) {
         observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
       }
-      if (tracker.stopped()) break;
+      released = true;
+      continue;
     }
+    released = false;
 
-    const auto met = pass_flight(system, tracker, state, on_wall && state.w == 0);
+    const auto met = pass_flight(system, tracker, flight, state, on_wall && state.w == 0);
     if (!met) break;
     wall = *met;
     if (!tracker.impact(wall, state)) break;

@@ -102,9 +102,8 @@ struct Prediction {
 };
 template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 [[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
-                                                              const Departure& departure,
-                                                              const Real& most, Enough&& enough,
-                                                              GoOn&& go_on) {
+                                                              const Departure& departure, const Real& most,
+                                                              Enough&& enough, GoOn&& go_on) {
   SearchCounter<Real>::prediction();
   const FirstGuess<Real> guess = guess_by_parabola(u, most);
   const bool across = guess.across;
