@@ -41,11 +41,13 @@ Command cite_command();
 Command figures_command();
 // `program`: what is said above the subcommands. Both must live as long as the command.
 Command generate_command(const Command& program, const Commands& commands);
+Command merge_command();
 Command report_command();
 Command response_command();
 Command run_command();
 Command scenes_command();
 Command series_command();
+Command sweep_command();
 Command verify_command();
 
 // Options that several commands have.

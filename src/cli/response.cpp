@@ -12,6 +12,7 @@
 #include "interruption.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
+#include "vary.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -102,40 +103,31 @@ Variables variables_of(const std::optional<Scales>& scales) {
   return variables;
 }
 
-// NAME=VALUES: the number that is named, noted if there is none, and what is said of its values, absent
-// without an =.
-struct Varied {
-  std::optional<Variable> variable;
+// The number that --vary names, and what is said of its values; noted if there is none.
+struct VariedNumber {
+  Variable variable;
   std::optional<std::string> values;
 };
-Varied varied_of(Arguments& arguments, const std::string& text, const Variables& variables) {
-  const std::size_t equals = text.find('=');
-  std::string name = text.substr(0, equals);
-  std::ranges::replace(name, '-', '_');
-  const auto variable = variables.find(name);
-  if (variable == variables.end()) {
-    std::vector<std::string_view> names;
-    for (const auto& [known, ignored] : variables) names.push_back(known);
-    const auto meant = nearest(name, names);
-    arguments.reject("--vary", "must name a number of the scene before the =, got " + in_quotes(text) +
-                                   (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
-    return {};
-  }
-  return {variable->second,
-          equals == std::string::npos ? std::nullopt : std::optional(text.substr(equals + 1))};
+std::optional<VariedNumber> number_of(Arguments& arguments, const std::string& text,
+                                      const Variables& variables) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, ignored] : variables) names.push_back(name);
+  const auto varied = varied_of(arguments, text, names);
+  if (!varied) return std::nullopt;
+  return VariedNumber{variables.find(names[varied->index])->second, varied->values};
 }
 
 std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const Variables& variables) {
-  const auto [variable, values] = varied_of(arguments, text, variables);
-  if (!variable) return std::nullopt;
+  const auto varied = number_of(arguments, text, variables);
+  if (!varied) return std::nullopt;
+  const auto& [variable, values] = *varied;
   const auto range = values ? parse_triple(*values) : std::nullopt;
   if (!range || !(range->first < range->second) || !(range->count >= 2 && range->count <= most_values)) {
     arguments.reject("--vary", "must be NAME=FROM:TO:N with FROM < TO and 2 to " +
                                    std::to_string(most_values) + " values, got " + in_quotes(text));
     return std::nullopt;
   }
-  const auto& [number, scale] = *variable;
-  return Axis{number, range->first / scale, range->second / scale, range->count};
+  return Axis{variable.number, range->first / variable.scale, range->second / variable.scale, range->count};
 }
 
 std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool is_sweep) {
@@ -171,12 +163,13 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
     arguments.reject("--vary", "must be given once for orbits, got " + std::to_string(given.size()));
     return std::nullopt;
   }
-  const auto [variable, values] = varied_of(arguments, given[0], variables);
-  if (!variable) return std::nullopt;
+  const auto varied = number_of(arguments, given[0], variables);
+  if (!varied) return std::nullopt;
+  const auto& [variable, values] = *varied;
   ParameterRange range;
-  if (variable->number == member_of(Parameter::force_amplitude)) {
+  if (variable.number == member_of(Parameter::force_amplitude)) {
     range.parameter = Parameter::force_amplitude;
-  } else if (variable->number != member_of(range.parameter)) {
+  } else if (variable.number != member_of(range.parameter)) {
     arguments.reject("--vary",
                      "must be frequency or amplitude of the force for orbits, got " + in_quotes(given[0]));
     return std::nullopt;
@@ -189,8 +182,8 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
                                    in_quotes(given[0]));
     return std::nullopt;
   }
-  range.from = *from / variable->scale;
-  range.to = *to / variable->scale;
+  range.from = *from / variable.scale;
+  range.to = *to / variable.scale;
   return range;
 }
 

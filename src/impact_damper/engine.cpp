@@ -51,6 +51,15 @@ bool has_rigid_walls(const Engine& engine) {
   return std::visit([](const auto& options) { return options.rigid_walls; }, engine);
 }
 
+Calibration calibration_of(const Engine& engine) {
+  return std::visit(
+      [](const auto& options) {
+        if constexpr (requires { options.calibration; }) return options.calibration;
+        return Calibration::fixed_wall;
+      },
+      engine);
+}
+
 std::string_view name_of(const Engine& engine) {
   return std::visit([](const auto& options) { return options.name; }, engine);
 }

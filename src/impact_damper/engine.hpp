@@ -107,6 +107,7 @@ std::vector<std::string_view> engine_names();
 // the scene, or on what is recorded, simulate() checks.
 std::vector<Problem> problems_of(const Engine& engine);
 bool has_rigid_walls(const Engine& engine);
+Calibration calibration_of(const Engine& engine);  // the default where it has none
 
 std::string_view name_of(const Engine& engine);
 std::string_view name_of(Calibration calibration);  // "fixed-wall", "two-body"

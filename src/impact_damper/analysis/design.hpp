@@ -42,6 +42,8 @@ struct ShortContact {
   std::optional<double> duration;
 };
 ShortContact short_contact(const Scene& scene, Calibration calibration, double speed);
+// A contact that lasts longer, in units of 1/Omega_n, is not short beside the primary mass's period.
+inline constexpr double longest_short_contact = 0.15;
 
 // Magnitude of the wall's force at the release; 0 if y0 is in the cavity.
 double initial_wall_force(const Scene& scene, Calibration calibration);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
@@ -120,6 +121,19 @@ LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, s
     loss.amplitude.push_back(amplitude[i] * exponential(mean));
     loss.time.push_back(time[i]);
     loss.eta.push_back(-2 * products / squares);
+  }
+  return loss;
+}
+
+LossFactor loss_before_failure(const Run& run) {
+  const std::size_t failure = failure_row(run);
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  LossFactor all = local_loss_factor(*run.half_cycles, 1, failure), loss;
+  for (std::size_t i = 0; i < all.eta.size(); ++i) {
+    if (failure < rows.size() && !(all.amplitude[i] > rows[failure])) continue;
+    loss.amplitude.push_back(all.amplitude[i]);
+    loss.time.push_back(all.time[i]);
+    loss.eta.push_back(all.eta[i]);
   }
   return loss;
 }

@@ -52,6 +52,10 @@ struct LogarithmicFit {
 LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
                              const LogarithmicFit& fit = {});
 
+// The same of a run, before impact failure and above its amplitude (regimes.hpp). Row 0, which is less than a
+// half cycle, is left out. Needs half_cycles.
+LossFactor loss_before_failure(const Run& run);
+
 // eta / nu: "specific total loss factor".
 inline double specific_loss(double eta, double mass_ratio) { return eta / mass_ratio; }
 

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace impact_damper {
@@ -59,6 +62,41 @@ void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
     take_indices();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+// Calls make(i) as for_each_index does work(i), and take(result) for the results in the order of i, one at a
+// time. Where one takes long, only so many results of later ones are kept waiting for it.
+template <class Make, class Take>
+void for_each_in_order(std::int64_t count, const Threads& threads, Make&& make, Take&& take) {
+  constexpr std::int64_t most_ahead = 1 << 14;
+  std::mutex mutex;
+  std::condition_variable moved;
+  std::deque<std::optional<decltype(make(count))>> waiting;  // of `next`, next + 1, ...
+  std::int64_t next = 0;
+  bool failed = false;
+  for_each_index(count, threads, [&](std::int64_t i) {
+    {
+      std::unique_lock lock(mutex);
+      moved.wait(lock, [&] { return i - next < most_ahead || failed; });
+    }
+    try {
+      auto result = make(i);
+      const std::lock_guard lock(mutex);
+      const auto place = static_cast<std::size_t>(i - next);
+      if (waiting.size() <= place) waiting.resize(place + 1);
+      waiting[place] = std::move(result);
+      for (; !failed && !waiting.empty() && waiting.front(); ++next) {
+        take(std::move(*waiting.front()));
+        waiting.pop_front();
+      }
+      moved.notify_all();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failed = true;
+      moved.notify_all();
+      throw;
+    }
+  });
 }
 
 }  // namespace impact_damper

@@ -94,6 +94,14 @@ ImpactFailure impact_failure(const Run& run, const RegimeOptions& options) {
   return failure;
 }
 
+std::size_t failure_row(const Run& run) {
+  const ImpactFailure failure = impact_failure(run);
+  const std::vector<double>& rows = run.half_cycles->amplitude;
+  const std::optional<double> amplitude = failure.first_missed ? failure.first_missed : failure.for_good;
+  if (!amplitude) return rows.size();
+  return static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+}
+
 std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& options) {
   const HalfCycles& rows = half_cycles_of(run);
   std::vector<RegularWindow> windows;

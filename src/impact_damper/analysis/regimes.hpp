@@ -55,6 +55,9 @@ struct ImpactFailure {
 };
 // Amplitudes are divided by epsilon. Needs half_cycles.
 ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
+// The row of the first missed impact, else of failure for good; the number of rows without one. Needs
+// half_cycles.
+std::size_t failure_row(const Run& run);
 
 // A maximal series of at least window_half_cycles half cycles with the same number of impacts, at least one.
 struct RegularWindow {

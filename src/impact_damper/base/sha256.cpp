@@ -1,8 +1,7 @@
 #include "impact_damper/base/sha256.hpp"
 
-#include <array>
+#include <algorithm>
 #include <bit>
-#include <cstdint>
 
 namespace impact_damper {
 namespace {
@@ -21,61 +20,68 @@ constexpr std::array<Word, 64> round_constants{
     0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
     0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
 
-class Hash {
- public:
-  void add_block(const char* bytes) {
-    std::array<Word, 64> w;
-    for (std::size_t t = 0; t < 16; ++t) w[t] = big_endian(bytes + 4 * t);
-    for (std::size_t t = 16; t < 64; ++t) {
-      const Word s0 = std::rotr(w[t - 15], 7) ^ std::rotr(w[t - 15], 18) ^ (w[t - 15] >> 3);
-      const Word s1 = std::rotr(w[t - 2], 17) ^ std::rotr(w[t - 2], 19) ^ (w[t - 2] >> 10);
-      w[t] = w[t - 16] + s0 + w[t - 7] + s1;
-    }
-    auto [a, b, c, d, e, f, g, h] = state_;
-    for (std::size_t t = 0; t < 64; ++t) {
-      const Word sum1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
-      const Word t1 = h + sum1 + ((e & f) ^ (~e & g)) + round_constants[t] + w[t];
-      const Word sum0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
-      const Word t2 = sum0 + ((a & b) ^ (a & c) ^ (b & c));
-      h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
-    }
-    const std::array<Word, 8> added{a, b, c, d, e, f, g, h};
-    for (std::size_t i = 0; i < added.size(); ++i) state_[i] += added[i];
-  }
-
-  std::string digits() const {
-    constexpr std::string_view hexadecimal = "0123456789abcdef";
-    std::string text;
-    for (const Word word : state_) {
-      for (int shift = 28; shift >= 0; shift -= 4) text += hexadecimal[(word >> shift) & 15];
-    }
-    return text;
-  }
-
- private:
-  static Word big_endian(const char* bytes) {
-    Word word = 0;
-    for (int i = 0; i < 4; ++i) word = word << 8 | static_cast<unsigned char>(bytes[i]);
-    return word;
-  }
-
-  std::array<Word, 8> state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                             0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-};
+Word big_endian(const char* bytes) {
+  Word word = 0;
+  for (int i = 0; i < 4; ++i) word = word << 8 | static_cast<unsigned char>(bytes[i]);
+  return word;
+}
 
 }  // namespace
 
-std::string sha256(std::string_view text) {
-  Hash hash;
-  const std::uint64_t bits = 8 * static_cast<std::uint64_t>(text.size());
-  for (; text.size() >= block_bytes; text.remove_prefix(block_bytes)) hash.add_block(text.data());
+void Sha256::add_block(const char* bytes) {
+  std::array<Word, 64> w;
+  for (std::size_t t = 0; t < 16; ++t) w[t] = big_endian(bytes + 4 * t);
+  for (std::size_t t = 16; t < 64; ++t) {
+    const Word s0 = std::rotr(w[t - 15], 7) ^ std::rotr(w[t - 15], 18) ^ (w[t - 15] >> 3);
+    const Word s1 = std::rotr(w[t - 2], 17) ^ std::rotr(w[t - 2], 19) ^ (w[t - 2] >> 10);
+    w[t] = w[t - 16] + s0 + w[t - 7] + s1;
+  }
+  auto [a, b, c, d, e, f, g, h] = state_;
+  for (std::size_t t = 0; t < 64; ++t) {
+    const Word sum1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
+    const Word t1 = h + sum1 + ((e & f) ^ (~e & g)) + round_constants[t] + w[t];
+    const Word sum0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+    const Word t2 = sum0 + ((a & b) ^ (a & c) ^ (b & c));
+    h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
+  }
+  const std::array<Word, 8> added{a, b, c, d, e, f, g, h};
+  for (std::size_t i = 0; i < added.size(); ++i) state_[i] += added[i];
+}
+
+void Sha256::add(std::string_view text) {
+  bytes_ += text.size();
+  if (!begun_.empty()) {
+    const std::size_t missing = std::min(block_bytes - begun_.size(), text.size());
+    begun_ += text.substr(0, missing);
+    text.remove_prefix(missing);
+    if (begun_.size() < block_bytes) return;
+    add_block(begun_.data());
+    begun_.clear();
+  }
+  for (; text.size() >= block_bytes; text.remove_prefix(block_bytes)) add_block(text.data());
+  begun_ = text;
+}
+
+std::string Sha256::digest() const {
   // The end: a bit 1, zeros, and the length in bits, which fill one block or two.
-  std::string end(text);
+  const std::uint64_t bits = 8 * bytes_;
+  std::string end = begun_;
   end += '\x80';
   end.append((2 * block_bytes - 8 - end.size()) % block_bytes, '\0');
   for (int shift = 56; shift >= 0; shift -= 8) end += static_cast<char>(bits >> shift & 255);
-  for (std::size_t i = 0; i < end.size(); i += block_bytes) hash.add_block(end.data() + i);
-  return hash.digits();
+  Sha256 whole = *this;
+  for (std::size_t i = 0; i < end.size(); i += block_bytes) whole.add_block(end.data() + i);
+  constexpr std::string_view hexadecimal = "0123456789abcdef";
+  std::string text;
+  for (const Word word : whole.state_)
+    for (int shift = 28; shift >= 0; shift -= 4) text += hexadecimal[(word >> shift) & 15];
+  return text;
+}
+
+std::string sha256(std::string_view text) {
+  Sha256 hash;
+  hash.add(text);
+  return hash.digest();
 }
 
 }  // namespace impact_damper

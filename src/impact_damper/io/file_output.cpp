@@ -32,11 +32,16 @@ struct Close {
 };
 using Stream = std::unique_ptr<std::FILE, Close>;
 
-void write_directly(const fs::path& place, const char* mode, const fs::path& named, std::string_view text) {
+using Produce = std::function<void(const AddText&)>;
+
+void write_directly(const fs::path& place, const char* mode, const fs::path& named, const Produce& produce) {
   Stream stream(std::fopen(place.c_str(), mode));
   if (!stream) reject(named, std::strerror(errno));
-  const bool written = std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size();
-  if (!written || std::fflush(stream.get()) != 0) reject(named, std::strerror(errno));
+  produce([&](std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size())
+      reject(named, std::strerror(errno));
+  });
+  if (std::fflush(stream.get()) != 0) reject(named, std::strerror(errno));
   // Some file systems find out only now.
   if (std::fclose(stream.release()) != 0) reject(named, std::strerror(errno));
 }
@@ -90,17 +95,27 @@ void require_writable(const fs::path& file) {
 }
 
 bool write_file(const fs::path& file, std::string_view text) {
+  std::error_code none;
+  require_writable(file);
+  if (fs::is_regular_file(file, none) && ::access(file.c_str(), R_OK) == 0 && holds(file, text)) {
+    remove_abandoned(fs::canonical(file, none));
+    return false;
+  }
+  write_file_in_pieces(file, [&](const AddText& add) { add(text); });
+  return true;
+}
+
+void write_file_in_pieces(const fs::path& file, const Produce& produce) {
   std::error_code error;
   require_writable(file);
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    write_directly(file, "wb", file, text);
-    return true;
+    write_directly(file, "wb", file, produce);
+    return;
   }
   const fs::path place = fs::exists(status) ? fs::canonical(file, error) : fs::absolute(file, error);
   if (error) reject(file, error.message());
   remove_abandoned(place);
-  if (fs::exists(status) && ::access(place.c_str(), R_OK) == 0 && holds(place, text)) return false;
 
   const fs::path temporary = place.parent_path() / (head_of_temporary(place) + std::to_string(::getpid()) +
                                                     std::string(tail_of_temporary));
@@ -108,18 +123,17 @@ bool write_file(const fs::path& file, std::string_view text) {
   std::memcpy(unfinished.data(), temporary.c_str(), temporary.native().size() + 1);
   try {
     fs::remove(temporary, error);
-    write_directly(temporary, "wbx", file, text);
+    write_directly(temporary, "wbx", file, produce);
     if (fs::exists(status)) fs::permissions(temporary, status.permissions());
     fs::rename(temporary, place);
   } catch (const fs::filesystem_error& failed) {
     remove_unfinished_file();
     reject(file, failed.code().message());
-  } catch (const IoError&) {
+  } catch (...) {
     remove_unfinished_file();
     throw;
   }
   unfinished[0] = '\0';
-  return true;
 }
 
 void remove_unfinished_file() noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace impact_damper {
@@ -14,6 +15,12 @@ namespace impact_damper {
 // way left beside `file` is removed. However the process ends, `file` is whole; when the machine itself fails
 // its file system has the last word. Not to be called by two threads at once.
 bool write_file(const std::filesystem::path& file, std::string_view text);
+
+// The same for a text that is longer than memory: produce(add) is called once and adds it in pieces. What
+// `file` holds already is not compared. What `produce` throws leaves `file` as it was.
+using AddText = std::function<void(std::string_view piece)>;
+void write_file_in_pieces(const std::filesystem::path& file,
+                          const std::function<void(const AddText&)>& produce);
 
 // Throws the IoError that write_file would if it is plain beforehand: `file` is a directory, or its folder
 // is missing or not writable. Before a long computation.

@@ -69,6 +69,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
   } else if constexpr (std::is_same_v<Value, bool>) {
     return object.required(option.name, value);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    if (lacking == Lacking::any) return object.optional(option.name, value, option.range);
     if (lacking == Lacking::null && option.in_every_file)
       return object.required(option.name, value, option.range);
     double number = 0;  // null is no number

@@ -52,24 +52,8 @@ SceneInUnits read_unit_fields(ObjectReader& object) {
 
 SceneFile read_whole(JsonDocument document) {
   ObjectReader object = document.root();
-  SceneFile file;
-  object.optional("description", file.description);
-  const auto [in_units, without_units] = given_keys(object);
-  if (in_units.empty()) {
-    file.scene = read_scene_fields(object);
-    document.finish();
-    return file;
-  }
-  const SceneInUnits scene = read_unit_fields(object);
-  if (!without_units.empty()) {
-    for (const SceneField& field : scene_fields) object.has(field.name);
-    object.has("until_time"), object.has("until_amplitude");
-    object.reject("",
-                  "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
-  }
+  SceneFile file = read_scene_object(object);
   document.finish();
-  file.scene = dimensionless(scene);
-  file.scales = scales_of(scene);
   return file;
 }
 
@@ -101,6 +85,28 @@ Scene read_scene_fields(ObjectReader& object) {
   return scene;
 }
 
+SceneFile read_scene_object(ObjectReader& object) {
+  SceneFile file;
+  object.optional("description", file.description);
+  const auto [in_units, without_units] = given_keys(object);
+  if (in_units.empty()) {
+    file.scene = read_scene_fields(object);
+    return file;
+  }
+  file.in_units = read_unit_fields(object);
+  if (!without_units.empty()) {
+    for (const SceneField& field : scene_fields) object.has(field.name);
+    object.has("until_time"), object.has("until_amplitude");
+    object.reject("",
+                  "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
+  }
+  if (problems_of(*file.in_units).empty()) {
+    file.scene = dimensionless(*file.in_units);
+    file.scales = scales_of(*file.in_units);
+  }
+  return file;
+}
+
 SceneFile read_scene_file(const std::filesystem::path& file) {
   reject_run(file);
   return read_whole(JsonDocument::read(file, scene_kind));
@@ -120,6 +126,11 @@ void write_scene_fields(JsonWriter& out, const Scene& scene) {
   for (const SceneField& each : scene_fields) out.field(each.name, scene.*each.member);
   out.field("until_time", scene.until_time);
   out.field("until_amplitude", scene.until_amplitude);
+}
+
+void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
+  for (const UnitField& each : unit_fields)
+    if (scene.*each.member) out.field(each.name, scene.*each.member);
 }
 
 std::string scene_text(const Scene& scene) {

@@ -32,6 +32,7 @@ struct SceneFile {
   Scene scene;                   // dimensionless, also of a scene in units
   std::optional<Scales> scales;  // of a scene in units
   std::string description;
+  std::optional<SceneInUnits> in_units;  // as it was given, if it was given so
 };
 
 // Throws IoError if `file` cannot be read, InputError, with a line for everything in it that is not valid.
@@ -45,7 +46,11 @@ Scene parse_scene(const std::string& name, const std::string& text);
 // Reads the fields of a scene from an object, which may hold others and collects the problems, and writes
 // them into one. For the project's own readers and writers: neither class is part of the library's interface.
 Scene read_scene_fields(ObjectReader& object);
+// The same of a whole scene, dimensionless or in units. Where there are problems, what is returned is not to
+// be used.
+SceneFile read_scene_object(ObjectReader& object);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
+void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that it has
 
 // The scene as JSON on one line, every field in the order of Scene, absent stops as null. It reads back as an
 // equal scene.

@@ -54,38 +54,15 @@ void find_falls(Findings& findings) {
   }
 }
 
-// The row of impact failure, or behind the last row.
-std::size_t failure_row(const Run& run) {
-  const ImpactFailure failure = impact_failure(run);
-  const std::vector<double>& rows = run.half_cycles->amplitude;
-  const std::optional<double> amplitude = failure.first_missed ? failure.first_missed : failure.for_good;
-  if (!amplitude) return rows.size();
-  return static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
-}
-
-// Before impact failure, and above its amplitude. Row 0 is less than a half cycle.
-LossFactor loss_of(const Run& run) {
-  const std::size_t failure = failure_row(run);
-  const std::vector<double>& rows = run.half_cycles->amplitude;
-  LossFactor all = local_loss_factor(*run.half_cycles, 1, failure), loss;
-  for (std::size_t i = 0; i < all.eta.size(); ++i) {
-    if (failure < rows.size() && !(all.amplitude[i] > rows[failure])) continue;
-    loss.amplitude.push_back(all.amplitude[i]);
-    loss.time.push_back(all.time[i]);
-    loss.eta.push_back(all.eta[i]);
-  }
-  return loss;
-}
-
 std::size_t best_row(const LossFactor& loss) {
   return static_cast<std::size_t>(std::ranges::max_element(loss.eta) - loss.eta.begin());
 }
 
 void find_best_damping(Findings& findings) {
   const HalfCycles& rows = *findings.run.half_cycles;
-  findings.loss = loss_of(findings.run);
+  findings.loss = loss_before_failure(findings.run);
   findings.loss_after_failure = local_loss_factor(rows, failure_row(findings.run), rows.amplitude.size());
-  for (const Run& other : findings.others) findings.losses_of_others.push_back(loss_of(other));
+  for (const Run& other : findings.others) findings.losses_of_others.push_back(loss_before_failure(other));
   const LossFactor& loss = findings.loss;
   const Scene& scene = findings.subject.scene;
   if (scene.restitution == 1 && scene.damping_ratio == 0) return;  // energy only goes to and fro
@@ -102,15 +79,6 @@ void find_best_damping(Findings& findings) {
   };
   findings.best = {loss.eta[best], loss.amplitude[best], loss.time[best], over_losses(&LossFactor::eta),
                    over_losses(&LossFactor::amplitude)};
-}
-
-Calibration calibration_of(const Engine& engine) {
-  return std::visit(
-      [](const auto& options) {
-        if constexpr (requires { options.calibration; }) return options.calibration;
-        return Calibration::fixed_wall;
-      },
-      engine);
 }
 
 void find_loads(Findings& findings) {

@@ -48,8 +48,6 @@ struct Loads {
   std::optional<ShortContact> contact;  // of that impact; absent for rigid walls and for soft ones
   double initial_force = 0;             // of the wall in which the scene begins, divided by K epsilon
 };
-// A contact that lasts longer, in units of 1/Omega_n, is not short beside the primary mass's period.
-inline constexpr double longest_short_contact = 0.15;
 
 // A stretch of the recorded history: its samples, both included.
 struct MotionWindow {

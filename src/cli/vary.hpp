@@ -1,0 +1,21 @@
+// --vary NAME=VALUES, of every command that gives a number of a scene several values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arguments.hpp"
+
+namespace impact_damper::cli {
+
+struct Varied {
+  std::size_t index = 0;              // of the name in `names`
+  std::optional<std::string> values;  // what is said of them; absent without an =
+};
+// Absent, and noted, unless `text` names one of `names` ('-' counts as '_').
+std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
+                                const std::vector<std::string_view>& names);
+
+}  // namespace impact_damper::cli

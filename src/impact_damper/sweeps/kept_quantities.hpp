@@ -1,0 +1,80 @@
+// What may be kept of a run, as one table: name, unit, meaning and how it is found. Plans, the command line,
+// its help and the headers of tables all go through it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/steady/steady_state.hpp"
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+// What a number measures.
+enum class Dimension { ratio, count, time, length, velocity, force, frequency, rate };
+// Its unit: that of a scene in units if it is one, "" for pure numbers.
+std::string_view unit_of(Dimension dimension, bool in_units);
+// What one dimensionless unit is in that unit.
+double scale_of(Dimension dimension, const Scales& scales);
+
+// Frequencies of the force, equally spaced, both ends included; in the scene's unit.
+struct FrequencyRange {
+  double from = 0, to = 0;
+  std::int64_t count = 2;
+};
+// How motions under a force are followed.
+struct ForcedRules {
+  SteadyRule steady;
+  std::optional<FrequencyRange> frequencies;  // for the worst one
+  std::int64_t lyapunov_periods = 5000, lyapunov_discard = 500;
+};
+
+// A run from the release to a stop of the scene; the steady motion after it; steady motions over frequencies;
+// the rates at which small changes grow.
+enum class Experiment { run, steady, worst, lyapunov };
+
+class RunFindings;  // of one run, in kept_quantities.cpp
+
+struct Quantity {
+  std::string_view name;
+  Dimension dimension;
+  std::string_view meaning;
+  Experiment experiment = Experiment::run;
+  // What it is asked at: a length or a pure number, > 0. Absent: nothing.
+  std::optional<Dimension> at{};
+  bool of_impacts = false, of_energy = false;  // what the run must record beside half cycles
+  // Dimensionless. Absent where there is none.
+  std::optional<double> (*value)(RunFindings& findings, double at) = nullptr;
+};
+std::span<const Quantity> all_quantities();
+
+struct KeptQuantity {
+  const Quantity* quantity = nullptr;
+  std::optional<double> at;  // in the scene's unit
+
+  std::string text() const;    // "time_to_amplitude=0.6", as plans and the command line give it
+  std::string column() const;  // "time_to_amplitude_0.6"
+};
+// What `text` spells, or what is wrong with it: "must be ..., got ...".
+struct QuantityReading {
+  std::optional<KeptQuantity> kept;
+  std::string problem;
+};
+QuantityReading read_quantity(std::string_view text);
+
+// All of them in their order, of one scene.
+struct KeptNumbers {
+  std::vector<std::optional<double>> numbers;  // in the scene's units
+  // "done", or what ended the first of the runs that ended early: a budget of the engine (StopReason),
+  // "not_valid" or "failed".
+  std::string_view end = "done";
+  std::string problem;  // of the latter two
+};
+KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, const Engine& engine,
+                    std::span<const KeptQuantity> quantities, const ForcedRules& rules);
+
+}  // namespace impact_damper

@@ -1,0 +1,35 @@
+// Plans as JSON files, schema "impact-damper/plan/1":
+//
+//   {"schema": "impact-damper/plan/1", "scene": {"until_amplitude": 0.03},
+//    "grid": [{"number": "mass_ratio", "from": 0.005, "to": 0.08, "count": 40, "scale": "logarithmic"}],
+//    "quantities": ["time_to_amplitude=0.6", "impacts"]}
+//
+// docs/sweeps.md says what each key means.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "impact_damper/sweeps/plan.hpp"
+
+namespace impact_damper {
+
+inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
+inline constexpr FileKind plan_kind{"plan", 1 << 20};
+
+// Throws IoError if `file`, or the scene file that it names beside itself, cannot be read, InputError with a
+// line for everything in it that is not valid.
+Plan read_plan(const std::filesystem::path& file);
+// The same of a text, whose scene stands in it.
+Plan parse_plan(const std::string& name, const std::string& text);
+
+// The same from an object that may belong to a larger document and collects the problems. A scene that it
+// names is looked for in `folder`.
+Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder = {});
+// Its fields, on one line. They read back as an equal plan, and equal plans give equal text.
+void write_plan_fields(JsonWriter& out, const Plan& plan);
+
+// What is wrong with a plan as a whole, wherever it came from: one entry for each.
+std::vector<Problem> problems_of(const Plan& plan);
+
+}  // namespace impact_damper

@@ -1,0 +1,69 @@
+// A share of a sweep: the rows of one part of its plan, in a file that grows while they are made. Lines:
+//
+//   #{"schema": "impact-damper/share/1", ...}    which plan, which part of it, which program: the head
+//   run,mass_ratio,impacts,end,problem           the header of the table
+//   0,0.005,2176,done,                           rows
+//   ...
+//   # 64 9f86d081...                             so many rows so far, SHA-256 of all bytes before this line
+//
+// After a line of the last kind whatever stands before it is known to be whole. A share that was interrupted
+// goes on from there; whole shares are joined into the table.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/base/sha256.hpp"
+#include "impact_damper/sweeps/plan.hpp"
+
+namespace impact_damper {
+
+inline constexpr std::string_view share_schema = "impact-damper/share/1";
+
+struct ShareHead {
+  Plan plan;
+  std::int64_t part = 1, parts = 1;
+  std::string program;  // version, commit, and what else tells programs apart
+};
+// FOLDER/NAME.part-K-of-N of a table FOLDER/NAME.
+std::filesystem::path share_file(const std::filesystem::path& table, std::int64_t part, std::int64_t parts);
+
+// Goes on with the share in `file`, or begins it. Throws IoError if it cannot be read or written or is being
+// written by another process, InputError if it is of another plan, part or program.
+class ShareWriter {
+ public:
+  ShareWriter(const std::filesystem::path& file, const ShareHead& head);
+
+  std::int64_t rows() const { return rows_; }  // that there are
+  std::int64_t kept() const { return kept_; }  // with a digest behind them: these outlast an interruption
+  void append(std::string_view row);
+  void finish();  // after the last row
+
+ private:
+  void write(std::string_view text);
+  void seal();  // writes a digest
+
+  struct Close {
+    void operator()(std::FILE* stream) const { std::fclose(stream); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<std::FILE, Close> stream_;
+  Sha256 hash_;
+  std::int64_t rows_ = 0, kept_ = -1;
+};
+
+// Joins the shares of one plan, in any order, into the table of `table`, and writes beside it what it is:
+// TABLE.json. Throws InputError, leaving both as they were, unless every part is there once, whole, and of
+// one plan and program. The same bytes, whatever the number of parts.
+void join_shares(const std::vector<std::filesystem::path>& files, const std::filesystem::path& table);
+
+// That text, schema "impact-damper/sweep/1".
+std::string description_of_table(const ShareHead& head, std::uint64_t bytes, const std::string& digest);
+
+}  // namespace impact_damper
