@@ -307,12 +307,6 @@ Record record_for(std::span<const KeptQuantity> kept) {
   return record;
 }
 
-std::string in_one_line(const std::vector<std::string>& lines) {
-  std::string all;
-  for (const std::string& line : lines) all += (all.empty() ? "" : "; ") + line;
-  return all;
-}
-
 }  // namespace
 
 std::span<const Quantity> all_quantities() { return quantities; }
@@ -360,10 +354,14 @@ double scale_of(Dimension dimension, const Scales& scales) {
 }
 
 std::string KeptQuantity::text() const {
-  return std::string(quantity->name) + (at ? "=" + number_text(*at) : "");
+  std::string text(quantity->name);
+  if (at) text.append(1, '=').append(number_text(*at));
+  return text;
 }
 std::string KeptQuantity::column() const {
-  return std::string(quantity->name) + (at ? "_" + number_text(*at) : "");
+  std::string name(quantity->name);
+  if (at) name.append(1, '_').append(number_text(*at));
+  return name;
 }
 
 QuantityReading read_quantity(std::string_view text) {
@@ -390,6 +388,15 @@ QuantityReading read_quantity(std::string_view text) {
               in_quotes(text)};
 }
 
+KeptNumbers none_kept(std::size_t count, const std::vector<Problem>& problems) {
+  KeptNumbers none;
+  none.numbers.resize(count);
+  none.end = "not_valid";
+  for (const std::string& line : lines_of(problems))
+    none.problem += (none.problem.empty() ? "" : "; ") + line;
+  return none;
+}
+
 KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, const Engine& engine,
                     std::span<const KeptQuantity> kept, const ForcedRules& rules) {
   const Record record = record_for(kept);
@@ -409,8 +416,7 @@ KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, con
     }
     found.end = findings.end();
   } catch (const InvalidArguments& error) {
-    found.end = "not_valid";
-    found.problem = in_one_line(lines_of(error.problems()));
+    return none_kept(kept.size(), error.problems());
   } catch (const NumericalError& error) {
     found.end = "failed";
     found.problem = error.what();

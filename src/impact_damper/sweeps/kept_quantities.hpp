@@ -66,7 +66,7 @@ struct QuantityReading {
 };
 QuantityReading read_quantity(std::string_view text);
 
-// All of them in their order, of one scene.
+// What is kept of one scene, the quantities in their order.
 struct KeptNumbers {
   std::vector<std::optional<double>> numbers;  // in the scene's units
   // "done", or what ended the first of the runs that ended early: a budget of the engine (StopReason),
@@ -74,6 +74,8 @@ struct KeptNumbers {
   std::string_view end = "done";
   std::string problem;  // of the latter two
 };
+// Of a scene with problems: none of `count` numbers, and why.
+KeptNumbers none_kept(std::size_t count, const std::vector<Problem>& problems);
 KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, const Engine& engine,
                     std::span<const KeptQuantity> quantities, const ForcedRules& rules);
 

@@ -172,15 +172,9 @@ std::string header_of(const Plan& plan) {
 
 std::string row_of(const Plan& plan, std::int64_t i) {
   const PlannedRun run = run_of(plan, i);
-  KeptNumbers kept;
-  if (run.problems.empty()) {
-    kept = kept_of(run.scene, run.scales, plan.engine, plan.quantities, plan.forced);
-  } else {
-    kept.numbers.resize(plan.quantities.size());
-    kept.end = "not_valid";
-    for (const std::string& line : lines_of(run.problems))
-      kept.problem += (kept.problem.empty() ? "" : "; ") + line;
-  }
+  const KeptNumbers kept = run.problems.empty()
+                               ? kept_of(run.scene, run.scales, plan.engine, plan.quantities, plan.forced)
+                               : none_kept(plan.quantities.size(), run.problems);
   std::string row;
   append_number(row, i);
   for (const double value : run.values) {

@@ -121,10 +121,11 @@ void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
 }
 
 SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folder) {
-  std::string name;
   if (object.has("scene_file")) {
-    if (object.has("scene")) object.reject("scene", "either it or scene_file must be given, got both");
-    if (!object.required("scene_file", name, some_text)) return {};
+    std::string name;
+    const bool both = object.has("scene");
+    if (both) object.reject("scene", "either it or scene_file must be given, got both");
+    if (!object.required("scene_file", name, some_text) || both) return {};
     return read_scene_file(folder / name);
   }
   ObjectReader scene = object.required_object("scene");

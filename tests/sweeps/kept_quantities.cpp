@@ -1,0 +1,212 @@
+#include "impact_damper/sweeps/kept_quantities.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "impact_damper/analysis/design.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/lyapunov.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+std::vector<KeptQuantity> read_all(const std::vector<std::string>& texts) {
+  std::vector<KeptQuantity> kept;
+  for (const std::string& text : texts) {
+    const QuantityReading reading = read_quantity(text);
+    REQUIRE(reading.kept);
+    kept.push_back(*reading.kept);
+  }
+  return kept;
+}
+KeptNumbers kept(const Scene& scene, const std::vector<std::string>& texts, const Engine& engine = Exact{},
+                 const std::optional<Scales>& scales = {}, const ForcedRules& rules = {}) {
+  return kept_of(scene, scales, engine, read_all(texts), rules);
+}
+double only(const KeptNumbers& numbers) {
+  REQUIRE(numbers.numbers.size() == 1);
+  REQUIRE(numbers.numbers[0]);
+  return *numbers.numbers[0];
+}
+
+// Viscous damping and next to nothing else: x = 6 exp(-zeta t) (cos omega t + ...).
+Scene viscous_decay(double zeta) {
+  Scene scene;
+  scene.mass_ratio = 1e-9;
+  scene.damping_ratio = zeta;
+  scene.until_amplitude = 0.5;
+  return scene;
+}
+
+Scene paper_decay() {
+  Scene scene;
+  scene.until_amplitude = 0.03;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("time to an amplitude and loss factor of viscous damping are those of the closed form") {
+  for (const double zeta : {0.004, 0.02}) {
+    const Scene scene = viscous_decay(zeta);
+    const double omega = std::sqrt(1 - zeta * zeta);
+    // Peaks of |x| at k pi / omega; the first below 2.
+    const double half = std::numbers::pi / omega;
+    const double k = std::ceil(std::log(6.0 / 2) / (zeta * half));
+    CHECK(only(kept(scene, {"time_to_amplitude=2"})) == doctest::Approx(k * half).epsilon(1e-7));
+    for (const char* name : {"loss_factor_at=2", "loss_factor_at=3.3"})
+      CHECK(only(kept(scene, {name})) == doctest::Approx(2 * zeta).epsilon(1e-6));
+    CHECK(only(kept(scene, {"largest_loss_factor"})) == doctest::Approx(2 * zeta).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("what is not reached is absent") {
+  const KeptNumbers numbers =
+      kept(paper_decay(), {"time_to_amplitude=0.01", "loss_factor_at=0.01", "loss_factor_at=7",
+                           "lowest_amplitude_above_loss=1", "highest_amplitude_above_loss=1"});
+  for (const auto& number : numbers.numbers) CHECK_FALSE(number);
+  CHECK(numbers.end == "done");
+}
+
+TEST_CASE("with one impact in each half cycle the loss factor is that of the closed form") {
+  const Scene scene = paper_decay();
+  for (const double amplitude : {0.15, 0.2, 0.25}) {
+    const double loss = scene.mass_ratio * single_impact(scene.restitution, amplitude)->loss;
+    const auto at = "loss_factor_at=" + std::to_string(amplitude);
+    CHECK(only(kept(scene, {at})) == doctest::Approx(loss).epsilon(0.02));
+    // Where the bound is that loss, the amplitudes above it end there, on the side of the large ones.
+    const auto above = "highest_amplitude_above_loss=" + std::to_string(loss);
+    CHECK(only(kept(scene, {above})) == doctest::Approx(amplitude).epsilon(0.03));
+  }
+  // The curve rises as the amplitude falls, up to impact failure: at the fold of the closed form, or a little
+  // below.
+  const double lowest = only(kept(scene, {"lowest_amplitude_above_loss=0.06"}));
+  const double best = only(kept(scene, {"amplitude_of_largest_loss_factor"}));
+  CHECK(lowest <= best);
+  CHECK(best == doctest::Approx(fold_amplitude(scene.restitution)).epsilon(0.25));
+  CHECK(only(kept(scene, {"largest_loss_factor"})) > only(kept(scene, {"loss_factor_at=0.15"})));
+}
+
+TEST_CASE("the share of impacts is what viscous damping leaves") {
+  Scene scene = paper_decay();
+  scene.damping_ratio = 0.004;
+  Record record;
+  const Run run = simulate(scene, Exact{}, record);
+  // A half cycle of amplitude A loses zeta pi A^2 by viscous damping; all that was there at first is lost.
+  double viscous = 0;
+  for (const double amplitude : run.half_cycles->amplitude)
+    viscous += scene.damping_ratio * std::numbers::pi * amplitude * amplitude;
+  CHECK(only(kept(scene, {"impact_energy_share"})) == doctest::Approx(1 - viscous / 18).epsilon(0.02));
+  scene.damping_ratio = 0;
+  CHECK(only(kept(scene, {"impact_energy_share"})) == 1);
+}
+
+TEST_CASE("impacts, their speed and the wall's force are those of the recorded run") {
+  const Scene scene = paper_decay();
+  Record record;
+  record.impacts = true;
+  const Run run = simulate(scene, Exact{}, record);
+  double speed = 0;
+  for (const double velocity : run.impacts->relative_velocity) speed = std::max(speed, std::abs(velocity));
+  CHECK(only(kept(scene, {"impacts"})) == double(run.impacts->time.size()));
+  CHECK(only(kept(scene, {"largest_impact_speed"})) == speed);
+  CHECK(only(kept(scene, {"largest_wall_force"})) ==
+        short_contact(scene, Calibration::fixed_wall, speed).force);
+  // The release alone: the secondary mass presses the wall together by 0.01 and never comes back as fast.
+  Scene pressed = scene;
+  pressed.x0 = 0.01;
+  pressed.y0 = -0.01;
+  pressed.until_amplitude.reset();
+  pressed.until_time = 0.01;
+  CHECK(only(kept(pressed, {"largest_wall_force"})) == doctest::Approx(1e4 * 0.01));
+  CHECK_FALSE(kept(scene, {"largest_wall_force"}, Restitution{}).numbers[0]);
+  Scene soft = scene;
+  soft.wall_stiffness = 1;
+  CHECK_FALSE(kept(soft, {"largest_wall_force"}).numbers[0]);
+}
+
+TEST_CASE("steady motions of a light secondary mass are those of the oscillator alone") {
+  Scene scene;
+  scene.mass_ratio = 1e-8;
+  scene.damping_ratio = 0.05;
+  scene.force_amplitude = 0.3;
+  scene.force_frequency = 0.8;
+  scene.until_time = 1;
+  ForcedRules rules;
+  rules.frequencies = FrequencyRange{0.9, 1.1, 201};
+  rules.steady.max_periods = 200;
+  rules.steady.mean_periods = 20;
+  const KeptNumbers numbers =
+      kept(scene, {"steady_amplitude", "impacts_per_period", "worst_steady_amplitude", "worst_frequency"},
+           Exact{}, {}, rules);
+  const WorstResponse worst = worst_linear_response(0.3, 1, 0.05);
+  CHECK(*numbers.numbers[0] == doctest::Approx(linear_response(0.3, 1, 0.05, 0.8)).epsilon(1e-6));
+  CHECK(*numbers.numbers[1] > 0);
+  CHECK(*numbers.numbers[2] == doctest::Approx(worst.amplitude).epsilon(1e-4));
+  CHECK(std::abs(*numbers.numbers[3] - worst.frequency) < 0.0011);
+}
+
+TEST_CASE(
+    "a periodic motion has its period, and its impacts in it; exponents are those of lyapunov_exponents") {
+  Scene scene;
+  scene.mass_ratio = 0.1;
+  scene.damping_ratio = 0.1;
+  scene.force_amplitude = 0.01;
+  scene.force_frequency = 0.5;
+  scene.x0 = 0;
+  scene.y0 = 0.5;
+  scene.until_time = 1;
+  ForcedRules rules;
+  rules.lyapunov_periods = 20;
+  rules.lyapunov_discard = 3;
+  const Scales scales{4, 100, 10};  // 0.2 s
+  const KeptNumbers numbers =
+      kept(scene, {"steady_period", "impacts_per_period", "lyapunov_exponent", "steady_amplitude"}, Exact{},
+           scales, rules);
+  CHECK(*numbers.numbers[0] == 1);
+  CHECK(*numbers.numbers[1] == 0);  // the amplitude is far below the clearance
+  const double exponent = lyapunov_exponents(scene, Exact{}, 20, 3).exponents[0];
+  CHECK(*numbers.numbers[2] == doctest::Approx(exponent / 0.2).epsilon(1e-12));
+  CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
+}
+
+TEST_CASE("in units, numbers are asked for and given in seconds, millimetres, newtons") {
+  const Scene scene = paper_decay();
+  const Scales scales{40, 16000, 10};  // 0.05 s, 10 mm, 160 N
+  const std::vector<std::string> names{"time_to_amplitude=6", "largest_impact_speed", "largest_wall_force",
+                                       "highest_amplitude_above_loss=0.05", "impacts"};
+  const std::vector<std::string> plain{"time_to_amplitude=0.6", "largest_impact_speed", "largest_wall_force",
+                                       "highest_amplitude_above_loss=0.05", "impacts"};
+  const KeptNumbers in_units = kept(scene, names, Exact{}, scales), without = kept(scene, plain);
+  const double units[] = {0.05, 200, 160, 10, 1};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    CHECK(*in_units.numbers[i] == doctest::Approx(units[i] * *without.numbers[i]).epsilon(1e-13));
+}
+
+TEST_CASE("a run that ends early or fails says so") {
+  Exact few;
+  few.budget.max_impacts = 10;
+  const KeptNumbers early = kept(paper_decay(), {"impacts", "time_to_amplitude=0.1"}, few);
+  CHECK(early.end == "impact_budget");
+  CHECK(*early.numbers[0] == 10);
+  CHECK_FALSE(early.numbers[1]);
+
+  const KeptNumbers unforced = kept(paper_decay(), {"impacts", "steady_amplitude"});
+  CHECK(unforced.end == "not_valid");
+  CHECK(unforced.problem == "force_amplitude: must not be 0: without a force there is no steady motion");
+  CHECK_FALSE(unforced.numbers[1]);
+}
+
+TEST_CASE("a quantity is named with what it needs and nothing else") {
+  CHECK(read_quantity("time_to_amplitude=0.6").kept->column() == "time_to_amplitude_0.6");
+  CHECK(read_quantity("impacts").kept->text() == "impacts");
+  CHECK(read_quantity("impact").problem ==
+        "must name a quantity (sweep --list-quantities), got \"impact\", did you mean impacts?");
+  CHECK(read_quantity("impacts=3").problem == "must be impacts without a number, got \"impacts=3\"");
+  for (const char* text : {"loss_factor_at", "loss_factor_at=", "loss_factor_at=0", "loss_factor_at=nan"})
+    CHECK(read_quantity(text).problem.starts_with("must be loss_factor_at=A with a number > 0, got"));
+}
