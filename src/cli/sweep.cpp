@@ -69,11 +69,12 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                          std::to_string(most_axis_values) + " values, got " + in_quotes(text));
     return std::nullopt;
   }
-  for (const std::int64_t i : {std::int64_t{0}, axis.size() - 1}) {
-    const NumberRange& range = axis.variable.range;
-    if (range.allows(axis.value(i))) continue;
+  // The ends of a range, each of a list.
+  const std::vector<double> ends = axis.values.empty() ? std::vector{axis.from, axis.to} : axis.values;
+  for (const double value : ends) {
+    if (axis.variable.range.allows(value)) continue;
     arguments.reject("--vary", "values of " + std::string(axis.variable.name) + " must be " +
-                                   range.describe("numbers") + ", got " + number_text(axis.value(i)));
+                                   axis.variable.range.describe("numbers") + ", got " + number_text(value));
     break;
   }
   return axis;

@@ -264,7 +264,11 @@ std::vector<Problem> problems_of(const Plan& plan) {
     problems.push_back({"grid", "must make at most " + std::to_string(most_runs) + " runs in all"});
   if (plan.quantities.empty()) problems.push_back({"quantities", "at least one must be given"});
   bool worst = false, forced = false;
+  std::set<std::string> columns;
   for (const KeptQuantity& each : plan.quantities) {
+    if (!columns.insert(each.column()).second)
+      problems.push_back(
+          {"quantities", "must name each quantity once, got " + in_quotes(each.text()) + " twice"});
     worst = worst || each.quantity->experiment == Experiment::worst;
     forced = forced || each.quantity->experiment != Experiment::run;
   }
