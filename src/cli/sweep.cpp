@@ -150,6 +150,7 @@ Plan plan_of(Arguments& arguments) {
   for (const Option& option : options_of_plan())
     if (const std::string name = long_name(option.name); arguments.given(name))
       arguments.reject(name, "cannot be given beside a plan, which says it");
+  arguments.finish();
   return read_plan(*file);
 }
 

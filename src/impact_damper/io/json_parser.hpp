@@ -21,6 +21,7 @@ class JsonProblems {
   explicit JsonProblems(const std::string& file);
 
   void add(const std::string& pointer, std::string_view what);
+  bool empty() const { return count_ == 0; }
 
   // The index of the known keys of `object`.
   std::size_t open(const std::string& pointer, const nlohmann::json& object);

@@ -214,6 +214,8 @@ bool ObjectReader::holds(std::string_view key) const {
 
 bool ObjectReader::has(std::string_view key) { return find(key) != nullptr; }
 
+bool ObjectReader::all_valid() const { return problems_->empty(); }
+
 bool ObjectReader::require(std::string_view key) {
   if (has(key)) return true;
   if (object_) problems_->add(pointer_to(key), "missing, a value must be given");

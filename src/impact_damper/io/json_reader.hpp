@@ -113,6 +113,8 @@ class ObjectReader {
   // is allowed and what was given. For checks that the reader cannot do.
   void reject(std::string_view key, std::string_view what);
   void reject(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
+  // Nothing of the whole document has been reported yet: what was read may be looked at together.
+  bool all_valid() const;
   // Reports the field as missing unless it is there. True if it is there.
   bool require(std::string_view key);
   const std::string& pointer() const { return pointer_; }

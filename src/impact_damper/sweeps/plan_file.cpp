@@ -189,7 +189,8 @@ Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder)
   if (auto samples = object.optional_object("samples")) plan.samples = read_samples(*samples, variables);
   read_quantities(object, plan);
   read_forced_rules(object, plan.forced);
-  for (const Problem& problem : problems_of(plan)) object.reject(problem.field, problem.message);
+  if (object.all_valid())
+    for (const Problem& problem : problems_of(plan)) object.reject(problem.field, problem.message);
   return plan;
 }
 
