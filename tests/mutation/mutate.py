@@ -121,8 +121,8 @@ class Tree:
             if code != 0:
                 sys.exit(out)
         code, out = run(["ninja", "-t", "targets", "all"], self.build)
-        names = re.findall(r"^tests/test_(\w+): CXX_EXECUTABLE", out, re.MULTILINE)
-        self.binaries = {name: f"tests/test_{name}" for name in names} | {"cli": "src/impact-damper"}
+        found = re.findall(r"^tests/(\w+/)?test_(\w+): CXX_EXECUTABLE", out, re.MULTILINE)
+        self.binaries = {name: f"tests/{folder}test_{name}" for folder, name in found} | {"cli": "src/impact-damper"}
 
     def make(self, test):
         return run(["ninja", "-j", self.jobs, self.binaries[test]], self.build, BUILD_TIMEOUT)
@@ -141,7 +141,7 @@ class Tree:
         if not self.compiled_from:
             _, out = run(["ninja", "-t", "deps"], self.build)
             for block in out.split("\n\n"):
-                if found := re.match(r"tests/CMakeFiles/test_(\w+)\.dir/", block):
+                if found := re.match(r"tests/(?:\w+/)?CMakeFiles/test_(\w+)\.dir/", block):
                     self.compiled_from[found[1]] = block
         return f"{LIBRARY}/{file}\n" in self.compiled_from.get(test, "") + "\n"
 

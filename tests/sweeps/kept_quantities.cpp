@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "impact_damper/analysis/design.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/lyapunov.hpp"
@@ -89,6 +90,21 @@ TEST_CASE("with one impact in each half cycle the loss factor is that of the clo
   CHECK(lowest <= best);
   CHECK(best == doctest::Approx(fold_amplitude(scene.restitution)).epsilon(0.25));
   CHECK(only(kept(scene, {"largest_loss_factor"})) > only(kept(scene, {"loss_factor_at=0.15"})));
+}
+
+TEST_CASE("between two peaks the loss factor lies on the straight line through theirs") {
+  const Scene scene = paper_decay();
+  const LossFactor loss = loss_before_failure(simulate(scene, Exact{}, Record{}));
+  std::size_t i = 1;
+  while (!(loss.amplitude[i] < 0.2)) ++i;
+  REQUIRE(loss.amplitude[i - 1] >= 0.2);
+  REQUIRE(loss.eta[i] != loss.eta[i - 1]);
+  const double eta = only(kept(scene, {"loss_factor_at=0.2"}));
+  CHECK((0.2 - loss.amplitude[i]) * (loss.eta[i - 1] - loss.eta[i]) ==
+        doctest::Approx((eta - loss.eta[i]) * (loss.amplitude[i - 1] - loss.amplitude[i]))
+            .epsilon(1e-9)
+            .scale(1e-12));
+  CHECK(std::abs(eta - loss.eta[i]) > 1e-9);
 }
 
 TEST_CASE("the share of impacts is what viscous damping leaves") {

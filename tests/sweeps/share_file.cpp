@@ -171,6 +171,9 @@ TEST_CASE("parts that are missing, doubled, unfinished or of something else are 
     CHECK(with_b(with_digests(text)).starts_with(b.string() + ": line "));
   }
   other = whole;
+  other.replace(row, 3, "56,");  // one doubled for one that is missing
+  CHECK(with_b(with_digests(other)).starts_with(b.string() + ": line "));
+  other = whole;
   other[end - 3] = 'x';
   CHECK(with_b(other).starts_with(b.string() + ": line "));
   CHECK(with_b(whole.substr(0, whole.size() - 1)).starts_with(b.string() + ": line "));

@@ -27,7 +27,8 @@ std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Va
 
 // "from", "to" and "scale".
 void read_ends(ObjectReader& object, const NumberRange& range, double& from, double& to, Spacing& spacing) {
-  const bool both = object.required("from", from, range) & object.required("to", to, range);
+  const bool has_from = object.required("from", from, range), has_to = object.required("to", to, range);
+  const bool both = has_from && has_to;
   object.optional("scale", spacing, {Spacing::linear, Spacing::logarithmic});
   if (both && !(from < to))
     object.reject("to", "must be > from, " + number_text(from) + ", got " + number_text(to));
@@ -106,9 +107,9 @@ void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
   }
   if (auto frequencies = object.optional_object("frequencies")) {
     FrequencyRange range;
-    const bool both =
-        frequencies->required("from", range.from, above(0)) & frequencies->required("to", range.to, above(0));
-    if (both && !(range.from < range.to))
+    const bool has_from = frequencies->required("from", range.from, above(0));
+    const bool has_to = frequencies->required("to", range.to, above(0));
+    if (has_from && has_to && !(range.from < range.to))
       frequencies->reject("to",
                           "must be > from, " + number_text(range.from) + ", got " + number_text(range.to));
     frequencies->required("count", range.count, within(2, 100'000));

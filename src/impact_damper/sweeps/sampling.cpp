@@ -51,7 +51,8 @@ double stratified_draw(const Draw& draw, std::int64_t count) {
 }
 
 std::int64_t permuted(const Draw& draw, std::int64_t count) {
-  const int bits = std::bit_width(std::uint64_t(count - 1)), half = std::max(1, (bits + 1) / 2);
+  const int bits = static_cast<int>(std::bit_width(std::uint64_t(count - 1))),
+            half = std::max(1, (bits + 1) / 2);
   const std::uint64_t mask = (std::uint64_t(1) << half) - 1;
   std::uint64_t at = std::uint64_t(draw.index);
   do {
