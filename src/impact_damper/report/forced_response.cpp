@@ -19,16 +19,6 @@ constexpr std::array<Way, 2> both_ways{&ResponsePoint::rising, &ResponsePoint::f
 // Of a steady motion's power (M12.9). Over 500 periods the energy of a chaotic one may differ at both ends.
 constexpr double largest_imbalance = 0.2;
 
-// Whether two amplitudes differ by more than visible_difference, of the larger one, and than they scatter
-// (M12.8).
-bool amplitudes_differ(const ArrivedMotion& a, double amplitude, const ArrivedMotion& b) {
-  constexpr double deviations = 3;
-  const double sa = a.steady.amplitude_scatter, sb = b.steady.amplitude_scatter;
-  return std::abs(amplitude - b.amplitude()) >
-         std::max(visible_difference * std::max(amplitude, b.amplitude()),
-                  deviations * square_root(sa * sa + sb * sb));
-}
-
 // Each run is of eight periods of the force or of a tenth of `mean_periods`: what needs more than these is
 // given up.
 constexpr std::int64_t most_impacts_of_a_run = 20'000, most_steps_of_a_run = 1'000'000;
@@ -201,12 +191,14 @@ bool ArrivedMotion::changes() const {
   const SteadyMeans& means = *steady.means;
   const double lost = means.viscous_power + means.impact_power;
   if (std::abs(means.power - lost) > largest_imbalance * std::max(means.power, lost)) return true;
-  return earlier_amplitude && amplitudes_differ(*this, *earlier_amplitude, *this);
+  const double scatter = steady.amplitude_scatter;
+  return earlier_amplitude && amplitudes_differ(*earlier_amplitude, scatter, amplitude(), scatter);
 }
 
 bool ResponsePoint::has_two_motions() const {
   return rising.is_known() && falling.is_known() && !rising.changes() && !falling.changes() &&
-         amplitudes_differ(rising, rising.amplitude(), falling);
+         amplitudes_differ(rising.amplitude(), rising.steady.amplitude_scatter, falling.amplitude(),
+                           falling.steady.amplitude_scatter);
 }
 
 std::optional<LargestAmplitude> ForcedResponse::largest(Way way) const {

@@ -13,9 +13,6 @@
 
 namespace impact_damper {
 
-// Motions whose amplitudes differ by less, relative to the larger one, count as the same (M12.8).
-inline constexpr double visible_difference = 0.05;
-
 // The motion at one frequency, arrived at in one of the two ways.
 struct ArrivedMotion {
   SteadyState steady;  // without means if a budget of the engine has ended it

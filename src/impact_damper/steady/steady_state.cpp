@@ -157,6 +157,12 @@ std::optional<Recurrence::Repeats> Recurrence::add(const State<double>& state) {
   return std::nullopt;
 }
 
+bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b) {
+  constexpr double deviations = 3;
+  return std::abs(a - b) > std::max(visible_difference * std::max(a, b),
+                                    deviations * square_root(scatter_a * scatter_a + scatter_b * scatter_b));
+}
+
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
   std::vector<Problem> problems = problems_of(without_stops(scene));
   for (const Problem& each : problems_of(engine)) problems.push_back(each);

@@ -62,6 +62,11 @@ struct SteadyState {
   State<double> state{};  // at phase 0, at the end
 };
 
+// Whether two largest |x| with their scatter are of different motions: they differ by more than
+// visible_difference of the larger one, and by more than three standard deviations (M12.8).
+inline constexpr double visible_difference = 0.05;
+bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b);
+
 // What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
 // or the engine is not valid, or it is the component element method, whose steps would begin anew with each
 // run.
