@@ -114,6 +114,7 @@ std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure
 std::vector<Measure> model_measures();   // engine against engine, wall and time step
 std::vector<Measure> audit_measures();   // the paper's slips
 std::vector<Measure> stuck_measures();   // the paper's stuck regime
+std::vector<Measure> steady_measures();  // steady motions under a force
 
 // For each member of the one scene of `call`, or for the members of all of them side by side.
 template <class Find>

@@ -108,12 +108,6 @@ std::pair<double, double> highest(const Curve& curve) {
   return {curve.x[static_cast<std::size_t>(top - curve.y.begin())], *top};
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 Spread product_mid_range(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, runs.analysis().loss,

@@ -41,6 +41,13 @@ double spread_percent(const std::vector<Curve>& curves, double from, double to, 
 double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
                             int bins = default_bins);
 
+// NaN of none.
+inline double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
 inline const HalfCycles& half_cycles_of(const Run& run) {
   if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");
   return *run.half_cycles;

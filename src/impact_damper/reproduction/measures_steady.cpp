@@ -1,0 +1,295 @@
+// Measures on steady motions under a force: beside what a free decay predicts of them (docs/mathematics.md,
+// chapter 14: M14.9, which follows from M14.6, M14.7 and M14.8), beside each other, and beside the closed
+// form of two impacts in a period.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/measures.hpp"
+#include "impact_damper/reproduction/measures_parts.hpp"
+#include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/steady/two_impact_orbit.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+// Throws std::invalid_argument if the response is of another kind.
+template <class Kind>
+const Kind& response_of(Runs& runs, const std::string& name) {
+  const auto* const found = std::get_if<Kind>(&runs.response(name));
+  if (!found) throw std::invalid_argument(name + ": must be a " + std::string(Kind::kind));
+  return *found;
+}
+
+double amplitude_of(const SteadyState& steady) { return steady.means ? steady.means->amplitude : no_number; }
+
+using Way = std::vector<SteadyState> Sweep::*;
+constexpr Way rising = &Sweep::up, falling = &Sweep::down;
+
+// At each force that the sweeps have, the largest amplitude of all of them; NaN where one has none. Throws
+// std::invalid_argument if they are not over the same forces.
+Curve largest_amplitudes(Runs& runs, const MeasureCall& call, Way way) {
+  Curve curve;
+  for (const std::string& name : call.responses) {
+    const auto& response = response_of<SweepResponse>(runs, name);
+    const std::vector<double> forces = response.axis.values();
+    if (response.axis.number != &Scene::force_amplitude || (!curve.x.empty() && curve.x != forces))
+      throw std::invalid_argument(name + ": must be over the same forces as all responses of the measure");
+    curve.x = forces;
+    curve.y.resize(forces.size(), 0);
+    for (const Sweep& sweep : response.sweeps) {
+      for (std::size_t i = 0; i < forces.size(); ++i) {
+        const double amplitude = amplitude_of((sweep.*way)[i]);
+        double& largest = curve.y[i];
+        if (largest == largest && !(amplitude <= largest)) largest = amplitude;
+      }
+    }
+  }
+  return curve;
+}
+
+// F over A (M14.7) from the amplitude of the largest F on down, in the order of time; A in [from, to].
+Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
+  Curve curve =
+      loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
+  const double carried = square_root(1 + run.scene.mass_ratio);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= carried * curve.x[i];
+  const auto top = std::ranges::max_element(curve.y) - curve.y.begin();
+  curve.x.erase(curve.x.begin(), curve.x.begin() + top);
+  curve.y.erase(curve.y.begin(), curve.y.begin() + top);
+  return curve;
+}
+
+// (M14.9), linear between the curve's points; NaN for a force above all of it or below all of it.
+double predicted_amplitude(const Curve& needed, double force) {
+  for (std::size_t i = 0; i + 1 < needed.x.size() && force <= needed.y[0]; ++i) {
+    if (!(needed.y[i + 1] <= force)) continue;
+    const double part = (needed.y[i] - force) / (needed.y[i] - needed.y[i + 1]);
+    return needed.x[i] + part * (needed.x[i + 1] - needed.x[i]);
+  }
+  return no_number;
+}
+
+double most(const std::vector<double>& values) {
+  return values.empty() ? no_number : *std::ranges::max_element(values);
+}
+
+template <Way way, double (*of_all)(const std::vector<double>&)>
+Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
+  const Curve found = largest_amplitudes(runs, call, way);
+  return over_members(runs, call, [&](const Run& run) {
+    const Curve needed = needed_force(runs, run, call);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < found.x.size(); ++i) {
+      const double predicted = predicted_amplitude(needed, found.x[i]);
+      if (predicted == predicted) errors.push_back(100 * std::abs(found.y[i] / predicted - 1));
+    }
+    return of_all(errors);
+  });
+}
+
+Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
+  const Curve found = largest_amplitudes(runs, call, rising);
+  return over_members(runs, call, [&](const Run& run) {
+    const Curve needed = needed_force(runs, run, call);
+    if (needed.x.empty()) return no_number;
+    for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
+      if (!(found.y[i] <= needed.x[0] && found.y[i + 1] > needed.x[0])) continue;
+      const double part = (needed.x[0] - found.y[i]) / (found.y[i + 1] - found.y[i]);
+      return (found.x[i] + part * (found.x[i + 1] - found.x[i])) / needed.y[0];
+    }
+    return no_number;
+  });
+}
+
+Spread jump_ratio(Runs& runs, const MeasureCall& call) {
+  const Curve found = largest_amplitudes(runs, call, falling);
+  std::size_t least = found.x.size();  // the least force that holds the amplitude from there on
+  while (least > 0 && found.y[least - 1] >= number(call, "from")) --least;
+  return over_members(runs, call, [&](const Run& run) {
+    const Curve needed = needed_force(runs, run, call);
+    if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
+    return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
+  });
+}
+
+// For each value of each sweep of a response, with what the rising and the falling way have there.
+template <class Visit>
+void for_each_value(const SweepResponse& response, Visit visit) {
+  for (const Sweep& sweep : response.sweeps)
+    for (std::size_t i = 0; i < sweep.up.size(); ++i)
+      visit(static_cast<std::int64_t>(i), sweep.up[i], sweep.down[i]);
+}
+
+Spread one_motion_share(Runs& runs, const MeasureCall& call) {
+  std::vector<double> same;
+  for (const std::string& name : call.responses) {
+    for_each_value(response_of<SweepResponse>(runs, name), [&](std::int64_t, const SteadyState& up,
+                                                               const SteadyState& down) {
+      const double a = amplitude_of(up), b = amplitude_of(down);
+      const bool differ = amplitudes_differ(a, up.amplitude_scatter, b, down.amplitude_scatter);
+      same.push_back(a == a && b == b ? double(!differ) : no_number);
+    });
+  }
+  return spread_of({mean(same)});
+}
+
+// Of the points of a map, those that end in a motion with one impact on each wall in a period of the force.
+struct TwoImpactPoints {
+  std::int64_t symmetric = 0, all = 0;
+};
+TwoImpactPoints two_impact_points(const Basin& basin) {
+  TwoImpactPoints points;
+  for (const Attractor& each : basin.attractors) {
+    if (each.idle || each.period != 1 || each.impacts != ImpactCounts{1, 1}) continue;
+    points.all += each.points;
+    if (each.symmetric) points.symmetric += each.points;
+  }
+  return points;
+}
+
+Spread two_impact_share(Runs& runs, const MeasureCall& call) {
+  const Basin& basin = response_of<BasinResponse>(runs, call.responses.front()).basin;
+  return spread_of({static_cast<double>(two_impact_points(basin).symmetric) /
+                    static_cast<double>(basin.attractor.size())});
+}
+
+Spread equally_spaced_share(Runs& runs, const MeasureCall& call) {
+  const TwoImpactPoints points =
+      two_impact_points(response_of<BasinResponse>(runs, call.responses.front()).basin);
+  return spread_of({static_cast<double>(points.symmetric) / static_cast<double>(points.all)});
+}
+
+// Relative difference of the power that impacts take out from what they would take out in the closed form, of
+// whose two orbits the nearer counts. An impact with the relative speed w costs nu (1 - e^2) w^2 / (2 (1 +
+// nu)).
+double power_error(const Scene& scene, double impact_power) {
+  const double nu = scene.mass_ratio, e = scene.restitution;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TwoImpactOrbit& orbit : two_impact_orbits(scene)) {
+    const double w = orbit.impact_speed, frequency = scene.force_frequency / (2 * half_turn<double>());
+    const double power = 2 * frequency * nu * (1 - e * e) * w * w / (2 * (1 + nu));
+    least = std::min(least, std::abs(impact_power / power - 1));
+  }
+  return least;
+}
+
+Spread two_impact_error(Runs& runs, const MeasureCall& call) {
+  std::vector<double> errors;
+  for (const std::string& name : call.responses) {
+    const auto& response = response_of<SweepResponse>(runs, name);
+    for_each_value(response, [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
+      const Scene scene = response.axis.at(response.scene, i);
+      // Undamped at resonance there is no linear response, which the closed form is made of.
+      if (scene.force_frequency == 1 && scene.damping_ratio == 0) return;
+      for (const SteadyState* each : {&up, &down})
+        if (each->period == 1 && each->symmetric && each->impacts == ImpactCounts{1, 1})
+          errors.push_back(power_error(scene, each->means->impact_power));
+    });
+  }
+  return spread_of({most(errors)});
+}
+
+}  // namespace
+
+std::vector<Measure> steady_measures() {
+  return {
+      {"steady_amplitude_falling_percent",
+       1,
+       1,
+       {"from", "to"},
+       amplitude_error_percent<falling, mean>,
+       "relative deviation of the largest steady amplitude, reached with the force falling, from that "
+       "predicted by the decay (M14.9), mean over the forces that have a prediction in [from, to], in "
+       "percent",
+       1,
+       8},
+      {"steady_amplitude_falling_worst_percent",
+       1,
+       1,
+       {"from", "to"},
+       amplitude_error_percent<falling, most>,
+       "the largest of these deviations",
+       1,
+       8},
+      {"steady_amplitude_rising_percent",
+       1,
+       1,
+       {"from", "to"},
+       amplitude_error_percent<rising, mean>,
+       "the mean with the force rising",
+       1,
+       8},
+      {"steady_amplitude_rising_worst_percent",
+       1,
+       1,
+       {"from", "to"},
+       amplitude_error_percent<rising, most>,
+       "the largest of these",
+       1,
+       8},
+      {"force_limit_ratio",
+       1,
+       1,
+       {"from", "to"},
+       force_limit_ratio,
+       "rising force at which the largest steady amplitude exceeds that of the largest F of the decay, A in "
+       "[from, to], divided by this F (M14.7)",
+       1,
+       8},
+      {"force_jump_ratio",
+       1,
+       1,
+       {"from", "to"},
+       jump_ratio,
+       "falling force at which the largest steady amplitude falls below from, divided by the least F of the "
+       "decay between from and the amplitude of its largest F in [from, to]",
+       1,
+       8},
+      {"one_motion_share",
+       0,
+       0,
+       {},
+       one_motion_share,
+       "share of the values of sweeps at which the rising and the falling way arrive at one amplitude "
+       "(M12.8)",
+       1,
+       8},
+      {"two_impact_share",
+       0,
+       0,
+       {},
+       two_impact_share,
+       "share of the points of a map that end in a motion with two equally spaced impacts in a period of the "
+       "force, one on each wall",
+       1,
+       1},
+      {"equally_spaced_share",
+       0,
+       0,
+       {},
+       equally_spaced_share,
+       "share of these among all with one impact on each wall in a period",
+       1,
+       1},
+      {"two_impact_error",
+       0,
+       0,
+       {},
+       two_impact_error,
+       "largest relative deviation of the power that impacts take out of such a motion of sweeps from that "
+       "of "
+       "the closed form (M13.18)",
+       1,
+       8},
+  };
+}
+
+}  // namespace impact_damper
