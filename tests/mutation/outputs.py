@@ -24,7 +24,7 @@ PAGE = Path(__file__).resolve().parent / "outputs.md"
 SOURCE = PAGE.parents[2]
 # Where faults are planted, and the test programs that look there.
 OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "file": ["run_file"],
-       "read": ["run_file"], "table": ["series"], "measure": ["measures", "measures_of_runs"]}
+       "read": ["run_file"], "table": ["series"], "measure": ["measures", "measures_of_runs", "measures_of_responses"]}
 FIRST = list(dict.fromkeys(sum(OWN.values(), [])))
 HEAD = """# Faults planted in what is given out, and who noticed
 
