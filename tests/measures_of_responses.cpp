@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 
 // A = a0 - a1 t + a2 t^2 at the peaks t = i pi, to which a parabola is fitted exactly. A eta = -2 A' falls
 // with the amplitude: A'^2 = a1^2 - 4 a2 (a0 - A).
-constexpr double a0 = 4, a1 = 0.012, a2 = 6e-6;
+constexpr double a0 = 4, a1 = 0.009, a2 = 4e-6;
 constexpr int rows = 160;
 constexpr double nu = 0.2;
 double amplitude_at(double i) { return a0 - a1 * i * pi + a2 * i * i * pi * pi; }
@@ -226,18 +226,19 @@ TEST_CASE("points of a map with one impact on each wall in a period are counted,
 }
 
 TEST_CASE("two impacts in a period are held against the power of the closed form") {
-  // Undamped, M13.18: two orbits at each frequency here.
+  // Undamped, M13.18.
   SweepResponse sweep;
   sweep.scene.mass_ratio = 0.1;
   sweep.scene.restitution = 0.5;
-  sweep.scene.force_amplitude = 0.1;
+  sweep.scene.force_amplitude = 0.08;
   sweep.axis = {&Scene::force_frequency, 0.9, 1, 3};
   const auto powers = [](double omega) {
-    const double m = 0.1, e = 0.5, b = (1 - e) / (1 + e), c = 0.1 / (1 - omega * omega);
+    const double m = 0.1, e = 0.5, b = (1 - e) / (1 + e), c = 0.08 / (1 - omega * omega);
     const double a = pi / omega + 2 * m * std::tan(pi / (2 * omega)), q = b * (1 + m) / omega;
     const double square = a * a + 4 * q * q, root = std::sqrt(a * a - square * (1 - 4 * c * c));
     std::vector<double> found;
     for (const double v : {(a + root) / square, (a - root) / square}) {
+      if (v < 0) continue;
       const double w = v * (1 + b) * (1 + m);
       found.push_back(omega / (2 * pi) * m / (1 + m) * (1 - e * e) * w * w);
     }
@@ -256,8 +257,8 @@ TEST_CASE("two impacts in a period are held against the power of the closed form
   more.impacts = {2, 2};
   longer.period = 3;
   open.period.reset();
+  REQUIRE(powers(0.9).size() == 2);
   const double at_090 = powers(0.9)[0], at_095 = powers(0.95)[0], slow_at_090 = powers(0.9)[1];
-  REQUIRE(slow_at_090 > 0);
   // At 1 there is no closed form.
   sweep.sweeps = {{.up = {two_impacts(1.01 * at_090), two_impacts(0.96 * at_095), two_impacts(7)},
                    .down = {two_impacts(slow_at_090), unequal, two_impacts(7)}},
