@@ -124,9 +124,8 @@ const std::vector<RecordedColumn>& recorded_columns() {
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> table = [] {
     std::vector<Measure> all;
-    for (auto part :
-         {loss_measures(), regime_measures(), model_measures(), audit_measures(), stuck_measures(),
-          steady_measures()})
+    for (auto part : {loss_measures(), regime_measures(), model_measures(), audit_measures(),
+                      stuck_measures(), steady_measures()})
       all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end(), [](const Measure& a, const Measure& b) { return a.name < b.name; });
     return all;
