@@ -15,7 +15,8 @@ counting, picking, comparing and dividing; all come from what the program made:
                             what the median of A eta/nu makes of it
     stamp.NUMBER, version, commit, date, year
 
-{{NAME|3}} writes three significant digits, {{NAME|%}} a hundred times the value.
+{{NAME|3}} writes three significant digits, {{NAME|%}} and {{NAME|%3}} a hundred
+times the value.
 """
 import datetime
 import difflib
@@ -185,8 +186,8 @@ class Values:
             return value
         if value is None:
             return "none"
-        if how == "%":
-            value, how = 100 * value, ""
+        if how.startswith("%"):
+            value, how = 100 * value, how[1:]
         if isinstance(value, int) and not how:
             return str(value)
         return significant(float(value), int(how or 4))
