@@ -36,7 +36,9 @@ const Power& power() {
   static const Power power = [] {
     PowerInput input;
     input.claims = read_claims(source / "data/claims.json");
-    input.further = read_catalogue(source / "figures/catalogue.json").runs;
+    const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
+    input.further = catalogue.runs;
+    input.asked = catalogue.responses;
     Record record;
     record.impacts = record.contacts = true;
     for (const auto& file : std::filesystem::directory_iterator(source / "data/scenes"))

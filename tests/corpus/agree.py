@@ -163,7 +163,9 @@ def main():
     if unlisted:
         sys.exit(f"not in manifest.txt: {unlisted}")
 
-    own = {"scene": sorted([*(source / "data/scenes").glob("*.json"), *(source / "data/examples").glob("*.json")]),
+    scenes = [*(source / "data/scenes").glob("*.json"),
+              *(file for file in (source / "data/examples").glob("*.json") if "schema" not in json.loads(file.read_text()))]
+    own = {"scene": sorted(scenes),
            "run": [], "catalogue": [source / "figures/catalogue.json"], "claims": [source / "data/claims.json"],
            "manifest": [file for file in [source / "data/reference/manifest.json"] if file.exists()]}
     for engine in ("exact", "restitution", "cem"):

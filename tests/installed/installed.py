@@ -14,6 +14,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from asked import respond  # noqa: E402
+
 PREFIX, BUILT, SOURCE, FOLDER = (Path(each).resolve() for each in sys.argv[1:5])
 PROGRAM = PREFIX / "bin/impact-damper"
 SHARE = PREFIX / "share/impact-damper"
@@ -57,6 +60,8 @@ def finds_its_files():
     same_as_in_the_source_folder("series", "--runs", runs, "--figure", "7")
     demand(run(PROGRAM, "check", "run", *sorted(runs.rglob("*.json"))).count("\n") ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")
+    for entry in catalogue["responses"]:
+        run(PROGRAM, *respond(entry, SHARE / "data/scenes"), "-o", runs / f"{entry['name']}.json")
     done = subprocess.run([PROGRAM, "verify", "--runs", runs, "--members", "2"], cwd=FOLDER, capture_output=True, text=True)
     claims = len(json.loads((SHARE / "data/claims.json").read_text())["claims"])
     demand(done.returncode in (0, 1) and f"\nengine exact, {claims} claims: " in done.stdout, done.stderr + done.stdout)

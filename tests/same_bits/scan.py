@@ -27,6 +27,7 @@ WORDS = {
 ALLOWED = {
     ("cli/main.cpp", "ostringstream"): "CLI11 writes its help into it, in the classic locale; no number of a result",
     ("cli/drawing.cpp", "environ"): "where gnuplot is looked for, and what it inherits; what it heeds is set (figures/draw)",
+    ("cli/sweep.cpp", "steady_clock"): "when to show progress on stderr, and how long a sweep will take",
     ("cli/verify.cpp", "steady_clock"): "when to show progress on stderr",
     ("impact_damper/analysis/parallel.hpp", "hardware_concurrency"):
         "how many threads; that results do not depend on it is tested (cli: equal bytes with any number of threads)",

@@ -21,6 +21,9 @@ void write_provenance(JsonWriter& out);
 // The engine of a response: every option of it must be there, null where it follows from each of the runs
 // that the response was made with. Absent if there are problems.
 std::optional<Engine> read_engine_of_response(ObjectReader& engine);
+// The engine of a plan: only its name must be there; null is as if an option were missing. Absent if there
+// are problems.
+std::optional<Engine> read_engine_of_plan(ObjectReader& engine);
 // "units", if there: six numbers of three scales, which must go together.
 void check_units(ObjectReader& root);
 // Whether a text ends with the digest of what stands before it (run_file.hpp).

@@ -54,13 +54,16 @@ class Columns {
 };
 
 // Whether an engine may lack an option that every run file has, and then keeps its default: a run file may
-// not; a response file has null for what follows from each of its runs; elsewhere any may be missing.
-enum class Lacking { nothing, null, any };
+// not; a response file has null for what follows from each of its runs; elsewhere any may be missing, in a
+// plan any that follows from the scene may also be null, as the file beside a sweep's table has it.
+enum class Lacking { nothing, null, any, any_or_null };
 
 // False, having said so, unless there is a value that is allowed, or none where none is needed.
 template <class Value>
 bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking, Value& value) {
-  if ((lacking == Lacking::any || !option.in_every_file) && !object.has(option.name)) return true;
+  const bool may_be_missing =
+      lacking == Lacking::any || lacking == Lacking::any_or_null || !option.in_every_file;
+  if (may_be_missing && !object.has(option.name)) return true;
   if constexpr (std::is_enum_v<Value>) {
     if (!object.require(option.name)) return false;
     const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
@@ -69,7 +72,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
   } else if constexpr (std::is_same_v<Value, bool>) {
     return object.required(option.name, value);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    if (lacking == Lacking::any) return object.optional(option.name, value, option.range);
+    if (lacking == Lacking::any_or_null) return object.optional(option.name, value, option.range);
     if (lacking == Lacking::null && option.in_every_file)
       return object.required(option.name, value, option.range);
     double number = 0;  // null is no number
@@ -245,6 +248,9 @@ Run parse_run(const std::string& name, const std::string& text) {
 
 std::optional<Engine> read_engine_of_response(ObjectReader& engine) {
   return read_engine(engine, Lacking::null);
+}
+std::optional<Engine> read_engine_of_plan(ObjectReader& engine) {
+  return read_engine(engine, Lacking::any_or_null);
 }
 
 void check_units(ObjectReader& root) {
