@@ -33,8 +33,8 @@ double seconds_since(Clock::time_point begin) {
 // FROM:TO:N, FROM:TO:N:log or V,V,...
 std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                                 const std::vector<Variable>& variables) {
-  std::vector<std::string_view> names;
-  for (const Variable& each : variables) names.push_back(each.name);
+  std::vector<std::string_view> names(variables.size());
+  std::ranges::transform(variables, names.begin(), &Variable::name);
   const auto varied = varied_of(arguments, text, names);
   if (!varied) return std::nullopt;
   GridAxis axis;

@@ -116,6 +116,7 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
   if (absolute(nearer) < t / 2) t += nearer;
   bool near = Departure::all <= 5;
   for (int i = 0;; ++i) {
+    // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more than five pairs
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
     const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;

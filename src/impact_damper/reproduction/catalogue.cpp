@@ -292,8 +292,8 @@ CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catal
   if (const std::optional<ObjectReader> changes = item.optional_object("set"))
     response.set = read_changes(*changes, {});
   const std::array<Response, 3> kinds{SweepResponse{}, BasinResponse{}, OrbitsResponse{}};
-  std::vector<std::string_view> words;
-  for (const Response& each : kinds) words.push_back(kind_of(each));
+  std::vector<std::string_view> words(kinds.size());
+  std::ranges::transform(kinds, words.begin(), kind_of);
   const auto kind = item.require("kind") ? item.word("kind", words) : std::nullopt;
   if (!kind) {
     item.keys();  // what else is allowed depends on the kind

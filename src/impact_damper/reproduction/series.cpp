@@ -122,7 +122,8 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRespon
 std::string question_of(const Response& response) {
   std::string text;
   for (const auto& [pointer, part] : asked_of(response))
-    if (!pointer.starts_with("/scene/")) text += (text.empty() ? "" : ", ") + pointer + " " + part;
+    if (!pointer.starts_with("/scene/"))
+      text.append(text.empty() ? "" : ", ").append(pointer).append(" ").append(part);
   return text;
 }
 

@@ -153,8 +153,8 @@ std::vector<Problem> problems_of(const BranchRule& rule) {
   };
   check("largest_step", rule.largest_step, within(1e-6, 1e6));
   check("max_multiplier", rule.max_multiplier, within(1, 1e12));
-  check("max_points", double(rule.max_points), within(1, 1e6));
-  check("max_branches", double(rule.max_branches), within(1, 1000));
+  check("max_points", double(rule.max_points), most_branch_points);
+  check("max_branches", double(rule.max_branches), most_branches);
   return problems;
 }
 

@@ -34,6 +34,8 @@ struct BranchRule {
   std::int64_t max_points = 1000;  // of each branch; 1 to 1e6
   std::int64_t max_branches = 20;  // 1 to 1000
 };
+// Of its whole numbers.
+inline constexpr NumberRange most_branch_points = within(1, 1e6), most_branches = within(1, 1000);
 // What is wrong with it, one entry for each member.
 std::vector<Problem> problems_of(const BranchRule& rule);
 

@@ -20,6 +20,11 @@ class Examination {
     if (!holds) problems_.push_back({field, message});
   }
 
+  // The entry of a column: "/sweeps/0/up/", "power", "/3".
+  static std::string place(std::string_view before, std::string_view column, std::string_view row) {
+    return std::string(before).append(column).append(row);
+  }
+
   void examine(const SweepResponse& response) {
     for (std::size_t n = 0; n < response.sweeps.size(); ++n) {
       const std::string sweep = "/sweeps/" + std::to_string(n);
@@ -33,13 +38,13 @@ class Examination {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const SteadyState& s = states[i];
       const std::string row = '/' + std::to_string(i);
-      require(!s.contraction || s.period, way + "contraction" + row,
+      require(!s.contraction || s.period, place(way, "contraction", row),
               "must be null: the motion is not periodic");
-      require(s.transient_periods <= response.rule.max_periods, way + "transient_periods" + row,
+      require(s.transient_periods <= response.rule.max_periods, place(way, "transient_periods", row),
               "must be <= max_periods, got " + std::to_string(s.transient_periods));
       if (!s.means) continue;
       const std::int64_t measured = s.period.value_or(response.rule.mean_periods);
-      require(s.measured_periods == measured, way + "measured_periods" + row,
+      require(s.measured_periods == measured, place(way, "measured_periods", row),
               "must be " + std::to_string(measured) + ", got " + std::to_string(s.measured_periods));
       examine_means(response, way, row, response.axis.at(response.scene, std::int64_t(i)), s);
     }
@@ -54,25 +59,25 @@ class Examination {
     const auto [behind, in_phase] = sin_cos(means.lag_deg * (half_turn<double>() / 180));
     const double power = f0 * omega * means.fundamental * behind / 2;
     const double scale = f0 * omega * means.fundamental * (std::abs(behind) + std::abs(in_phase));
-    require(std::abs(means.power - power) <= 1e-9 * scale, way + "power" + row,
+    require(std::abs(means.power - power) <= 1e-9 * scale, place(way, "power", row),
             "must be " + number_text(power) + ", that of the fundamental, got " + number_text(means.power));
     require(scene.damping_ratio > 0 ? means.viscous_power >= 0 : means.viscous_power == 0,
-            way + "viscous_power" + row,
+            place(way, "viscous_power", row),
             "must be " + std::string(scene.damping_ratio > 0 ? ">= 0" : "0 without damping") + ", got " +
                 number_text(means.viscous_power));
     if (!s.period) return;
     // What is missing to the periodic motion changes the energy, of the order of the state squared.
     const double size = size_of(s.state), allowed = 100 * response.rule.tolerance * size * size * (1 + omega);
     const double out = means.viscous_power + means.impact_power;
-    require(std::abs(means.power - out) <= allowed, way + "power" + row,
+    require(std::abs(means.power - out) <= allowed, place(way, "power", row),
             "must be " + number_text(out) + ", what damper and impacts take out, got " +
                 number_text(means.power));
-    require(s.amplitude_scatter == 0 && s.power_scatter == 0, way + "amplitude_scatter" + row,
+    require(s.amplitude_scatter == 0 && s.power_scatter == 0, place(way, "amplitude_scatter", row),
             "must be 0, as that of the power: the motion is periodic");
     require(
-        std::abs(s.state.x) <= means.amplitude + allowed, way + "x" + row,
+        std::abs(s.state.x) <= means.amplitude + allowed, place(way, "x", row),
         "must not exceed the amplitude, " + number_text(means.amplitude) + ", got " + number_text(s.state.x));
-    examine_symmetry(way + "symmetric" + row, s.symmetric, *s.period, s.impacts);
+    examine_symmetry(place(way, "symmetric", row), s.symmetric, *s.period, s.impacts);
   }
 
   void examine_symmetry(const std::string& field, bool symmetric, std::int64_t period,
@@ -121,15 +126,15 @@ class Examination {
   void examine_point(const std::string& branch, const std::string& row, const OrbitPoint& point) {
     const bool struck = point.impacts != ImpactCounts{};
     const bool stable = struck && point.multipliers[0].modulus() < 1;
-    require(point.stable == stable, branch + "stable" + row,
+    require(point.stable == stable, place(branch, "stable", row),
             "must be " + std::string(stable ? "true" : "false") + " by its multipliers and impacts");
     for (std::size_t i = 1; i < 4; ++i)
       require(point.multipliers[i].modulus() <= point.multipliers[i - 1].modulus() * (1 + 1e-9),
-              branch + "multiplier_" + std::to_string(i + 1) + "_re" + row,
+              place(branch, "multiplier_" + std::to_string(i + 1) + "_re", row),
               "must not exceed the one before in modulus");
-    examine_symmetry(branch + "symmetric" + row, point.symmetric, point.period, point.impacts);
+    examine_symmetry(place(branch, "symmetric", row), point.symmetric, point.period, point.impacts);
     // A simulation drifts away from what is unstable (FollowedBranch::amplitudes).
-    require(std::abs(point.state.x) <= point.amplitude + 1e-5, branch + "x" + row,
+    require(std::abs(point.state.x) <= point.amplitude + 1e-5, place(branch, "x", row),
             "must not exceed the amplitude, " + number_text(point.amplitude) + ", got " +
                 number_text(point.state.x));
   }

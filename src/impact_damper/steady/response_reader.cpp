@@ -18,8 +18,8 @@ constexpr std::array budgets{StopReason::impact_budget, StopReason::half_cycle_b
                              StopReason::time_budget, StopReason::step_budget};
 
 std::vector<std::string_view> scene_names() {
-  std::vector<std::string_view> names;
-  for (const SceneField& field : scene_fields) names.push_back(field.name);
+  std::vector<std::string_view> names(scene_fields.size());
+  std::ranges::transform(scene_fields, names.begin(), &SceneField::name);
   return names;
 }
 
@@ -299,17 +299,18 @@ Response read_whole(JsonDocument document, bool sealed) {
 }
 
 template <class Number>
-void read_number(ObjectReader& object, bool may_be_missing, std::string_view name, Number& number) {
+void read_number(ObjectReader& object, bool may_be_missing, std::string_view name, Number& number,
+                 NumberRange range = {}) {
   if (may_be_missing) {
-    object.optional(name, number);
+    object.optional(name, number, range);
   } else {
-    object.required(name, number);
+    object.required(name, number, range);
   }
 }
 void read_steady_rule(ObjectReader& object, bool may_be_missing, SteadyRule& rule) {
   read_number(object, may_be_missing, "tolerance", rule.tolerance);
-  read_number(object, may_be_missing, "longest_period", rule.longest_period);
-  read_number(object, may_be_missing, "max_periods", rule.max_periods);
+  read_number(object, may_be_missing, "longest_period", rule.longest_period, longest_periods);
+  read_number(object, may_be_missing, "max_periods", rule.max_periods, most_periods);
 }
 void reject_all(ObjectReader& object, const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) object.reject(problem.field, problem.message);
@@ -356,7 +357,7 @@ std::optional<ParameterRange> read_range(ObjectReader& object) {
 
 void read_rule(ObjectReader& object, bool may_be_missing, SteadyRule& rule) {
   read_steady_rule(object, may_be_missing, rule);
-  read_number(object, may_be_missing, "mean_periods", rule.mean_periods);
+  read_number(object, may_be_missing, "mean_periods", rule.mean_periods, mean_periods);
   reject_all(object, problems_of(rule));
 }
 void read_rule(ObjectReader& object, bool may_be_missing, BasinRule& rule) {
@@ -368,8 +369,8 @@ void read_rule(ObjectReader& object, bool may_be_missing, BranchRule& rule) {
   read_steady_rule(object, may_be_missing, rule.steady);
   read_number(object, may_be_missing, "largest_step", rule.largest_step);
   read_number(object, may_be_missing, "max_multiplier", rule.max_multiplier);
-  read_number(object, may_be_missing, "max_points", rule.max_points);
-  read_number(object, may_be_missing, "max_branches", rule.max_branches);
+  read_number(object, may_be_missing, "max_points", rule.max_points, most_branch_points);
+  read_number(object, may_be_missing, "max_branches", rule.max_branches, most_branches);
   reject_all(object, problems_of(rule));
 }
 

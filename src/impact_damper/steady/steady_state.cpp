@@ -94,9 +94,9 @@ std::vector<Problem> problems_of(const SteadyRule& rule) {
       problems.push_back({name, range.describe("must be") + ", got " + number_text(value)});
   };
   check("tolerance", rule.tolerance, {0, 1e-2, false});
-  check("longest_period", double(rule.longest_period), within(1, 64));
-  check("max_periods", double(rule.max_periods), within(1, 1e9));
-  check("mean_periods", double(rule.mean_periods), within(blocks, 1e6));
+  check("longest_period", double(rule.longest_period), longest_periods);
+  check("max_periods", double(rule.max_periods), most_periods);
+  check("mean_periods", double(rule.mean_periods), mean_periods);
   return problems;
 }
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
 
@@ -29,6 +30,9 @@ struct SteadyRule {
   // Over so many periods a motion that is not periodic is then averaged, in ten blocks. 10 to 1e6.
   std::int64_t mean_periods = 500;
 };
+// Of its whole numbers, by name.
+inline constexpr NumberRange longest_periods = within(1, 64), most_periods = within(1, 1e9),
+                             mean_periods = within(10, 1e6);
 // What is wrong with it, one entry for each member.
 std::vector<Problem> problems_of(const SteadyRule& rule);
 

@@ -370,16 +370,16 @@ std::string KeptQuantity::column() const {
 QuantityReading read_quantity(std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string_view name = text.substr(0, equals);
-  const auto found = std::ranges::find(quantities, name, &Quantity::name);
+  const auto* const found = std::ranges::find(quantities, name, &Quantity::name);
   if (found == quantities.end()) {
-    std::vector<std::string_view> names;
-    for (const Quantity& each : quantities) names.push_back(each.name);
+    std::vector<std::string_view> names(quantities.size());
+    std::ranges::transform(quantities, names.begin(), &Quantity::name);
     const auto meant = nearest(name, names);
     return {{},
             "must name a quantity (sweep --list-quantities), got " + in_quotes(text) +
                 (meant ? ", did you mean " + std::string(*meant) + "?" : "")};
   }
-  KeptQuantity kept{&*found, {}};
+  KeptQuantity kept{found, {}};
   if (!found->at) {
     if (equals == std::string_view::npos) return {kept, {}};
     return {{}, "must be " + std::string(name) + " without a number, got " + in_quotes(text)};

@@ -77,6 +77,6 @@ struct KeptNumbers {
 // Of a scene with problems: none of `count` numbers, and why.
 KeptNumbers none_kept(std::size_t count, const std::vector<Problem>& problems);
 KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, const Engine& engine,
-                    std::span<const KeptQuantity> quantities, const ForcedRules& rules);
+                    std::span<const KeptQuantity> kept, const ForcedRules& rules);
 
 }  // namespace impact_damper

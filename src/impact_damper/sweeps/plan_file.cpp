@@ -17,8 +17,8 @@ constexpr double most_seed = 9007199254740992;  // 2^53: any JSON reader has it 
 
 // The variable that "number" names.
 std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Variable>& variables) {
-  std::vector<std::string_view> names;
-  for (const Variable& each : variables) names.push_back(each.name);
+  std::vector<std::string_view> names(variables.size());
+  std::ranges::transform(variables, names.begin(), &Variable::name);
   if (!object.require("number")) return std::nullopt;
   const auto index = object.word("number", names);
   if (!index) return std::nullopt;
