@@ -217,8 +217,8 @@ bool is_initial_value(const double Scene::*number) {
 
 std::vector<Problem> problems_of(const BasinRule& rule) {
   std::vector<Problem> problems = problems_of(rule.steady);
-  if (!(rule.capture_radius > 0 && rule.capture_radius < 1))
-    problems.push_back({"capture_radius", "must be > 0 and < 1, got " + number_text(rule.capture_radius)});
+  if (!(rule.capture_radius > 0 && rule.capture_radius <= 0.5))
+    problems.push_back({"capture_radius", "must be > 0 and <= 0.5, got " + number_text(rule.capture_radius)});
   return problems;
 }
 
