@@ -12,6 +12,7 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
+#include "impact_damper/sweeps/hdf5_table.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
 #include "impact_damper/sweeps/share_file.hpp"
 #include "interruption.hpp"
@@ -181,6 +182,13 @@ std::string program_identity() {
   return identity;
 }
 
+void require_known_format(Arguments& arguments, const std::optional<std::string>& output) {
+  if (output && is_hdf5(*output) && !has_hdf5())
+    arguments.reject("--output",
+                     "ends in .h5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
+                     "with another name the table is CSV");
+}
+
 // For reading: "42 s", "17 min", "3.5 h".
 std::string duration_text(double seconds) {
   constexpr double minute = 60, hour = 3600;
@@ -276,6 +284,7 @@ int make_sweep(Arguments& arguments) {
   head.plan = plan_of(arguments);
   head.part = part.part;
   head.parts = part.parts;
+  require_known_format(arguments, output);
   const std::string description = output.value_or("") + ".json";
   const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""),
                                      arguments.text("--scene").value_or("")};
@@ -312,6 +321,7 @@ int merge(Arguments& arguments) {
   if (files.empty()) arguments.reject("PART", "must be given: the files that sweep --part has written");
   if (!output) arguments.reject("--output", "must be given: the table is written there");
   arguments.reject_overwriting("--output", output, files);
+  require_known_format(arguments, output);
   arguments.finish();
   if_interrupted_say(left_as_it_was(*output));
   join_shares(files, *output);
@@ -324,7 +334,7 @@ Command sweep_command() {
   Command command{.name = "sweep",
                   .description =
                       "Simulate a scene with many other numbers, and keep what is asked for of each run as "
-                      "one table, CSV."};
+                      "one table."};
   command.options = {
       {"PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"},
       {"--list-quantities", "", "print what can be kept, with its units, and exit", "Sweep",
@@ -335,7 +345,9 @@ Command sweep_command() {
       {"--part", "K/N", "make only part K of N, in the file OUTPUT.part-K-of-N; merge joins the\nparts",
        "Sweep"},
       {"-o,--output", "FILE",
-       "the table; beside it FILE.json says what it holds. Interrupted, the\nsame command goes on", "Sweep"},
+       "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds. Interrupted, the same "
+       "command goes on",
+       "Sweep"},
       threads_option()};
   command.options.back().group = "Sweep";
   for (const Option& option : options_of_plan()) command.options.push_back(option);
@@ -360,7 +372,8 @@ Command merge_command() {
       .name = "merge",
       .description = "Join the parts that sweep --part has made into the table that one sweep makes."};
   command.options = {{"PART", "FILE", "the parts, in any order"},
-                     {"-o,--output", "FILE", "the table; beside it FILE.json says what it holds"}};
+                     {"-o,--output", "FILE",
+                      "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}};
   command.takes_more = true;
   command.footer =
       "Parts must be of one plan and one version of the program, whole, and none missing or doubled.\n\n"

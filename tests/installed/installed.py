@@ -109,6 +109,14 @@ def pages_name_every_option():
     demand(PROGRAM.name in page[:page.index("SYNOPSIS")], page[:300])
 
 
+def headers_include_what_is_installed():
+    headers = {str(file.relative_to(PREFIX / "include")): file.read_text() for file in (PREFIX / "include").rglob("*.h*")}
+    demand(len(headers) > 40, headers.keys())
+    for name, text in headers.items():
+        lacking = {each for each in re.findall(r'^#include "(.*)"', text, re.M) if each not in headers}
+        demand(not lacking, f"{name} includes what is not installed: {lacking}")
+
+
 def bash_completes(*words) -> set:
     script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _impact_damper; '
               '[ ${#COMPREPLY[@]} -eq 0 ] || printf "%s\\n" "${COMPREPLY[@]}"')
@@ -163,6 +171,7 @@ FOLDER.mkdir(parents=True)
 finds_its_files()
 the_current_folder_comes_first()
 a_link_and_a_copy()
+headers_include_what_is_installed()
 pages_name_every_option()
 missing = [tool for tool in ("fish", "zsh") if not shutil.which(tool)]
 if missing:

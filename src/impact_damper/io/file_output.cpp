@@ -106,13 +106,20 @@ bool write_file(const fs::path& file, std::string_view text) {
 }
 
 void write_file_in_pieces(const fs::path& file, const Produce& produce) {
+  require_writable(file);
+  const fs::file_status status = fs::status(file);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    write_directly(file, "wb", file, produce);
+  } else {
+    write_file_by(file, [&](const fs::path& temporary) { write_directly(temporary, "wbx", file, produce); });
+  }
+}
+
+void write_file_by(const fs::path& file, const std::function<void(const fs::path&)>& make) {
   std::error_code error;
   require_writable(file);
   const fs::file_status status = fs::status(file, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    write_directly(file, "wb", file, produce);
-    return;
-  }
+  if (fs::exists(status) && !fs::is_regular_file(status)) reject(file, "is a device or a pipe");
   const fs::path place = fs::exists(status) ? fs::canonical(file, error) : fs::absolute(file, error);
   if (error) reject(file, error.message());
   remove_abandoned(place);
@@ -123,7 +130,7 @@ void write_file_in_pieces(const fs::path& file, const Produce& produce) {
   std::memcpy(unfinished.data(), temporary.c_str(), temporary.native().size() + 1);
   try {
     fs::remove(temporary, error);
-    write_directly(temporary, "wbx", file, produce);
+    make(temporary);
     if (fs::exists(status)) fs::permissions(temporary, status.permissions());
     fs::rename(temporary, place);
   } catch (const fs::filesystem_error& failed) {

@@ -22,6 +22,11 @@ using AddText = std::function<void(std::string_view piece)>;
 void write_file_in_pieces(const std::filesystem::path& file,
                           const std::function<void(const AddText&)>& produce);
 
+// The same for a file that a library writes: make(temporary) writes it there. `file` must not be a device or
+// a pipe.
+void write_file_by(const std::filesystem::path& file,
+                   const std::function<void(const std::filesystem::path& temporary)>& make);
+
 // Throws the IoError that write_file would if it is plain beforehand: `file` is a directory, or its folder
 // is missing or not writable. Before a long computation.
 void require_writable(const std::filesystem::path& file);

@@ -7,6 +7,7 @@
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/steady/response_parts.hpp"
 
 namespace impact_damper {
 namespace {
@@ -98,13 +99,7 @@ void read_quantities(ObjectReader& object, Plan& plan) {
 }
 
 void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
-  if (auto steady = object.optional_object("steady")) {
-    steady->optional("tolerance", rules.steady.tolerance);
-    steady->optional("longest_period", rules.steady.longest_period);
-    steady->optional("max_periods", rules.steady.max_periods);
-    steady->optional("mean_periods", rules.steady.mean_periods);
-    for (const Problem& problem : problems_of(rules.steady)) steady->reject(problem.field, problem.message);
-  }
+  if (auto steady = object.optional_object("steady")) read_rule(*steady, true, rules.steady);
   if (auto frequencies = object.optional_object("frequencies")) {
     FrequencyRange range;
     const bool has_from = frequencies->required("from", range.from, above(0));

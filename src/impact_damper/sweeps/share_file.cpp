@@ -14,6 +14,7 @@
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/sweeps/hdf5_table.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
 
 namespace impact_damper {
@@ -243,15 +244,7 @@ void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
                        std::to_string(expected.parts) + " is missing");
   if (!problems.empty()) throw InputError(problems);
 
-  Sha256 hash;
-  std::uint64_t bytes = 0;
-  write_file_in_pieces(table, [&](const AddText& add) {
-    const auto pass = [&](std::string_view text) {
-      add(text);
-      hash.add(text);
-      bytes += text.size();
-    };
-    pass(header_of(expected.plan) + '\n');
+  const auto for_each_block = [&](const auto& pass) {
     for (const auto& [file, head] : shares) {
       OpenShare share = open(file);
       const Whole whole = scan(share.stream, head, share.first, pass);
@@ -267,7 +260,33 @@ void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
         reject(file, "must hold " + std::to_string(needed) + " runs, got " + std::to_string(whole.rows) +
                          ": it is not finished; the command that made it goes on from there");
     }
-  });
+  };
+  Sha256 hash;
+  std::uint64_t bytes = 0;
+  const auto count = [&](std::string_view text) {
+    hash.add(text);
+    bytes += text.size();
+  };
+  if (is_hdf5(table)) {
+    write_file_by(table, [&](const fs::path& temporary) {
+      Hdf5Table made(temporary, expected.plan);
+      for_each_block([&](std::string_view rows) { made.add(rows); });
+      made.finish();
+      std::ifstream written(temporary, std::ios::binary);
+      std::string piece(1 << 20, '\0');
+      while (written.read(piece.data(), std::streamsize(piece.size())), written.gcount() > 0)
+        count(std::string_view(piece).substr(0, std::size_t(written.gcount())));
+    });
+  } else {
+    write_file_in_pieces(table, [&](const AddText& add) {
+      const auto pass = [&](std::string_view text) {
+        add(text);
+        count(text);
+      };
+      pass(header_of(expected.plan) + '\n');
+      for_each_block(pass);
+    });
+  }
   expected.part = 1;
   fs::path description = table;
   description += ".json";

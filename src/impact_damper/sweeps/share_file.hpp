@@ -59,8 +59,9 @@ class ShareWriter {
 };
 
 // Joins the shares of one plan, in any order, into the table of `table`, and writes beside it what it is:
-// TABLE.json. Throws InputError, leaving both as they were, unless every part is there once, whole, and of
-// one plan and program. The same bytes, whatever the number of parts.
+// TABLE.json. CSV by RFC 4180, or HDF5 if is_hdf5(table). Throws InputError, leaving both as they were,
+// unless every part is there once, whole, and of one plan and program. The same bytes, whatever the number of
+// parts; of HDF5 with one version of its library.
 void join_shares(const std::vector<std::filesystem::path>& files, const std::filesystem::path& table);
 
 // That text, schema "impact-damper/sweep/1".
