@@ -13,6 +13,7 @@
 #include "impact_damper/reproduction/manifest.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/sweeps/plan_file.hpp"
 #include "project_files.hpp"
 #include "scene_arguments.hpp"
 
@@ -38,11 +39,12 @@ struct Reader {
   std::string_view kind;
   void (*read)(const std::string& file, const fs::path& scenes);
 };
-constexpr std::array<Reader, 6> readers{
+constexpr std::array<Reader, 7> readers{
     {{"scene", [](const std::string& file, const fs::path&) { check_scene(file); }},
      {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
      {"response",
       [](const std::string& file, const fs::path&) { require_consistent(read_response(file), file); }},
+     {"plan", [](const std::string& file, const fs::path&) { read_plan(file); }},
      {"catalogue", [](const std::string& file, const fs::path&) { read_catalogue(file); }},
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
@@ -65,7 +67,7 @@ int check(Arguments& arguments) {
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
   if (!arguments.given("KIND"))
-    arguments.reject("KIND", "must be given: scene, run, response, catalogue, claims or manifest");
+    arguments.reject("KIND", "must be given: scene, run, response, plan, catalogue, claims or manifest");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.reject("FILE", "must be given, one or several");
@@ -90,7 +92,7 @@ int check(Arguments& arguments) {
 
 Command check_command() {
   Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
-  command.options = {{"KIND", "scene|run|response|catalogue|claims|manifest", "what they are"},
+  command.options = {{"KIND", "scene|run|response|plan|catalogue|claims|manifest", "what they are"},
                      {"FILE", "", "one or several"},
                      scenes_option()};
   command.takes_more = true;

@@ -25,7 +25,7 @@ except ImportError:
 
 program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
 nth = int(sys.argv[4]) if len(sys.argv) > 4 else 1
-KINDS = ("scene", "run", "catalogue", "claims", "manifest")
+KINDS = ("scene", "run", "plan", "catalogue", "claims", "manifest")
 
 
 def validator(kind):
@@ -166,7 +166,7 @@ def main():
     scenes = [*(source / "data/scenes").glob("*.json"),
               *(file for file in (source / "data/examples").glob("*.json") if "schema" not in json.loads(file.read_text()))]
     own = {"scene": sorted(scenes),
-           "run": [], "catalogue": [source / "figures/catalogue.json"], "claims": [source / "data/claims.json"],
+           "run": [], "plan": [source / "data/examples/mast_plan.json"], "catalogue": [source / "figures/catalogue.json"], "claims": [source / "data/claims.json"],
            "manifest": [file for file in [source / "data/reference/manifest.json"] if file.exists()]}
     for engine in ("exact", "restitution", "cem"):
         fresh = folder / "fresh" / f"{engine}.json"

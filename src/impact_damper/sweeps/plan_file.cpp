@@ -44,8 +44,8 @@ std::vector<GridAxis> read_grid(ObjectReader& plan, const std::vector<Variable>&
     GridAxis axis;
     if (variable) axis.variable = *variable;
     if (object.has("values")) {
-      object.required("values", axis.values, axis.variable.range);
-      if (axis.values.empty() || axis.values.size() > std::size_t(most_listed_values))
+      const bool all_read = object.required("values", axis.values, axis.variable.range);
+      if (all_read && (axis.values.empty() || axis.values.size() > std::size_t(most_listed_values)))
         object.reject("values", "must be 1 to " + std::to_string(most_listed_values) + " numbers, got " +
                                     std::to_string(axis.values.size()));
     } else {
@@ -123,6 +123,10 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
     if (both) object.reject("scene", "either it or scene_file must be given, got both");
     if (!object.required("scene_file", name, some_text) || both) return {};
     return read_scene_file(folder / name);
+  }
+  if (!object.has("scene")) {
+    object.reject("scene", "it or scene_file must be given");
+    return {};
   }
   ObjectReader scene = object.required_object("scene");
   return read_scene_object(scene);
