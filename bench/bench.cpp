@@ -148,6 +148,8 @@ int bench(const Arguments& arguments) {
     found.allocations = count_allocations();
     tell("two threads");
     found.speedup = measure_speedup(quick ? 3 : 41);
+    tell("sweeps");
+    found.many_runs = measure_many_runs(quick ? 3 : 21);
     tell("elementary functions");
     found.functions = measure_functions(quick ? 9 : 101);
   }

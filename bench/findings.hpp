@@ -9,6 +9,7 @@
 #include "counted.hpp"
 #include "figure_set.hpp"
 #include "functions.hpp"
+#include "many_runs.hpp"
 #include "sweeps.hpp"
 #include "threads.hpp"
 #include "time_error.hpp"
@@ -35,6 +36,7 @@ struct Findings {
   std::optional<FigureSet> figures;
   std::vector<Allocations> allocations;
   std::optional<Speedup> speedup;
+  std::vector<ManyRuns> many_runs;
   std::vector<FunctionCost> functions;
   std::vector<std::string> missing_peers;
   double seconds = 0;  // that it all took, by the clock on the wall

@@ -146,6 +146,16 @@ std::string report_json(const Findings& found) {
                                    {"nothing_recorded", counted.quiet},
                                    {"half_cycles_recorded", counted.recorded}});
   }
+  for (const ManyRuns& many : found.many_runs) {
+    json["sweeps_of_runs"].push_back({{"kept", many.kept},
+                                      {"runs", many.runs},
+                                      {"repeats", many.repeats},
+                                      {"engine_milliseconds", json_of(many.engine, 1e3)},
+                                      {"one_milliseconds", json_of(many.one, 1e3)},
+                                      {"two_milliseconds", json_of(many.two, 1e3)},
+                                      {"overhead", json_of(many.overhead)},
+                                      {"speedup", json_of(many.ratio)}});
+  }
   if (found.speedup) {
     json["threads"] = {{"members", found.speedup->members},
                        {"one_milliseconds", json_of(found.speedup->one, 1e3)},

@@ -263,6 +263,20 @@ std::vector<Result> results_of(const Findings& found) {
              " decays, by the clock on the wall; two ensembles side by " +
              "side, which share nothing: " + digits(found.speedup->side_by_side.median, "%.2f") + " x";
   });
+  for (const ManyRuns& many : found.many_runs) {
+    const std::string sweep = "a sweep of decays that keeps " + many.kept + ": ";
+    add(at_most(sweep + "a million on 2 threads", many.bound, "min"), [&](Result& t) {
+      t.measured = many.million_minutes();
+      t.note = "by " + std::to_string(many.runs) + " decays, " +
+               digits(many.one.median / double(many.runs) * 1e3) + " ms each on one thread";
+    });
+    add(at_least(sweep + "2 threads against 1", 1.9), [&](Result& t) { t.measured = many.ratio.median; });
+    add(at_most(sweep + "time beside the engine's", 3, "%"), [&](Result& t) {
+      t.measured = 100 * many.overhead.median;
+      t.note = "quartiles " + digits(100 * many.overhead.lower, "%.1f") + " to " +
+               digits(100 * many.overhead.upper, "%.1f");
+    });
+  }
   for (const FunctionCost& function : found.functions) {
     add(at_most(function.name + ", " + function.arguments + ": time by the C library's", 1.5, "x"),
         [&](Result& t) {

@@ -1,0 +1,27 @@
+// What a sweep (docs/sweeps.md) needs for a run, beside what the engine alone needs for it, on one thread and
+// on two. Rows only, which are what takes time: a share's digests and the disk are not in it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "timing.hpp"
+
+namespace impact_damper::bench {
+
+struct ManyRuns {
+  std::string kept;       // "times and counts"
+  double bound = 0;       // minutes that a million decays may take on two threads
+  std::int64_t runs = 0;  // of a repeat
+  int repeats = 0;
+  Spread engine, one,
+      two;          // seconds by the clock on the wall: the engine alone and the rows, on one thread; on two
+  Spread overhead;  // one thread's rows by the engine alone, less 1, of repeats taken in turn
+  Spread ratio;     // one thread's by two threads'
+
+  double million_minutes() const { return two.median / double(runs) * 1e6 / 60; }
+};
+std::vector<ManyRuns> measure_many_runs(int repeats);
+
+}  // namespace impact_damper::bench
