@@ -66,8 +66,8 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
   if (!is_valid) {
     arguments.reject("--vary",
                      "must be NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=V,V,... with FROM < TO, for log "
-                     "both > 0, and 2 to " +
-                         std::to_string(most_axis_values) + " values, got " + in_quotes(text));
+                     "both > 0, and N from 2 to " +
+                         std::to_string(most_axis_values) + ", got " + in_quotes(text));
     return std::nullopt;
   }
   // The ends of a range, each of a list.
@@ -212,9 +212,12 @@ void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) 
   std::int64_t made = 0;
   double bytes = 0;
   for (; made < tried && seconds_since(begin) < long_enough; ++made) {
-    // From all over the range: halfway, then a quarter of it, ... of an odd stride.
+    // From all over the range however early time is up: multiples of the golden ratio, less their whole part.
+    constexpr double golden = 0.6180339887498949;
+    const double part = (double(made) + 0.5) * golden;
     const std::int64_t i =
-        range.begin + std::int64_t(double(range.size()) * (double(made) + 0.5) / double(tried));
+        range.begin +
+        (range.size() <= most_tried ? made : std::int64_t(double(range.size()) * (part - std::floor(part))));
     bytes += double(row_of(plan, i).size() + 1);
   }
   const double each = made == 0 ? 0 : seconds_since(begin) / double(made), runs = double(range.size());

@@ -190,6 +190,40 @@ TEST_CASE(
   CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
 }
 
+TEST_CASE("a motion that still grows has no steady amplitude, alone or among others, and says so") {
+  Scene
+      scene;  // at resonance, with next to no secondary mass: after 20 periods at an eighth of its amplitude
+  scene.mass_ratio = 1e-6;
+  scene.damping_ratio = 0.001;
+  scene.force_amplitude = 0.01;
+  scene.force_frequency = 1;
+  scene.x0 = 0;
+  scene.until_time = 1;
+  ForcedRules rules;
+  rules.steady.max_periods = 20;
+  rules.steady.mean_periods = 10;
+  rules.frequencies = FrequencyRange{0.5, 1, 2};
+  for (const char* name :
+       {"steady_amplitude", "impacts_per_period", "worst_steady_amplitude", "worst_frequency"}) {
+    const KeptNumbers growing = kept(scene, {name}, Exact{}, {}, rules);
+    CHECK(growing.end == "not_steady");
+    CHECK_FALSE(growing.numbers[0]);
+  }
+  rules.steady.max_periods = 5000;
+  CHECK(only(kept(scene, {"steady_amplitude"}, Exact{}, {}, rules)) ==
+        doctest::Approx(linear_response(0.01, 1, 0.001, 1)).epsilon(1e-3));
+}
+
+TEST_CASE("without losses there is no loss factor") {
+  Scene scene;
+  scene.restitution = 1;
+  scene.until_time = 100;
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
+    CHECK_FALSE(kept(scene, {"largest_loss_factor"}, engine).numbers[0]);
+  scene.damping_ratio = 0.01;
+  CHECK(kept(scene, {"largest_loss_factor"}).numbers[0]);
+}
+
 TEST_CASE("in units, numbers are asked for and given in seconds, millimetres, newtons") {
   const Scene scene = paper_decay();
   const Scales scales{40, 16000, 10};  // 0.05 s, 10 mm, 160 N

@@ -200,6 +200,17 @@ TEST_CASE("what is wrong with a plan is told, all at once") {
       "plan.json: /samples: \"damping\" has no value in the scene to vary about");
   CHECK(problem_of(R"("scene_file": "x.json", "scene": {"until_time": 1}, "grid": [])")
             .find("either it or scene_file") != std::string::npos);
+  // Given on the command line, without a file that limits them: before anything is simulated.
+  Plan large = plan_of(decay + R"("grid": [{"number": "x0", "values": [1]}])");
+  large.grid[0].values.resize(std::size_t(most_listed_values) + 1);
+  large.grid.resize(17, large.grid[0]);
+  large.quantities.resize(65, large.quantities[0]);
+  std::string said;
+  for (const Problem& problem : problems_of(large)) said += problem.field + ' ' + problem.message + '\n';
+  for (const char* part :
+       {"grid must be at most 16 numbers, got 17", "grid must list at most 10000 values of x0, got 10001",
+        "quantities must be at most 64, got 65"})
+    CHECK_MESSAGE(said.find(part) != std::string::npos, said);
   const std::string worst =
       R"({"schema": "impact-damper/plan/1", "quantities": ["worst_frequency", "steady_amplitude"],
     "scene": {"until_time": 1}, "engine": {"name": "cem"}, "grid": [{"number": "x0", "values": [1]}]})";

@@ -16,9 +16,6 @@ namespace {
 using Way = ArrivedMotion ResponsePoint::*;
 constexpr std::array<Way, 2> both_ways{&ResponsePoint::rising, &ResponsePoint::falling};
 
-// Of a steady motion's power (M12.9). Over 500 periods the energy of a chaotic one may differ at both ends.
-constexpr double largest_imbalance = 0.2;
-
 // Each run is of eight periods of the force or of a tenth of `mean_periods`: what needs more than these is
 // given up.
 constexpr std::int64_t most_impacts_of_a_run = 20'000, most_steps_of_a_run = 1'000'000;
@@ -188,9 +185,7 @@ class Sweeper {
 
 bool ArrivedMotion::changes() const {
   if (!is_known() || is_periodic()) return false;
-  const SteadyMeans& means = *steady.means;
-  const double lost = means.viscous_power + means.impact_power;
-  if (std::abs(means.power - lost) > largest_imbalance * std::max(means.power, lost)) return true;
+  if (is_balanced(steady) == false) return true;
   const double scatter = steady.amplitude_scatter;
   return earlier_amplitude && amplitudes_differ(*earlier_amplitude, scatter, amplitude(), scatter);
 }

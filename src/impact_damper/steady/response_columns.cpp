@@ -8,20 +8,20 @@
 namespace impact_damper {
 namespace {
 
-constexpr Quantity ratio{"", [](const SiUnits&) { return 1.0; }};
-constexpr Quantity length{"_m", [](const SiUnits& u) { return u.length; }};
-constexpr Quantity velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
-constexpr Quantity force{"_N", [](const SiUnits& u) { return u.force; }};
-constexpr Quantity power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
-constexpr Quantity frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
+constexpr UnitInSi ratio{"", [](const SiUnits&) { return 1.0; }};
+constexpr UnitInSi length{"_m", [](const SiUnits& u) { return u.length; }};
+constexpr UnitInSi velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
+constexpr UnitInSi force{"_N", [](const SiUnits& u) { return u.force; }};
+constexpr UnitInSi power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
+constexpr UnitInSi frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
 
 constexpr NumberRange any{}, counts = within(0, 9e15);
 
 // A number that every row has.
 template <class Row>
-RowColumn<Row> always(std::string_view name, const Quantity& quantity, NumberRange range,
+RowColumn<Row> always(std::string_view name, const UnitInSi& unit, NumberRange range,
                       std::optional<double> (*get)(const Row&), void (*set)(Row&, double)) {
-  return {name, quantity, range, false, false, get, set};
+  return {name, unit, range, false, false, get, set};
 }
 template <class Row>
 RowColumn<Row> whole(RowColumn<Row> column) {
@@ -36,25 +36,25 @@ RowColumn<Row> optional(RowColumn<Row> column) {
 
 // Of a state or of an orbit's point, the number `member` of its state.
 template <class Row, auto member>
-RowColumn<Row> of_state(std::string_view name, const Quantity& quantity) {
+RowColumn<Row> of_state(std::string_view name, const UnitInSi& unit) {
   return always<Row>(
-      name, quantity, any, [](const Row& row) { return std::optional(row.state.*member); },
+      name, unit, any, [](const Row& row) { return std::optional(row.state.*member); },
       [](Row& row, double value) { row.state.*member = value; });
 }
 // What is not known where a budget ended a run.
 template <auto member>
-RowColumn<SteadyState> mean(std::string_view name, const Quantity& quantity, NumberRange range) {
+RowColumn<SteadyState> mean(std::string_view name, const UnitInSi& unit, NumberRange range) {
   return always<SteadyState>(
-      name, quantity, range,
+      name, unit, range,
       [](const SteadyState& s) { return s.means ? std::optional((*s.means).*member) : std::nullopt; },
       [](SteadyState& s, double value) {
         if (s.means) (*s.means).*member = value;
       });
 }
 template <auto member>
-RowColumn<SteadyState> measured(std::string_view name, const Quantity& quantity, NumberRange range) {
+RowColumn<SteadyState> measured(std::string_view name, const UnitInSi& unit, NumberRange range) {
   return always<SteadyState>(
-      name, quantity, range,
+      name, unit, range,
       [](const SteadyState& s) { return s.means ? std::optional(double(s.*member)) : std::nullopt; },
       [](SteadyState& s, double value) { s.*member = std::remove_reference_t<decltype(s.*member)>(value); });
 }
@@ -68,15 +68,15 @@ RowColumn<SteadyState> impacts_on(std::string_view name) {
 
 // A number of an orbit's point.
 template <auto member>
-RowColumn<OrbitPoint> of_point(std::string_view name, const Quantity& quantity, NumberRange range) {
+RowColumn<OrbitPoint> of_point(std::string_view name, const UnitInSi& unit, NumberRange range) {
   return always<OrbitPoint>(
-      name, quantity, range, [](const OrbitPoint& p) { return std::optional(double(p.*member)); },
+      name, unit, range, [](const OrbitPoint& p) { return std::optional(double(p.*member)); },
       [](OrbitPoint& p, double value) { p.*member = std::remove_reference_t<decltype(p.*member)>(value); });
 }
 template <auto member>
-RowColumn<OrbitPoint> distance_of(std::string_view name, const Quantity& quantity) {
+RowColumn<OrbitPoint> distance_of(std::string_view name, const UnitInSi& unit) {
   return optional(always<OrbitPoint>(
-      name, quantity, at_least(0), [](const OrbitPoint& p) { return p.*member; },
+      name, unit, at_least(0), [](const OrbitPoint& p) { return p.*member; },
       [](OrbitPoint& p, double value) { p.*member = value; }));
 }
 template <std::size_t wall>
@@ -94,7 +94,7 @@ RowColumn<OrbitPoint> multiplier(std::string_view name) {
 
 }  // namespace
 
-Quantity quantity_of(const double Scene::*number) {
+UnitInSi unit_in_si_of(const double Scene::*number) {
   if (number == &Scene::x0 || number == &Scene::y0) return length;
   if (number == &Scene::v0 || number == &Scene::w0) return velocity;
   if (number == &Scene::force_amplitude) return force;

@@ -13,18 +13,18 @@
 namespace impact_damper {
 
 // What a column measures: its suffix in SI, and what one dimensionless unit of it is there.
-struct Quantity {
+struct UnitInSi {
   std::string_view suffix;
-  double (*unit)(const SiUnits&);
+  double (*size)(const SiUnits&);
 };
-Quantity quantity_of(const double Scene::*number);
+UnitInSi unit_in_si_of(const double Scene::*number);
 
 // A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent
 // where the number belongs to them.
 template <class Row>
 struct RowColumn {
   std::string_view name;
-  Quantity quantity;
+  UnitInSi unit;
   NumberRange range;  // of what a file may hold
   bool is_whole;
   // Whether a number may be absent on its own, not only where `get` of a row says so whose other numbers are
@@ -39,14 +39,14 @@ std::span<const RowColumn<OrbitPoint>> orbit_columns();
 // Numbers under a name.
 struct Column {
   std::string_view name;
-  Quantity quantity;
+  UnitInSi unit;
   std::vector<std::optional<double>> numbers;
 };
 template <class Row>
 std::vector<Column> columns_of(std::span<const RowColumn<Row>> table, const std::vector<Row>& rows) {
   std::vector<Column> columns;
   for (const RowColumn<Row>& each : table) {
-    Column column{each.name, each.quantity, {}};
+    Column column{each.name, each.unit, {}};
     column.numbers.reserve(rows.size());
     for (const Row& row : rows) column.numbers.push_back(each.get(row));
     columns.push_back(std::move(column));

@@ -11,7 +11,7 @@ namespace {
 
 using Layout = JsonWriter::Layout;
 
-constexpr Quantity rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
+constexpr UnitInSi rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
 
 OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
   return {.value = value,
@@ -219,12 +219,12 @@ class CsvRow {
     first_ = false;
     text_ += word;
   }
-  void heading(std::string_view name, const Quantity& quantity) {
-    word(std::string(name) + std::string(units_ ? quantity.suffix : ""));
+  void heading(std::string_view name, const UnitInSi& unit) {
+    word(std::string(name) + std::string(units_ ? unit.suffix : ""));
   }
-  void number(const std::optional<double>& value, const Quantity& quantity) {
+  void number(const std::optional<double>& value, const UnitInSi& unit) {
     word("");
-    if (value) append_number(text_, units_ ? *value * quantity.unit(*units_) : *value);
+    if (value) append_number(text_, units_ ? *value * unit.size(*units_) : *value);
   }
 
  private:
@@ -356,7 +356,7 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
                       const std::optional<SiUnits>& units) {
   std::string text;
   const std::vector<Column> linear = linear_columns(scene, axis);
-  const Quantity given = quantity_of(axis.number);
+  const UnitInSi given = unit_in_si_of(axis.number);
   {
     CsvRow row(text, units);
     row.word("sweep");
@@ -364,8 +364,8 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     row.heading(name_of(axis), given);
     row.word("end");
     for (const Column& column : columns_of(steady_columns(), std::vector<SteadyState>{}))
-      row.heading(column.name, column.quantity);
-    for (const Column& column : linear) row.heading(column.name, column.quantity);
+      row.heading(column.name, column.unit);
+    for (const Column& column : linear) row.heading(column.name, column.unit);
   }
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
     const auto add_way = [&](std::string_view name, const std::vector<SteadyState>& way) {
@@ -376,8 +376,8 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
         row.word(name);
         row.number(axis.value(std::int64_t(i)), given);
         row.word(end_of(way[i]));
-        for (const Column& column : columns) row.number(column.numbers[i], column.quantity);
-        for (const Column& column : linear) row.number(column.numbers[i], column.quantity);
+        for (const Column& column : columns) row.number(column.numbers[i], column.unit);
+        for (const Column& column : linear) row.number(column.numbers[i], column.unit);
       }
     };
     add_way("up", sweeps[n].up);
@@ -389,7 +389,7 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
 std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
                       const std::optional<SiUnits>& units) {
   std::string text;
-  const Quantity of_first = quantity_of(first.number), of_second = quantity_of(second.number);
+  const UnitInSi of_first = unit_in_si_of(first.number), of_second = unit_in_si_of(second.number);
   {
     CsvRow row(text, units);
     row.heading(name_of(first), of_first);
@@ -409,14 +409,14 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
                        const std::optional<SiUnits>& units) {
   std::string text;
   double Scene::*const number = member_of(range.parameter);
-  const Quantity varied = quantity_of(number);
+  const UnitInSi varied = unit_in_si_of(number);
   {
     CsvRow row(text, units);
     row.word("branch");
     row.word("event");
     row.heading(key_of(number), varied);
     for (const Column& column : columns_of(orbit_columns(), std::vector<OrbitPoint>{}))
-      row.heading(column.name, column.quantity);
+      row.heading(column.name, column.unit);
   }
   for (std::size_t n = 0; n < branches.branches.size(); ++n) {
     const auto& [points, events] = points_and_events_of(branches.branches[n], number);
@@ -426,7 +426,7 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
       row.word(std::to_string(n));
       row.word(events[i]);
       row.number(points[i].value, varied);
-      for (const Column& column : columns) row.number(column.numbers[i], column.quantity);
+      for (const Column& column : columns) row.number(column.numbers[i], column.unit);
     }
   }
   return text;

@@ -163,6 +163,14 @@ bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b) {
                                     deviations * square_root(scatter_a * scatter_a + scatter_b * scatter_b));
 }
 
+std::optional<bool> is_balanced(const SteadyState& steady) {
+  // Over 500 periods the energy of a chaotic motion may differ at both ends.
+  constexpr double largest_imbalance = 0.2;
+  if (!steady.means) return std::nullopt;
+  const double fed = steady.means->power, lost = steady.means->viscous_power + steady.means->impact_power;
+  return std::abs(fed - lost) <= largest_imbalance * std::max(fed, lost);
+}
+
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
   std::vector<Problem> problems = problems_of(without_stops(scene));
   for (const Problem& each : problems_of(engine)) problems.push_back(each);

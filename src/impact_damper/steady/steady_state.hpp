@@ -71,6 +71,10 @@ struct SteadyState {
 inline constexpr double visible_difference = 0.05;
 bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b);
 
+// Whether the force puts in what the damper and impacts take out, to 20 percent (M12.9); absent without
+// means. A motion that is not periodic and not balanced either is still growing or decaying.
+std::optional<bool> is_balanced(const SteadyState& steady);
+
 // What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
 // or the engine is not valid, or it is the component element method, whose steps would begin anew with each
 // run.

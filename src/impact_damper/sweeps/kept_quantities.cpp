@@ -40,15 +40,19 @@ class RunFindings {
   std::optional<std::size_t> best_row() {
     const std::vector<double>& eta = loss().eta;
     const auto best = std::ranges::max_element(eta);
-    if (best == eta.end() || !(*best > 0)) return std::nullopt;
+    // Without losses energy only goes to and fro.
+    const bool is_lossless = scene.restitution == 1 && scene.damping_ratio == 0;
+    if (is_lossless || best == eta.end() || !(*best > 0)) return std::nullopt;
     return static_cast<std::size_t>(best - eta.begin());
   }
-  const SteadyState& steady() {
-    if (!steady_) {
+  // Absent where a budget ended it, or where it is still growing or decaying.
+  const std::optional<SteadyState>& steady() {
+    if (!steady_is_known_) {
       steady_ = ForcedScene(scene, engine).settle(release_of(scene), rules_.steady);
-      if (steady_->stop_reason != StopReason::time) note_end(steady_->stop_reason);
+      if (!note_whether_steady(*steady_)) steady_.reset();
     }
-    return *steady_;
+    steady_is_known_ = true;
+    return steady_;
   }
   struct Worst {
     double frequency = 0, amplitude = 0;
@@ -71,8 +75,15 @@ class RunFindings {
   const Engine& engine;
 
  private:
-  void note_end(StopReason reason) {
-    if (end_ == "done") end_ = name_of(reason);
+  void note_end(StopReason reason) { note_end(name_of(reason)); }
+  void note_end(std::string_view end) {
+    if (end_ == "done") end_ = end;
+  }
+  bool note_whether_steady(const SteadyState& state) {
+    if (state.stop_reason != StopReason::time) note_end(state.stop_reason);
+    const bool is_steady = state.means && (state.period || is_balanced(state) == true);
+    if (state.means && !is_steady) note_end("not_steady");
+    return is_steady;
   }
   void find_worst() {
     const FrequencyRange range = rules_.frequencies.value_or(FrequencyRange{});
@@ -80,14 +91,18 @@ class RunFindings {
     const Axis axis{&Scene::force_frequency, range.from / unit, range.to / unit, range.count};
     const auto sweeps =
         sweep(scene, engine, axis, rules_.steady, {release_of(scene)}, Threads{1}, [](std::int64_t) {});
+    bool all_steady = true;
     for (const auto* way : {&sweeps[0].up, &sweeps[0].down}) {
       for (std::size_t i = 0; i < way->size(); ++i) {
         const SteadyState& state = (*way)[i];
-        if (state.stop_reason != StopReason::time) note_end(state.stop_reason);
-        if (state.means && !(worst_ && state.means->amplitude <= worst_->amplitude))
+        if (!note_whether_steady(state)) {
+          all_steady = false;
+        } else if (!(worst_ && state.means->amplitude <= worst_->amplitude)) {
           worst_ = {axis.value(std::int64_t(i)), state.means->amplitude};
+        }
       }
     }
+    if (!all_steady) worst_.reset();  // the one that is not may be the worst
   }
 
   const ForcedRules& rules_;
@@ -95,6 +110,7 @@ class RunFindings {
   const Record& record_;
   std::optional<Run> run_;
   std::optional<LossFactor> loss_;
+  bool steady_is_known_ = false;
   std::optional<SteadyState> steady_;
   bool worst_is_known_ = false;
   std::optional<Worst> worst_;
@@ -184,20 +200,18 @@ Number impact_energy_share(RunFindings& found, double) {
 }
 
 Number steady_amplitude_of(RunFindings& found, double) {
-  const auto& means = found.steady().means;
-  if (!means) return std::nullopt;
-  return means->amplitude;
+  if (!found.steady()) return std::nullopt;
+  return found.steady()->means->amplitude;
 }
 
 Number steady_period(RunFindings& found, double) {
-  const SteadyState& steady = found.steady();
-  if (!steady.means || !steady.period) return std::nullopt;
-  return double(*steady.period);
+  if (!found.steady() || !found.steady()->period) return std::nullopt;
+  return double(*found.steady()->period);
 }
 
 Number impacts_per_period(RunFindings& found, double) {
-  const SteadyState& steady = found.steady();
-  if (!steady.means) return std::nullopt;
+  if (!found.steady()) return std::nullopt;
+  const SteadyState& steady = *found.steady();
   return double(steady.impacts[0] + steady.impacts[1]) / double(steady.measured_periods);
 }
 
@@ -259,8 +273,8 @@ constexpr std::array<Quantity, 16> quantities{{
     {.name = "largest_wall_force",
      .dimension = force,
      .meaning =
-         "largest force of a wall: of the fastest impact, or at the release; compliant walls with short "
-         "contacts",
+         "largest force of a wall: of the fastest impact by (M12.4), or at the release; compliant walls with "
+         "short contacts",
      .of_impacts = true,
      .value = largest_wall_force},
     {.name = "impact_energy_share",
@@ -286,7 +300,8 @@ constexpr std::array<Quantity, 16> quantities{{
      .value = impacts_per_period},
     {.name = "worst_steady_amplitude",
      .dimension = length,
-     .meaning = "largest steady |x| over the plan's frequencies, rising and falling",
+     .meaning = "largest steady |x| over the plan's frequencies, rising and falling; none if one motion is "
+                "not steady",
      .experiment = Experiment::worst,
      .value = worst_steady_amplitude},
     {.name = "worst_frequency",

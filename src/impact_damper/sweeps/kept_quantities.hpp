@@ -70,7 +70,7 @@ QuantityReading read_quantity(std::string_view text);
 struct KeptNumbers {
   std::vector<std::optional<double>> numbers;  // in the scene's units
   // "done", or what ended the first of the runs that ended early: a budget of the engine (StopReason),
-  // "not_valid" or "failed".
+  // "not_steady" (neither periodic nor in balance: M12.9), "not_valid" or "failed".
   std::string_view end = "done";
   std::string problem;  // of the latter two
 };

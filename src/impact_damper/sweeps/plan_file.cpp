@@ -44,10 +44,8 @@ std::vector<GridAxis> read_grid(ObjectReader& plan, const std::vector<Variable>&
     GridAxis axis;
     if (variable) axis.variable = *variable;
     if (object.has("values")) {
-      const bool all_read = object.required("values", axis.values, axis.variable.range);
-      if (all_read && (axis.values.empty() || axis.values.size() > std::size_t(most_listed_values)))
-        object.reject("values", "must be 1 to " + std::to_string(most_listed_values) + " numbers, got " +
-                                    std::to_string(axis.values.size()));
+      if (object.required("values", axis.values, axis.variable.range) && axis.values.empty())
+        object.reject("values", "must be 1 or more numbers, got 0");
     } else {
       read_ends(object, axis.variable.range, axis.from, axis.to, axis.spacing);
       object.required("count", axis.count, within(2, double(most_axis_values)));
@@ -238,11 +236,19 @@ std::vector<Problem> problems_of(const Plan& plan) {
   std::vector<Problem> problems;
   if (plan.grid.empty() && !(plan.samples && !plan.samples->numbers.empty()))
     problems.push_back({"grid", "a number that varies must be given, in grid or in the numbers of samples"});
+  if (plan.grid.size() > most_numbers)
+    problems.push_back({"grid", "must be at most " + std::to_string(most_numbers) + " numbers, got " +
+                                    std::to_string(plan.grid.size())});
   std::set<std::string_view> names;
-  for (const GridAxis& axis : plan.grid)
+  for (const GridAxis& axis : plan.grid) {
     if (!names.insert(axis.variable.name).second)
       problems.push_back(
           {"grid", "must name each number once, got " + in_quotes(axis.variable.name) + " twice"});
+    if (axis.values.size() > std::size_t(most_listed_values))
+      problems.push_back({"grid", "must list at most " + std::to_string(most_listed_values) + " values of " +
+                                      std::string(axis.variable.name) + ", got " +
+                                      std::to_string(axis.values.size())});
+  }
   names.clear();
   if (plan.samples) {
     for (const SampledNumber& number : plan.samples->numbers) {
@@ -264,6 +270,9 @@ std::vector<Problem> problems_of(const Plan& plan) {
   if (runs_of(plan) > most_runs)
     problems.push_back({"grid", "must make at most " + std::to_string(most_runs) + " runs in all"});
   if (plan.quantities.empty()) problems.push_back({"quantities", "at least one must be given"});
+  if (plan.quantities.size() > most_quantities)
+    problems.push_back({"quantities", "must be at most " + std::to_string(most_quantities) + ", got " +
+                                          std::to_string(plan.quantities.size())});
   bool worst = false, forced = false;
   std::set<std::string> columns;
   for (const KeptQuantity& each : plan.quantities) {
