@@ -168,11 +168,11 @@ TEST_CASE("the force beyond the largest that the decay needs is found between tw
   CHECK(std::isnan(measured("force_limit_ratio", everything, {over_force(0.01, 0.02, {8, 9}, {1, 1})})));
 }
 
-TEST_CASE("the jump is between the forces of a falling sweep where the amplitude falls below the range") {
+TEST_CASE("the jump is between the forces of a falling sweep where the amplitude falls below 0.5") {
   const double from = 0.5 * (amplitude_at(99) + amplitude_at(100)), least = needed_at(99);
   const std::map<std::string, double> range{{"from", from}, {"to", 10}};
   // Held at 0.04 and 0.05; not at 0.03; what is at 0.02 lies below the jump.
-  const SweepResponse falls = over_force(0.01, 0.05, {0, 0, 0, 0, 0}, {0, 2 * from, 0.9 * from, from, 3});
+  const SweepResponse falls = over_force(0.01, 0.05, {0, 0, 0, 0, 0}, {0, 1, 0.45, 0.5, 3});
   CHECK(measured("force_jump_ratio", range, {falls}) == doctest::Approx(0.035 / least));
   CHECK(std::isnan(measured("force_jump_ratio", range, {over_force(0.01, 0.02, {0, 0}, {3, 3})})));
   CHECK(std::isnan(measured("force_jump_ratio", range, {over_force(0.01, 0.02, {3, 3}, {3, 0.1})})));

@@ -110,9 +110,10 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
 }
 
 Spread jump_ratio(Runs& runs, const MeasureCall& call) {
+  constexpr double half_of_the_clearance = 0.5;
   const Curve found = largest_amplitudes(runs, call, falling);
-  std::size_t least = found.x.size();  // the least force that holds the amplitude from there on
-  while (least > 0 && found.y[least - 1] >= number(call, "from")) --least;
+  std::size_t least = found.x.size();  // the least force that holds such an amplitude from there on
+  while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
   return over_members(runs, call, [&](const Run& run) {
     const Curve needed = needed_force(runs, run, call);
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
@@ -249,7 +250,7 @@ std::vector<Measure> steady_measures() {
        1,
        {"from", "to"},
        jump_ratio,
-       "falling force at which the largest steady amplitude falls below from, divided by the least F of the "
+       "falling force at which the largest steady amplitude falls below 0.5, divided by the least F of the "
        "decay between from and the amplitude of its largest F in [from, to]",
        1,
        8},

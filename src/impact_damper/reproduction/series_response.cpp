@@ -234,8 +234,8 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
     }
   }
   const std::string members = std::to_string(figure.curves[0].ensemble);
-  add_block(table, "band", of_force, "the same of " + members + " releases", of_amplitude, band,
-            {"the outline of what the ensemble of scene " + figure.curves[0].scene + " spans"});
+  add_block(table, "band", of_force, "range of the prediction over " + members + " releases", of_amplitude,
+            band, {"the outline of what the ensemble of scene " + figure.curves[0].scene + " spans"});
   add_block(table, "prediction", of_force, "predicted by the free decay", of_amplitude, prediction,
             {"sqrt(1 + nu) A eta(A) / nu of scene " + figure.curves[0].scene + ", below its largest"});
   add_block(table, "beyond", of_force, "beyond the largest force", of_amplitude, beyond);
