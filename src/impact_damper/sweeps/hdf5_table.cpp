@@ -101,11 +101,13 @@ struct Hdf5Table::File {
   File(const std::filesystem::path& path, const Plan& plan) : name(path.string()), file(made(name)) {
     const auto rows = hsize_t(runs_of(plan));
     const H5::DataSpace space(1, &rows);
+    const H5::DSetCreatPropList timeless;  // or no two files would be equal
+    H5Pset_obj_track_times(timeless.getId(), 0);
     for (const PlanColumn& column : columns_of(plan)) {
       const bool is_text = column.name == "end" || column.name == "problem";
       const H5::DataType number(column.name == "run" ? H5::PredType::STD_I64LE : H5::PredType::IEEE_F64LE);
       const H5::DataSet dataset =
-          file.createDataSet(column.name, is_text ? H5::DataType(text_type()) : number, space);
+          file.createDataSet(column.name, is_text ? H5::DataType(text_type()) : number, space, timeless);
       for (const auto& [key, text] : {std::pair("unit", column.unit), std::pair("meaning", column.meaning)})
         dataset.createAttribute(key, text_type(), H5::DataSpace(H5S_SCALAR)).write(text_type(), text);
       columns.push_back({dataset});
