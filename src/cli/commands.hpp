@@ -41,6 +41,7 @@ Command cite_command();
 Command figures_command();
 // `program`: what is said above the subcommands. Both must live as long as the command.
 Command generate_command(const Command& program, const Commands& commands);
+Command map_command();
 Command merge_command();
 Command report_command();
 Command response_command();

@@ -232,20 +232,24 @@ Number lyapunov_exponent(RunFindings& found, double) {
 }
 
 using enum Dimension;
+using enum Better;
 constexpr std::array<Quantity, 16> quantities{{
     {.name = "time_to_amplitude",
      .dimension = time,
      .meaning = "when the amplitude is first below A: the time of that half cycle's peak",
      .at = length,
+     .better = least,
      .value = time_to_amplitude},
     {.name = "loss_factor_at",
      .dimension = ratio,
      .meaning = "loss factor where its curve over the amplitude first passes A; free motion",
      .at = length,
+     .better = greatest,
      .value = loss_factor_at},
     {.name = "largest_loss_factor",
      .dimension = ratio,
      .meaning = "largest loss factor before impact failure; free motion",
+     .better = greatest,
      .value = largest_loss_factor},
     {.name = "amplitude_of_largest_loss_factor",
      .dimension = length,
@@ -255,19 +259,23 @@ constexpr std::array<Quantity, 16> quantities{{
      .dimension = length,
      .meaning = "lowest amplitude with a loss factor above L, before impact failure; free motion",
      .at = ratio,
+     .better = least,
      .value = lowest_amplitude_above_loss},
     {.name = "highest_amplitude_above_loss",
      .dimension = length,
      .meaning = "highest amplitude with a loss factor above L; free motion",
      .at = ratio,
+     .better = greatest,
      .value = highest_amplitude_above_loss},
     {.name = "impacts",
      .dimension = count,
      .meaning = "impacts until the last half cycle that is complete",
+     .better = least,
      .value = impacts},
     {.name = "largest_impact_speed",
      .dimension = velocity,
      .meaning = "largest relative speed of an impact; 0 without one",
+     .better = least,
      .of_impacts = true,
      .value = largest_impact_speed},
     {.name = "largest_wall_force",
@@ -275,18 +283,21 @@ constexpr std::array<Quantity, 16> quantities{{
      .meaning =
          "largest force of a wall: of the fastest impact by (M12.4), or at the release; compliant walls with "
          "short contacts",
+     .better = least,
      .of_impacts = true,
      .value = largest_wall_force},
     {.name = "impact_energy_share",
      .dimension = ratio,
      .meaning =
          "energy lost in impacts and contacts, divided by all that is lost; a run takes seven times as long",
+     .better = greatest,
      .of_energy = true,
      .value = impact_energy_share},
     {.name = "steady_amplitude",
      .dimension = length,
      .meaning = "largest |x| of the steady motion that the release leads to",
      .experiment = Experiment::steady,
+     .better = least,
      .value = steady_amplitude_of},
     {.name = "steady_period",
      .dimension = count,
@@ -303,6 +314,7 @@ constexpr std::array<Quantity, 16> quantities{{
      .meaning = "largest steady |x| over the plan's frequencies, rising and falling; none if one motion is "
                 "not steady",
      .experiment = Experiment::worst,
+     .better = least,
      .value = worst_steady_amplitude},
     {.name = "worst_frequency",
      .dimension = frequency,
@@ -313,6 +325,7 @@ constexpr std::array<Quantity, 16> quantities{{
      .dimension = rate,
      .meaning = "largest Lyapunov exponent from the release on",
      .experiment = Experiment::lyapunov,
+     .better = least,
      .value = lyapunov_exponent},
 }};
 
@@ -326,6 +339,16 @@ Record record_for(std::span<const KeptQuantity> kept) {
 }
 
 }  // namespace
+
+std::string_view name_of(Better better) {
+  switch (better) {
+    case least:
+      return "least";
+    case greatest:
+      return "greatest";
+  }
+  return "";
+}
 
 std::span<const Quantity> all_quantities() { return quantities; }
 

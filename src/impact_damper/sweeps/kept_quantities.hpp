@@ -37,6 +37,10 @@ struct ForcedRules {
 // the rates at which small changes grow.
 enum class Experiment { run, steady, worst, lyapunov };
 
+// Which of its values one wants.
+enum class Better { least, greatest };
+std::string_view name_of(Better better);
+
 class RunFindings;  // of one run, in kept_quantities.cpp
 
 struct Quantity {
@@ -46,6 +50,7 @@ struct Quantity {
   Experiment experiment = Experiment::run;
   // What it is asked at: a length or a pure number, > 0. Absent: nothing.
   std::optional<Dimension> at{};
+  std::optional<Better> better{};              // absent: it is neither good nor bad by itself
   bool of_impacts = false, of_energy = false;  // what the run must record beside half cycles
   // Dimensionless. Absent where there is none.
   std::optional<double> (*value)(RunFindings& findings, double at) = nullptr;

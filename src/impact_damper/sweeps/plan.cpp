@@ -43,6 +43,15 @@ struct ChangedScene {
   double get(const Variable& variable) const {
     return in_units ? ((*in_units).*variable.number_in_units).value_or(0) : scene.*variable.number;
   }
+  void finish(PlannedRun& run) const {
+    if (!in_units) {
+      run.scene = scene;
+      run.problems = problems_of(run.scene);
+    } else if (run.problems = problems_of(*in_units); run.problems.empty()) {
+      run.scene = dimensionless(*in_units);
+      run.scales = scales_of(*in_units);
+    }
+  }
 };
 
 double drawn(const Samples& samples, std::size_t n, std::int64_t i, double otherwise) {
@@ -154,13 +163,15 @@ PlannedRun run_of(const Plan& plan, std::int64_t i) {
       changed.set(variable, run.values.back());
     }
   }
-  if (!changed.in_units) {
-    run.scene = changed.scene;
-    run.problems = problems_of(run.scene);
-  } else if (run.problems = problems_of(*changed.in_units); run.problems.empty()) {
-    run.scene = dimensionless(*changed.in_units);
-    run.scales = scales_of(*changed.in_units);
-  }
+  changed.finish(run);
+  return run;
+}
+
+PlannedRun run_of(const Plan& plan, const std::vector<double>& grid) {
+  PlannedRun run{.values = grid, .problems = {}, .scene = {}, .scales = {}};
+  ChangedScene changed{plan.scene.scene, plan.scene.in_units};
+  for (std::size_t n = 0; n < grid.size(); ++n) changed.set(plan.grid[n].variable, grid[n]);
+  changed.finish(run);
   return run;
 }
 

@@ -95,6 +95,8 @@ struct PlannedRun {
 };
 // 0 <= i < runs_of(plan).
 PlannedRun run_of(const Plan& plan, std::int64_t i);
+// One with these numbers of the grid, which need not be among its values, and nothing drawn.
+PlannedRun run_of(const Plan& plan, const std::vector<double>& grid);
 
 // One row of the table, without its end of line, and its header. RFC 4180: the run's number, the numbers that
 // vary, the quantities, "end" and "problem".

@@ -1,0 +1,114 @@
+// A map: one quantity of a sweep over two numbers of its grid, the best point, how much worse its neighbours
+// are, contours, and where impacts fail and bounce-down ends (docs/mathematics.md, chapter 15).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/sweeps/plan.hpp"
+
+namespace impact_damper {
+
+// What is told of the draws of one point of the grid.
+enum class Statistic { median, mean, worst };
+std::string_view name_of(Statistic statistic);
+
+struct MapQuestion {
+  std::size_t x = 0, y = 1;  // of Plan::grid, two different ones
+  std::size_t z = 0;         // of Plan::quantities
+  // Of the other numbers of the grid, the one of their values that is looked at; as long as the grid.
+  std::vector<double> fixed;
+  Statistic statistic = Statistic::median;
+  std::optional<Better> better;  // which values are; needed for the worst draw and for the best point
+};
+
+// The values of a number of the grid, ascending, each once.
+struct MapAxis {
+  std::vector<double> values;
+  Spacing spacing = Spacing::linear;  // logarithmic if the plan's axis is
+
+  // Where `value` lies: itself, or its logarithm.
+  double place(double value) const;
+  double value_at(double place) const;
+  // The limits of the cells, one more than there are values: halfway between two places, and as far beyond
+  // the first and the last.
+  std::vector<double> edges() const;
+};
+
+enum class CellState {
+  value,
+  empty,  // a draw has no such quantity
+  failed  // a draw did not end as asked for: column "end"
+};
+struct Cell {
+  CellState state = CellState::empty;
+  double value = 0;
+};
+
+struct BestPoint {
+  std::size_t x = 0, y = 0;  // of the axes
+  double value = 0;
+  // Of the up to eight points one step from it, the worst; its value is absent if one of them has none, which
+  // is the worst that can be.
+  std::size_t worst_x = 0, worst_y = 0;
+  std::optional<double> worst;
+  bool x_is_at_end = false, y_is_at_end = false;  // of its axis: there may be better ones beyond
+};
+
+struct Map {
+  MapAxis x, y;
+  std::int64_t draws = 1;   // of each point
+  std::vector<Cell> cells;  // x varies fastest
+  std::optional<BestPoint> best;
+
+  const Cell& at(std::size_t ix, std::size_t iy) const { return cells[iy * x.values.size() + ix]; }
+};
+
+// Collects the rows of a table.
+class MapMaker {
+ public:
+  MapMaker(const Plan& plan, const MapQuestion& question);
+  void add(std::span<const std::string> row);  // the cells of a row as the plan's columns have them
+  Map finish() const;
+
+ private:
+  struct Draws {
+    std::vector<double> values;
+    std::int64_t empty = 0, failed = 0;
+  };
+  const Plan& plan_;
+  MapQuestion question_;
+  Map map_;
+  std::vector<Draws> draws_;
+};
+
+// A line through a picture: points, interrupted before those in `gaps`, ascending.
+struct MapLine {
+  std::vector<double> x, y;
+  std::vector<std::size_t> gaps;
+};
+// Where `values` at the points of the axes, x fastest, pass `level`: linear interpolation in the places of
+// the axes, around squares of four points that all have a value.
+MapLine contour(const MapAxis& x, const MapAxis& y, const std::vector<std::optional<double>>& values,
+                double level);
+// About eight levels at round steps between the least and the greatest value.
+std::vector<double> contour_levels(double least, double greatest);
+
+// Where an amplitude is that of impact failure, or of the end of bounce-down (M15.8).
+enum class Limit { impact_failure, bounce_down_end };
+struct LimitLine {
+  MapLine line;
+  // On which side of the line the amplitude is below the limit: "left", "right", "below" or "above", that to
+  // which it falls most on the average.
+  std::string_view lower_side;
+};
+// Absent if neither of the two numbers has a say in it, if it is nowhere in the picture, or if the motion is
+// under a force.
+std::optional<LimitLine> limit_line(const Plan& plan, const MapQuestion& question, const Map& map,
+                                    Limit limit);
+
+}  // namespace impact_damper

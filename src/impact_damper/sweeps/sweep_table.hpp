@@ -1,0 +1,34 @@
+// The table of a sweep, read back: its rows as CSV, and the file beside it that says what they are
+// (share_file.hpp).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "impact_damper/io/file_kind.hpp"
+#include "impact_damper/sweeps/plan.hpp"
+
+namespace impact_damper {
+
+inline constexpr FileKind sweep_kind{"sweep", 1 << 24};
+
+// What the file beside a table says.
+struct SweepDescription {
+  Plan plan;
+  std::int64_t rows = 0, bytes = 0;
+  std::string digest;  // SHA-256 of the table
+};
+// Throws IoError if TABLE.json cannot be read, InputError unless it is as sweep or merge wrote it.
+SweepDescription read_sweep_description(const std::filesystem::path& table);
+
+// Calls visit(cells) with the cells of each row, in their order. Before that throws IoError if the table
+// cannot be read, InputError unless it is the one described: same length and SHA-256. Memory does not grow
+// with the number of rows.
+void read_sweep_rows(const std::filesystem::path& table, const SweepDescription& description,
+                     const std::function<void(std::span<const std::string> cells)>& visit);
+
+}  // namespace impact_damper
