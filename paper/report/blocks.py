@@ -126,18 +126,20 @@ def made_from(values: Values, number: str) -> str:
     """What a figure is made from, as a sentence."""
     figure, scenes = values.figures[number], scenes_of(values, number)
     table = table_of(values, number)
-    parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + [f"table {table.name}" if table else ""]
+    parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + \
+        [f"plan {figure['plan']}"] * ("plan" in figure) + [f"table {table.name}" if table else ""]
     return (f"{parameters_of(values, number)}. " if parameters_of(values, number) else "") + \
         f"Made from {', '.join([part for part in parts if part] + ['script ' + figure['script']])}; " \
         f"stamp {values.stamps[number]} · {values.version}."
 
 
 def picture_html(svg: str, name: str, words: str) -> str:
-    """An SVG to stand inline: no head, scaled by the page, described, its ids its own; colours and coordinates without
-    spaces and zeros that say nothing."""
+    """An SVG to stand inline: no head, scaled by the page, described, its ids its own; without empty groups, colours and
+    coordinates without spaces and zeros that say nothing."""
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<svg\s+width=\"\d+\" height=\"\d+\"", f'<svg role="img" aria-label="{escape(words)}"', svg, count=1)
     svg = re.sub(r"rgb\(\s*(\d+),\s*(\d+),\s*(\d+)\)", lambda m: "#%02x%02x%02x" % tuple(map(int, m.groups())), svg)
+    svg = re.sub(r"<g [^>]*>\s*</g>\s*", "", svg)
     svg = re.sub(r"(\b(?:d|points|transform)\s*=\s*)(['\"])([^'\"]*)\2", lambda m: m[1] + m[2] + re.sub(
         r"(\.\d*?)0+(?!\d)", lambda n: n[1].rstrip("."), re.sub(r"\s+", " ", m[3])) + m[2], svg)
     return re.sub(r"(id=['\"]|href='#|url\(#)(?!" + name + "-)", rf"\g<1>{name}-", svg)

@@ -9,6 +9,7 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
+#include "impact_damper/sweeps/plan_file.hpp"
 #include "interruption.hpp"
 #include "project_files.hpp"
 
@@ -93,6 +94,16 @@ void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catal
     });
 }
 
+// A figure's sweep, which must be of the plan beside the catalogue.
+void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalogue_file,
+          FigureSweeps& sweeps) {
+  if (figure.plan.empty()) return;
+  for_figure(figure, [&] {
+    sweeps[figure.plan] = read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
+                                           read_plan(catalogue_file.parent_path() / figure.plan));
+  });
+}
+
 int make_tables(Arguments& arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.reject("--runs", "must be given: the folder of run files");
@@ -118,6 +129,11 @@ int make_tables(Arguments& arguments) {
   }
   for (const CatalogueResponse& response : catalogue.responses)
     inputs.push_back(folders.file_of(response.name));
+  for (const Figure* figure : figures) {
+    if (figure->plan.empty()) continue;
+    inputs.push_back(fs::path(catalogue_file).parent_path() / figure->plan);
+    inputs.push_back(runs_folder / (sweep_stem(*figure) + ".csv"));
+  }
   arguments.reject_overwriting("--output", output, inputs);
   arguments.finish();
   if (output && !into_folder) require_writable(*output);
@@ -132,6 +148,7 @@ int make_tables(Arguments& arguments) {
 
   FigureRuns runs;
   FigureResponses responses;
+  FigureSweeps sweeps;
   std::size_t made = 0;
   for (const Figure* figure : figures) {
     if (output) {
@@ -140,7 +157,8 @@ int make_tables(Arguments& arguments) {
     }
     load(*figure, folders, threads, runs);
     load(*figure, folders, catalogue, responses);
-    const Table table = figure_table(*figure, runs, responses);
+    load(*figure, folders, catalogue_file, sweeps);
+    const Table table = figure_table(*figure, runs, responses, sweeps);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     if (!output) {
       write_standard_output(text);
@@ -160,7 +178,7 @@ Command series_command() {
       {"--runs", "FOLDER",
        "folder of the runs, must be given: SCENE.json of each scene, with\n"
        "the members of the ensembles that figures show (run --members),\n"
-       "and NAME.json of each response that they draw"},
+       "NAME.json of each response and NAME.csv of each sweep that they\ndraw"},
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/run_file.hpp"
@@ -17,6 +18,7 @@
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
+#include "impact_damper/sweeps/plan_file.hpp"
 #include "planter.hpp"
 
 using namespace impact_damper;
@@ -80,6 +82,18 @@ bool list_run(const Run& run) {
   return all_known;
 }
 
+// The table of a plan, of two draws of each point.
+SweepTable made_of(const std::filesystem::path& file) {
+  SweepTable sweep{file, read_plan(file), {}};
+  sweep.plan.samples->count = 2;
+  for (std::int64_t i = 0; i < runs_of(sweep.plan); ++i) {
+    std::istringstream row(row_of(sweep.plan, i));
+    std::vector<std::string>& cells = sweep.rows.emplace_back();
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+  }
+  return sweep;
+}
+
 void list_tables(const std::filesystem::path& source) {
   const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
   FigureRuns runs;
@@ -100,7 +114,9 @@ void list_tables(const std::filesystem::path& source) {
       const CatalogueResponse& asked = *find_response(catalogue.responses, name);
       responses[name] = {name, found_for(asked_for(asked, runs.at(asked.scene).run.scene), {})};
     }
-    const Table table = figure_table(figure, runs, responses);
+    FigureSweeps sweeps;
+    if (!figure.plan.empty()) sweeps[figure.plan] = made_of(source / "figures" / figure.plan);
+    const Table table = figure_table(figure, runs, responses, sweeps);
     for (const TableBlock& block : table.blocks)
       for (std::size_t c = 1; c <= block.columns.size(); ++c) {
         const std::string column = planted::family(block.name) + '.' + std::to_string(c);

@@ -251,8 +251,8 @@ WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& t
   return with_fault("read", real_parse_run(name, text));
 }
 WRAPPED(Table, figure_table, FIGURE_TABLE, const Figure& figure, const FigureRuns& runs,
-        const FigureResponses& responses) {
-  return with_fault("table", real_figure_table(figure, runs, responses), kind_of_table(figure) + '.');
+        const FigureResponses& responses, const FigureSweeps& sweeps) {
+  return with_fault("table", real_figure_table(figure, runs, responses, sweeps), kind_of_table(figure) + '.');
 }
 WRAPPED(Spread, measure, MEASURE, Runs& runs, const MeasureCall& call) {
   return with_fault("measure", real_measure(runs, call), call.name + '.');

@@ -113,6 +113,7 @@ const char* missing_record(TableKind table, const Record& record) {
                                 : "half_cycles";
     case TableKind::response:
     case TableKind::response_map:
+    case TableKind::design_charts:
     case TableKind::drawing:
       return nullptr;
   }
@@ -120,7 +121,8 @@ const char* missing_record(TableKind table, const Record& record) {
 }
 
 bool is_without_curves(TableKind table) {
-  return table == TableKind::drawing || table == TableKind::response || table == TableKind::response_map;
+  return table == TableKind::drawing || table == TableKind::response || table == TableKind::response_map ||
+         table == TableKind::design_charts;
 }
 
 // A null pointer if a table of this kind is made of such a response, else what it is made of.
@@ -332,7 +334,8 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   if (!item.required(
           "table", figure.table,
           {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase, TableKind::response,
-           TableKind::largest_response, TableKind::response_map, TableKind::drawing})) {
+           TableKind::largest_response, TableKind::response_map, TableKind::design_charts,
+           TableKind::drawing})) {
     item.keys();  // which others are known depends on the table
     return figure;
   }
@@ -340,6 +343,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     figure.varied = Varied::mass_ratio;
     item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
   }
+  if (figure.table == TableKind::design_charts) item.required("plan", figure.plan, a_name);
   figure.curves = read_curves(item, figure.table);
   read_responses(item, figure, catalogue);
   if (figure.table == TableKind::loss_factor) {
@@ -397,6 +401,8 @@ std::string_view name_of(TableKind kind) {
       return "largest_response";
     case TableKind::response_map:
       return "response_map";
+    case TableKind::design_charts:
+      return "design_charts";
     case TableKind::motion:
       return "motion";
     case TableKind::decay:
@@ -482,6 +488,8 @@ const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {
 }
 
 std::string file_stem(const Figure& figure) { return std::filesystem::path(figure.script).stem().string(); }
+
+std::string sweep_stem(const Figure& figure) { return std::filesystem::path(figure.plan).stem().string(); }
 
 std::vector<std::string> scenes_of(const Figure& figure) {
   std::vector<std::string> scenes;

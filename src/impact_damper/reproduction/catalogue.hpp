@@ -42,6 +42,7 @@ enum class TableKind {
   response,          // amplitude over the frequency of a force, with the branches of periodic motions
   largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
   response_map,      // which steady motion there is, over frequency and amplitude of a force
+  design_charts,     // loss factor over amplitude for many restitutions and mass ratios, of a sweep
   drawing,           // none: a schematic that no run stands behind
 };
 std::string_view name_of(TableKind kind);
@@ -90,12 +91,13 @@ struct FigureCurve {
 };
 
 struct Figure {
-  std::string number;  // "1" ... "15", "A" ... "E"
+  std::string number;  // "1" ... "15", "A" ... "E", "H"
   std::string title;
   TableKind table = TableKind::drawing;
-  // One for motion, phase and largest_response, none for a drawing, response and response_map.
+  // One for motion, phase and largest_response, none for a drawing, response, response_map and design_charts.
   std::vector<FigureCurve> curves;
   std::vector<std::string> responses;           // of the catalogue, for the tables of responses
+  std::string plan;                             // design_charts: of its sweep, a file beside the catalogue
   std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
   std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
   std::optional<Varied> varied;                 // if there is more than one curve
@@ -129,6 +131,9 @@ const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
 
 // The name of its table and pictures without their endings: its script's, "fig08" for fig08.gp.
 std::string file_stem(const Figure& figure);
+
+// The name of its sweep's files without their endings: its plan's.
+std::string sweep_stem(const Figure& figure);
 
 // The scenes of a figure, each once, in the order of its curves.
 std::vector<std::string> scenes_of(const Figure& figure);

@@ -202,7 +202,9 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene) {
   return members;
 }
 
-Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses) {
+Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses,
+                   const FigureSweeps& sweeps) {
+  if (figure.table == TableKind::design_charts) return design_table(figure, sweeps.at(figure.plan));
   std::vector<const FigureRun*> sources;
   for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
   std::vector<const FigureResponse*> found;
@@ -256,6 +258,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureRes
     case TableKind::response_map:
       add_map_blocks(figure, *found[0], table);
       break;
+    case TableKind::design_charts:
     case TableKind::drawing:
       break;
   }

@@ -11,6 +11,7 @@
 #include "impact_damper/reproduction/catalogue.hpp"
 #include "impact_damper/reproduction/table.hpp"
 #include "impact_damper/run.hpp"
+#include "impact_damper/sweeps/sweep_table.hpp"
 
 namespace impact_damper {
 
@@ -25,13 +26,14 @@ struct FigureResponse {
   Response response;
 };
 using FigureResponses = std::map<std::string, FigureResponse>;  // by name
+using FigureSweeps = std::map<std::string, SweepTable>;         // by the name of the plan's file
 
 // The members, the scene's own run among them, of the largest ensemble of that scene that the figure shows;
 // 0 if it shows none.
 std::int64_t members_shown(const Figure& figure, const std::string& scene);
 
 // The table of `figure`, which must not be a drawing; `runs` holds at least its scenes, with as many members
-// of each as the figure shows, `responses` at least the responses. Blocks by kind:
+// of each as the figure shows, `responses` at least the responses, `sweeps` that of its plan. Blocks by kind:
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks
@@ -53,9 +55,13 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //                sweeps along the same forces
 //   response_map "cell" (width, height); "one-symmetric", "one-asymmetric", "each-2", "each-3", "other",
 //                "irregular", "idle" (frequency, f0 / nu), as far as they occur
+//   design_charts  of the first, second ... restitution: "panel-1" (e); "curve-1-1", "curve-1-2" ... of the
+//                mass ratios (amplitude, mean loss factor, least, greatest); "failure-1", "bounce-down-1", the
+//                closed forms' amplitudes, where they are in the range; "reading", the report's example
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.
-Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses = {});
+Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses = {},
+                   const FigureSweeps& sweeps = {});
 
 }  // namespace impact_damper

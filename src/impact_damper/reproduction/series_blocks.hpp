@@ -38,4 +38,7 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
                         const std::vector<const FigureResponse*>& sources, Table& table);
 void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& table);
 
+// The whole table.
+Table design_table(const Figure& figure, const SweepTable& sweep);
+
 }  // namespace impact_damper

@@ -109,4 +109,22 @@ void read_sweep_rows(const fs::path& table, const SweepDescription& description,
   }
 }
 
+SweepTable read_sweep_table(const fs::path& table, const Plan& plan) {
+  const auto text_of = [](const Plan& each) {
+    JsonWriter out("plan");
+    out.open_object(JsonWriter::Layout::one_line);
+    write_plan_fields(out, each);
+    out.close();
+    return out.finish();
+  };
+  const SweepDescription description = read_sweep_description(table);
+  if (text_of(description.plan) != text_of(plan))
+    throw InputError(table.string(), {{"", "must be of the plan that is asked for, is of another"}});
+  SweepTable found{table, description.plan, {}};
+  read_sweep_rows(table, description, [&](std::span<const std::string> cells) {
+    found.rows.emplace_back(cells.begin(), cells.end());
+  });
+  return found;
+}
+
 }  // namespace impact_damper

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/sweeps/plan.hpp"
@@ -30,5 +31,14 @@ SweepDescription read_sweep_description(const std::filesystem::path& table);
 // with the number of rows.
 void read_sweep_rows(const std::filesystem::path& table, const SweepDescription& description,
                      const std::function<void(std::span<const std::string> cells)>& visit);
+
+// A table as a whole.
+struct SweepTable {
+  std::filesystem::path file;  // where it was read from, for messages
+  Plan plan;
+  std::vector<std::vector<std::string>> rows;
+};
+// Throws as the two above, and InputError unless it is of that plan.
+SweepTable read_sweep_table(const std::filesystem::path& table, const Plan& plan);
 
 }  // namespace impact_damper
