@@ -21,6 +21,13 @@ std::string in_words(std::string_view name) {
   std::ranges::replace(words, '_', ' ');
   return words;
 }
+// Symbols for the names of units: "1/Omega_n" -> "1/Ω_n".
+std::string in_symbols(std::string text) {
+  for (const auto& [name, symbol] : {std::pair("Omega", "Ω"), {"epsilon", "ε"}})
+    for (std::size_t at; (at = text.find(name)) != std::string::npos;)
+      text.replace(at, std::string_view(name).size(), symbol);
+  return text;
+}
 std::string with_unit(const std::string& number, std::string_view unit) {
   std::string text = number;
   if (!unit.empty()) text.append(1, ' ').append(unit);
@@ -172,11 +179,12 @@ std::string point_text(const Named& named, const Map& map, std::size_t ix, std::
          std::string(named.y().name) + " = " + with_unit(number(map.y.values[iy]), named.y().unit);
 }
 
-// "+ 12 %", "- 0.3 %".
+// " (+12 %)": the margin (M15.6).
 std::string change_text(double from, double to) {
   if (from == 0) return "";
-  const double percent = 100 * (to - from) / std::abs(from);
-  return std::string(percent < 0 ? "−" : "+") + rounded_text(std::abs(percent), 2) + " %";
+  const double percent = 100 * std::abs((to - from) / from);
+  return std::string(to < from ? " (−" : " (+") +
+         (percent < 99.5 ? rounded_text(percent, 2) : std::to_string(std::llround(percent))) + " %)";
 }
 
 std::string statistic_text(const MapQuestion& question, const Map& map) {
@@ -261,15 +269,17 @@ Drawing drawing_of(const Named& named, const Map& map) {
   if (map.best) {
     const auto rounded = [](double value) { return rounded_text(value, 3); };
     parameters += (parameters.empty() ? "" : "; ") + std::string("best ") +
-                  with_unit(rounded(map.best->value), named.unit_z()) + ", within one step ";
-    parameters += map.best->worst ? with_unit(rounded(*map.best->worst), named.unit_z()) + " (" +
-                                        change_text(map.best->value, *map.best->worst) + ")"
-                                  : "none";
+                  with_unit(rounded(map.best->value), named.unit_z()) + ", its worst neighbour " +
+                  (map.best->worst ? with_unit(rounded(*map.best->worst), named.unit_z()) +
+                                         change_text(map.best->value, *map.best->worst)
+                                   : "without a value");
   }
   table.header = {"Map: " + drawing.title, "Parameters: " + parameters,
                   "x: " + Named::labelled(in_words(named.x().name), named.x().unit),
                   "y: " + Named::labelled(in_words(named.y().name), named.y().unit),
                   "z: " + Named::labelled(named.title_z(), named.unit_z())};
+  for (std::string& line : table.header) line = in_symbols(line);
+  drawing.title = in_symbols(drawing.title);
   const auto is_logarithmic = [](const MapAxis& axis) {
     return axis.spacing == Spacing::logarithmic ? 1.0 : 0.0;
   };
@@ -311,11 +321,11 @@ std::string summary_of(const Named& named, const Map& map) {
     text += "best: " + named.z().column() + " = " + with_unit(number(best.value), named.unit_z()) + " at " +
             point_text(named, map, best.x, best.y, number) + (statistic.empty() ? "" : ", " + statistic) +
             "\n";
-    text += "margin: within one step of the grid " +
-            (best.worst ? with_unit(number(*best.worst), named.unit_z()) + " (" +
-                              change_text(best.value, *best.worst) + ")"
-                        : std::string("no value")) +
-            " at worst, at " + point_text(named, map, best.worst_x, best.worst_y, number) + "\n";
+    text +=
+        "margin: " +
+        (best.worst ? with_unit(number(*best.worst), named.unit_z()) + change_text(best.value, *best.worst)
+                    : std::string("no value")) +
+        " at its worst neighbour, " + point_text(named, map, best.worst_x, best.worst_y, number) + "\n";
     if (best.x_is_at_end || best.y_is_at_end) {
       text += "the best point is at the end of the grid in " +
               (best.x_is_at_end ? std::string(named.x().name) : "") +

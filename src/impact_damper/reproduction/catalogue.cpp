@@ -331,11 +331,10 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
                     in_quotes(figure.script));
   }
   item.optional("claims", figure.claims, a_name, 100);
-  if (!item.required(
-          "table", figure.table,
-          {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase, TableKind::response,
-           TableKind::largest_response, TableKind::response_map, TableKind::design_charts,
-           TableKind::drawing})) {
+  if (!item.required("table", figure.table,
+                     {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
+                      TableKind::response, TableKind::largest_response, TableKind::response_map,
+                      TableKind::design_charts, TableKind::drawing})) {
     item.keys();  // which others are known depends on the table
     return figure;
   }

@@ -56,8 +56,8 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //   response_map "cell" (width, height); "one-symmetric", "one-asymmetric", "each-2", "each-3", "other",
 //                "irregular", "idle" (frequency, f0 / nu), as far as they occur
 //   design_charts  of the first, second ... restitution: "panel-1" (e); "curve-1-1", "curve-1-2" ... of the
-//                mass ratios (amplitude, mean loss factor, least, greatest); "failure-1", "bounce-down-1", the
-//                closed forms' amplitudes, where they are in the range; "reading", the report's example
+//                mass ratios (amplitude, mean loss factor, least, greatest); "failure-1", "bounce-down-1",
+//                the closed forms' amplitudes, where they are in the range; "reading", the report's example
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.

@@ -23,9 +23,8 @@ void check_plan(const Figure& figure, const SweepTable& sweep) {
   const Plan& plan = sweep.plan;
   const bool is_grid = plan.grid.size() == 2 && plan.grid[0].variable.name == "restitution" &&
                        plan.grid[1].variable.name == "mass_ratio" && !plan.scene.in_units;
-  const bool is_loss = std::ranges::all_of(plan.quantities, [](const KeptQuantity& each) {
-    return each.quantity->name == "loss_factor_at";
-  });
+  const bool is_loss = std::ranges::all_of(
+      plan.quantities, [](const KeptQuantity& each) { return each.quantity->name == "loss_factor_at"; });
   if (!is_grid || !is_loss)
     throw unusable(figure, sweep.file,
                    "must be dimensionless, over restitution and mass_ratio, in this order, and keep loss "
@@ -39,11 +38,10 @@ Table design_table(const Figure& figure, const SweepTable& sweep) {
   const Plan& plan = sweep.plan;
   const auto draws = std::size_t(plan.samples ? plan.samples->count : 1);
   Table table;
-  table.header = {
-      "Figure " + figure.number + ": " + figure.title,
-      "Parameters: ζ = " + number_text(plan.scene.scene.damping_ratio) + "; mean of " +
-          std::to_string(draws) + (draws == 1 ? " release" : " releases"),
-      "Script: " + figure.script, "Plan " + figure.plan, "  " + plan.description};
+  table.header = {"Figure " + figure.number + ": " + figure.title,
+                  "Parameters: ζ = " + number_text(plan.scene.scene.damping_ratio) + "; mean of " +
+                      std::to_string(draws) + (draws == 1 ? " release" : " releases"),
+                  "Script: " + figure.script, "Plan " + figure.plan, "  " + plan.description};
   const GridAxis &restitutions = plan.grid[0], &mass_ratios = plan.grid[1];
   const double least = *plan.quantities.front().at, most = *plan.quantities.back().at;
   TableBlock reading{.name = "reading", .notes = {"the example of the report"}, .columns = {}};
@@ -80,17 +78,20 @@ Table design_table(const Figure& figure, const SweepTable& sweep) {
         const std::array row{amplitude, mean, spread.low, spread.high};
         for (std::size_t c = 0; c < row.size(); ++c) curve.columns[c].values.push_back(row[c]);
         if (e == example.restitution && nu == example.mass_ratio && amplitude == example.amplitude)
-          reading.columns = {{"amplitude", of_peak, {amplitude}}, {"example", of_mean_loss, {mean}}, {"restitution", "e", {e}}, {"mass ratio", "nu", {nu}}};
+          reading.columns = {{"amplitude", of_peak, {amplitude}},
+                             {"example", of_mean_loss, {mean}},
+                             {"restitution", "e", {e}},
+                             {"mass ratio", "nu", {nu}}};
       }
       if (!curve.columns[0].values.empty()) table.blocks.push_back(std::move(curve));
     }
     for (const auto& [name, amplitude] :
          {std::pair("failure-" + panel, fold_amplitude(e)), {"bounce-down-" + panel, bounce_down_end(e)}})
       if (amplitude > least && amplitude < most)
-        table.blocks.push_back({.name = name,
-                                .notes = {"closed form for nu -> 0"},
-                                .columns = {{"amplitude", of_peak, {amplitude}},
-                                            {name, "restitution e", {e}}}});
+        table.blocks.push_back(
+            {.name = name,
+             .notes = {"closed form for nu -> 0"},
+             .columns = {{"amplitude", of_peak, {amplitude}}, {name, "restitution e", {e}}}});
   }
   if (!reading.columns.empty()) table.blocks.push_back(std::move(reading));
   return table;

@@ -52,8 +52,8 @@ struct Cell {
 struct BestPoint {
   std::size_t x = 0, y = 0;  // of the axes
   double value = 0;
-  // Of the up to eight points one step from it, the worst; its value is absent if one of them has none, which
-  // is the worst that can be.
+  // Of the up to eight points one step from it (M15.6), the worst; its value is absent if one of them has
+  // none, which is the worst that can be.
   std::size_t worst_x = 0, worst_y = 0;
   std::optional<double> worst;
   bool x_is_at_end = false, y_is_at_end = false;  // of its axis: there may be better ones beyond
@@ -92,7 +92,7 @@ struct MapLine {
   std::vector<std::size_t> gaps;
 };
 // Where `values` at the points of the axes, x fastest, pass `level`: linear interpolation in the places of
-// the axes, around squares of four points that all have a value.
+// the axes (M15.7), around squares of four points that all have a value.
 MapLine contour(const MapAxis& x, const MapAxis& y, const std::vector<std::optional<double>>& values,
                 double level);
 // About eight levels at round steps between the least and the greatest value.
