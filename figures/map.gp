@@ -5,7 +5,7 @@ eval require("cells", 1)
 header(name) = system(sprintf("sed -n 's/^# %s: //p' '%s'", name, table))
 eval canvas(720, 620)
 set tmargin at screen 0.875
-set bmargin at screen 0.185
+set bmargin at screen 0.200
 set rmargin at screen 0.815
 # The colours of the map cividis: their lightness rises evenly, for all kinds of colour vision.
 set palette defined (0 "#00224E", 1 "#123570", 2 "#3B496C", 3 "#575D6D", 4 "#707173", 5 "#8A8678", 6 "#A59C74", \
@@ -32,13 +32,13 @@ set yrange [low_y:high_y]
 if (strlen(logarithmic)) { eval "set logscale ".logarithmic }
 if (strstrt(logarithmic, "x")) { eval marks("x", low_x, high_x) }
 if (strstrt(logarithmic, "y")) { eval marks("y", low_y, high_y) }
-set xlabel header("x")
+set xlabel header("x") offset 0,0.3
 set ylabel header("y")
 set cblabel header("z") offset 1,0
 set tics front
 set style fill solid 1 noborder
 set style textbox opaque noborder fillcolor rgb "white" margins 0.4,0.4
-set key at screen 0.45,screen 0.05 center maxrows 2 samplen 2.4 Left reverse width 1 font ",12"
+set key at screen 0.45,screen 0.047 center maxrows 2 samplen 2.4 Left reverse width 1 font ",12"
 line(block, clause) = !has(block) ? "" : sprintf(", table index '%s' using 1:2 with lines lc rgb 'white' lw 4 notitle, '' index '%s' using 1:2 with lines ", block, block).clause." title columnheader(2)"
 missing(block, mark, legend) = !has(block) ? "" : sprintf( \
   ", table index '%s' using 1:2:3:4:5:6 with boxxyerror fc rgb 'white' notitle, '' index '%s' using 1:2 with points pt %d ps 0.7 lc rgb grey title '%s'", \

@@ -18,6 +18,7 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "impact_damper/sweeps/plan_file.hpp"
 
 namespace impact_damper {
 namespace {
@@ -1032,6 +1033,51 @@ TEST_CASE("the table of a map has each point under the motion that it ends in") 
   // Another kind of response cannot be drawn so.
   CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", SweepResponse{driven}}}}),
                        doctest::Contains("a.json: must be a basin, got sweep"), InputError);
+}
+
+TEST_CASE("the table of design charts has the mean of the releases, down to where one of them has none") {
+  SweepTable sweep{"charts.csv",
+                   parse_plan("charts.json", R"({"schema": "impact-damper/plan/1",
+      "scene": {"until_amplitude": 0.1}, "grid": [{"number": "restitution", "values": [0, 0.6]},
+      {"number": "mass_ratio", "values": [0.02, 0.1]}], "samples": {"count": 2, "numbers": [{"number": "x0",
+      "half_width": 0.1}]}, "quantities": ["loss_factor_at=0.2", "loss_factor_at=1", "loss_factor_at=6",
+      "loss_factor_at=9"]})"),
+                   {}};
+  // Of run, restitution, mass ratio, x0, the loss factors, end and problem, only these are read.
+  const auto add = [&](const std::vector<std::string>& losses) {
+    std::vector<std::string> row{"", "", "", ""};
+    row.insert(row.end(), losses.begin(), losses.end());
+    row.insert(row.end(), {"done", ""});
+    sweep.rows.push_back(row);
+  };
+  add({"0.5", "0.25", "0.125", ""});
+  add({"0.25", "0.75", "0.625", ""});
+  add({"", "1", "2", "4"});
+  add({"7", "3", "4", "8"});
+  add({"1", "1", "1", ""});  // missing above, as the release of the other is
+  add({"1", "3", "5", "7"});
+  add({"9", "", "1", "1"});
+  add({"9", "9", "2", "3"});
+  Figure figure{.number = "H", .title = "t", .table = TableKind::design_charts, .script = "figH.gp"};
+  figure.plan = "charts.json";
+  const Table table = figure_table(figure, {}, {}, {{"charts.json", sweep}});
+  check_block(table, "panel-1", {{0}, {0}});
+  check_block(table, "panel-2", {{0.6}, {0.6}});
+  check_block(table, "curve-1-1",
+              {{6, 1, 0.2}, {0.375, 0.5, 0.375}, {0.125, 0.25, 0.25}, {0.625, 0.75, 0.5}});
+  check_block(table, "curve-1-2", {{9, 6, 1}, {6, 3, 2}, {4, 2, 1}, {8, 4, 3}});
+  check_block(table, "curve-2-1", {{6, 1, 0.2}, {3, 2, 1}, {1, 1, 1}, {5, 3, 1}});
+  check_block(table, "curve-2-2", {{9, 6}, {2, 1.5}, {1, 1}, {3, 2}});
+  // The fold for e = 0 is 1/sqrt(pi^2 + 4); that for 0.6 is below all amplitudes.
+  check_block(table, "failure-1", {{1 / std::sqrt(pi * pi + 4)}, {0}});
+  CHECK_FALSE(has_block(table, "failure-2"));
+  check_block(table, "bounce-down-1", {{1 / pi}, {0}});
+  REQUIRE(has_block(table, "bounce-down-2"));
+  check_block(table, "reading", {{1}, {2}, {0.6}, {0.02}});
+  CHECK(to_text(table).find("# Parameters: ζ = 0; mean of 2 releases\n") != std::string::npos);
+  sweep.plan.grid[0].variable.name = "x0";
+  CHECK_THROWS_WITH_AS(figure_table(figure, {}, {}, {{"charts.json", sweep}}),
+                       doctest::Contains("figure H: charts.csv: must be dimensionless"), InputError);
 }
 
 }  // namespace impact_damper

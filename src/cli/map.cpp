@@ -21,9 +21,9 @@ std::string in_words(std::string_view name) {
   std::ranges::replace(words, '_', ' ');
   return words;
 }
-// Symbols for the names of units: "1/Omega_n" -> "1/Ω_n".
+// Symbols for the names of units: "1/Omega_n" -> "1/Ω_{n}", as gnuplot reads an index.
 std::string in_symbols(std::string text) {
-  for (const auto& [name, symbol] : {std::pair("Omega", "Ω"), {"epsilon", "ε"}})
+  for (const auto& [name, symbol] : {std::pair("Omega_n", "Ω_{n}"), {"epsilon", "ε"}})
     for (std::size_t at; (at = text.find(name)) != std::string::npos;)
       text.replace(at, std::string_view(name).size(), symbol);
   return text;
