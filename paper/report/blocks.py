@@ -127,7 +127,7 @@ def made_from(values: Values, number: str) -> str:
     figure, scenes = values.figures[number], scenes_of(values, number)
     table = table_of(values, number)
     parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + \
-        [f"plan {figure['plan']}"] * ("plan" in figure) + [f"table {table.name}" if table else ""]
+        [f"plan {figure['plan']}" if "plan" in figure else "", f"table {table.name}" if table else ""]
     return (f"{parameters_of(values, number)}. " if parameters_of(values, number) else "") + \
         f"Made from {', '.join([part for part in parts if part] + ['script ' + figure['script']])}; " \
         f"stamp {values.stamps[number]} · {values.version}."

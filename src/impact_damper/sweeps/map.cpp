@@ -148,7 +148,9 @@ Map MapMaker::finish() const {
   Map map = map_;
   for (const Draws& draws : draws_) {
     Cell& cell = map.cells.emplace_back();
-    cell.state = draws.failed ? CellState::failed : draws.empty ? CellState::empty : CellState::value;
+    cell.state = draws.failed                              ? CellState::failed
+                 : draws.empty > 0 || draws.values.empty() ? CellState::empty
+                                                           : CellState::value;
     if (cell.state == CellState::value)
       cell.value = statistic_of(draws.values, question_.statistic, question_.better);
   }
