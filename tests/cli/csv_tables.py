@@ -20,6 +20,7 @@ program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
+ENDS_OF_CHARTS = {("curve", 3): "low", ("curve", 4): "high"}
 GAP = ("", "", "", "")
 faults = []
 
@@ -38,8 +39,9 @@ def gnuplot_blocks(text):
 
 def wanted_rows(kind, name, headings, rows):
     """(block, curve, x, y, low, high) of each row, in the order of the file."""
-    ends = {} if kind == "largest_response" else {**ENDS, **(ENDS_OF_PHASES if kind == "phase" else {})}
-    family = re.sub(r"-\d+$", "", name)
+    own = {"phase": ENDS_OF_PHASES, "design_charts": ENDS_OF_CHARTS}
+    ends = {} if kind == "largest_response" else {**ENDS, **own.get(kind, {})}
+    family = re.sub(r"(-\d+)+$", "", name)
     role = {column: ends.get((family, column), "y") for column in range(2, len(headings) + 1)}
     low, high = ([c for c in role if role[c] == end] for end in ("low", "high"))
     curves = [c for c in role if role[c] == "y"]
@@ -63,6 +65,8 @@ for scene in catalogue["scenes"]:
         "--members", str(catalogue["members"]), "-o", f"runs/{scene['scene']}.json")
 for entry in catalogue["responses"]:
     run(*respond(entry, source / "data/scenes"), "-o", f"runs/{entry['name']}.json")
+for plan in {figure["plan"] for figure in catalogue["figures"] if "plan" in figure}:
+    run("sweep", source / f"figures/{plan}", "-o", f"runs/{pathlib.Path(plan).stem}.csv")
 series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", "runs",
           "-o", "tables"]
 run(*series)

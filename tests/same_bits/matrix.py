@@ -147,7 +147,13 @@ def small_catalogues(work: Path) -> dict:
     for engine in ENGINES:
         paths[engine] = work / f"catalogue-{engine}.json"
         paths[engine].write_text(re.sub(r'"ensemble": \d+', '"ensemble": 2', text) if engine == "cem" else text)
+    for plan in plans_of(json.loads(text)):  # beside them; two releases are as good as many
+        (work / plan).write_text(re.sub(r'"count": \d+', '"count": 2', (SOURCE / "figures" / plan).read_text()))
     return paths
+
+
+def plans_of(catalogue: dict) -> list:
+    return sorted({figure["plan"] for figure in catalogue["figures"] if "plan" in figure})
 
 
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
@@ -185,8 +191,12 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
                 call([program, *respond(entry, "data/scenes"), "-o", file], **options)
             else:
                 shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
+        for plan in plans_of(catalogue):
+            call([program, "sweep", catalogues[engine].with_name(plan), "-o", runs / f"{Path(plan).stem}.csv"], **options)
         call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",
               "-o", tables], **options)
+        for plan in plans_of(catalogue):  # names the program, of which each is another
+            (runs / f"{Path(plan).stem}.csv.json").unlink()
 
 
 def draw_all(places: Places, features: str, surroundings, tables: Path, pictures: Path):
