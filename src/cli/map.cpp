@@ -345,7 +345,7 @@ int make_map(Arguments& arguments) {
   if (output && !output->ends_with(".svg"))
     arguments.reject("--output", "must end in .svg, got " + in_quotes(*output));
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
-  if (!file) arguments.finish();
+  arguments.finish();  // before the table is read, which says what else is valid
   const SweepDescription description = read_sweep_description(*file);
   const MapQuestion question = question_of(arguments, description.plan);
   arguments.finish();
