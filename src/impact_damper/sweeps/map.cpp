@@ -17,8 +17,7 @@ MapAxis axis_of(const GridAxis& grid) {
   axis.spacing = grid.values.empty() ? grid.spacing : Spacing::linear;
   for (std::int64_t i = 0; i < grid.size(); ++i) axis.values.push_back(grid.value(i));
   std::ranges::sort(axis.values);
-  const auto doubled = std::ranges::unique(axis.values);
-  axis.values.erase(doubled.begin(), doubled.end());
+  axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
   return axis;
 }
 
