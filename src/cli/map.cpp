@@ -9,6 +9,7 @@
 #include "drawing.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/sweeps/hdf5_table.hpp"
 #include "impact_damper/sweeps/sweep_table.hpp"
 #include "interruption.hpp"
 
@@ -341,6 +342,10 @@ std::string summary_of(const Named& named, const Map& map) {
 int make_map(Arguments& arguments) {
   const auto file = arguments.file("TABLE"), output = arguments.file("--output");
   if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
+  if (file && is_hdf5(*file))
+    arguments.reject(
+        "TABLE",
+        "must be a table as CSV: sweep and merge write one to a name without .h5, got " + in_quotes(*file));
   if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
   if (output && !output->ends_with(".svg"))
     arguments.reject("--output", "must end in .svg, got " + in_quotes(*output));
@@ -383,7 +388,8 @@ Command map_command() {
       .description =
           "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point."};
   command.options = {
-      {"TABLE", "FILE", "the table of a sweep; FILE.json, which says what it holds, must be beside it"},
+      {"TABLE", "FILE",
+       "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"},
       {"--x", "NAME", "the number of the grid along the horizontal axis"},
       {"--y", "NAME", "the one along the vertical axis"},
       {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},
