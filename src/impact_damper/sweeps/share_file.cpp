@@ -139,7 +139,8 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
   errno = 0;
   stream_.reset(std::fopen(file.c_str(), "ab"));
   if (!stream_) throw IoError(file.string() + ": cannot be written: " + std::strerror(errno));
-  if (::flock(::fileno(stream_.get()), LOCK_EX | LOCK_NB) != 0)
+  // Not every file system has locks. Where there are none, the digests tell what two have written at once.
+  if (::flock(::fileno(stream_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw IoError(file.string() + ": cannot be written: another sweep is writing it");
   const std::string first = head_line(head);
   std::ifstream there(file, std::ios::binary);
