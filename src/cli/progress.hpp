@@ -12,7 +12,8 @@
 namespace impact_damper::cli {
 
 // What is being done, told on stderr: nothing in the first two seconds, then once a second if it has changed,
-// and every ten seconds that it goes on. A thread of its own tells it, so a long simulation is not silent.
+// and every ten seconds that it goes on; after minutes less often, so that the log of a day has 500 lines. A
+// thread of its own tells it, so a long simulation is not silent.
 class ProgressOnStderr {
  public:
   explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {}
@@ -25,11 +26,14 @@ class ProgressOnStderr {
   void tell(const std::stop_token& stop) {
     using namespace std::chrono_literals;
     constexpr int first = 2, at_least_every = 10;  // seconds
+    constexpr int minute = 60;                     // after so many of them a line in so many seconds
     std::string told;
     std::unique_lock lock(mutex_);
     for (int second = 1, last = 0; !ended_.wait_for(lock, stop, 1s, [&] { return stop.stop_requested(); });
          ++second) {
-      if (second < first || doing_.empty() || (doing_ == told && second - last < at_least_every)) continue;
+      const int silent = second - last;
+      if (second < first || doing_.empty() || silent < second / minute) continue;
+      if (doing_ == told && silent < at_least_every) continue;
       std::cerr << command_ << ": " << doing_
                 << (doing_ == told ? ", " + std::to_string(second) + " s since the start" : "") << std::endl;
       told = doing_;
