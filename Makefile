@@ -23,14 +23,16 @@ CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
+# What sweeps on several machines are tested with.
+CLUSTER_PACKAGES := python3 slurm-wlm munge parallel rsync
 # What a bare system is made with.
 BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-paper build install report-page figures verify paper docs test bench bench-record stress \
-  stress-results check check-long check-all bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
+.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper build install report-page figures verify paper docs test bench bench-record \
+  stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -46,6 +48,9 @@ deps-check:  ## the same for the tests: make deps-check check
 deps-bench:  ## the same for the bench: its peers and its higher precision
 	@.ci/install $(PACKAGES) $(BENCH_PACKAGES)
 	@$(alone) rm -f $(BUILD)/build.ninja  # CMake looks anew for what has come
+
+deps-cluster:  ## the same for sweeps on a cluster: make deps-cluster cluster-check
+	@.ci/install $(PACKAGES) $(CLUSTER_PACKAGES)
 
 deps-paper:  ## the same for the report: make deps-paper paper
 	@.ci/install $(PACKAGES) $(PAPER_PACKAGES)
@@ -164,6 +169,12 @@ check-long:  ## what make check leaves out: the tests with the label long, the o
 	done
 
 check-all: check check-long  ## make check, then make check-long: every test, every engine
+
+cluster-check: $(BUILD)/build.ninja  ## sweeps by the scripts of cluster/: GNU parallel, and a real Slurm that is started here (minutes)
+	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
+	for check in parallel slurm; do \
+	  tests/cluster/$$check.py $(BUILD)/src/impact-damper . $(BUILD)/cluster-check/$$check || exit; \
+	done
 
 lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
