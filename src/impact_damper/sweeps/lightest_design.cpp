@@ -23,7 +23,9 @@ constexpr std::array<std::pair<double, double>, 5> parts{{{1, 1}, {1, 0.5}, {1, 
 constexpr double two_pi = 6.283185307179586;
 constexpr double time_step = 1.05;  // in which the soonest is looked for where nothing is in time
 
-std::int64_t draws_of_search(double share) { return std::int64_t(std::ceil(late_draws / (1 - share))); }
+std::int64_t draws_of_search(double share) {
+  return std::int64_t(std::floor(late_draws / (1 - share) + 0.5));
+}
 
 double rounded(double value) {
   constexpr int digits = 3;
