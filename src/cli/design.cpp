@@ -124,8 +124,8 @@ std::string table_of(const DesignQuestion& question, const DesignAnswer& answer,
   const std::string time(units.time);
   std::vector<std::vector<std::string>> rows{
       {"within", "secondary mass", "clearance", "nominal", percent(question.share, 3), "slowest",
-       "in time, of " + std::to_string(question.neighbours), "", "impact speed", "wall force"},
-      {time, std::string(units.mass), std::string(units.length), time, time, time, "", "95 % interval",
+       "in time, of " + std::to_string(question.neighbours), "impact speed", "wall force"},
+      {time, std::string(units.mass), std::string(units.length), time, time, time, "and 95 % interval",
        std::string(units.velocity), std::string(units.force)}};
   for (const FoundDesign& each : answer.designs) {
     const DesignCheck& check = each.check;
@@ -135,8 +135,8 @@ std::string table_of(const DesignQuestion& question, const DesignAnswer& answer,
     rows.push_back(
         {readable(each.time), number_text(each.design.secondary_mass), number_text(each.design.clearance),
          known(check.nominal_time), known(check.time_of_share), known(check.slowest),
-         std::to_string(check.in_time),
-         rounded_text(100 * check.share.low, 4) + " to " + percent(check.share.high, 4),
+         std::to_string(check.in_time) + ", " + rounded_text(100 * check.share.low, 4) + " to " +
+             percent(check.share.high, 4),
          readable(check.largest_impact_speed),
          check.largest_wall_force ? readable(*check.largest_wall_force * units.force_scale) : "-"});
   }
@@ -155,8 +155,8 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
   if (design.clearance == question.clearance.most) {
     const auto failing = failing_clearance(question.amplitude, *question.scene.restitution);
     text += "The clearance is the widest of its range: a wider one may do better" +
-            (failing ? ", but impacts fail at " + of_unit(question.amplitude, units.length) + " with " +
-                           of_unit(*failing, units.length)
+            (failing ? "; with " + of_unit(*failing, units.length) + " impacts fail at " +
+                           of_unit(question.amplitude, units.length)
                      : std::string()) +
             ".\n";
   }
@@ -169,27 +169,23 @@ std::string text_of(const Asked& asked, const DesignAnswer& answer) {
   const auto range = [&](const DesignRange& each, std::string_view unit) {
     return readable(each.least) + " to " + of_unit(each.most, unit);
   };
-  const std::string target = "from " + of_unit(std::abs(*question.scene.initial_displacement), units.length) +
-                             " below " + of_unit(question.amplitude, units.length) + " within " +
-                             of_unit(question.time, units.time) + ", " + percent(question.share, 3) + " of " +
-                             tolerances_text(asked);
-  const std::string ranges = "secondary mass " + range(question.secondary_mass, units.mass) + ", clearance " +
-                             range(question.clearance, units.length);
-  if (!answer.met) {
-    const std::string none = "No design comes " + target + ".\nLooked for among: " + ranges + ".\n";
-    if (answer.designs.empty())
-      return none + "The heaviest secondary mass takes more than " +
-             of_unit(longest_followed * question.time, units.time) + " with each clearance.\n";
-    return none + "The heaviest secondary mass, with the clearance for which it is soonest:\n\n" +
-           table_of(question, answer, units) + '\n' + advice_on(question, answer, units);
-  }
-  const DesignCheck& first = answer.designs.front().check;
-  return "Lightest designs that come " + target + ".\nFound among: " + ranges + ".\n\n" +
-         table_of(question, answer, units) + '\n' +
-         (first.confirmed
-              ? "The check confirms the first.\n"
-              : "The check does not confirm the first: of its neighbours too few are in time.\n") +
-         advice_on(question, answer, units);
+  const std::string head = of_unit(std::abs(*question.scene.initial_displacement), units.length) +
+                           " to below " + of_unit(question.amplitude, units.length) + " within " +
+                           of_unit(question.time, units.time) + " in " + percent(question.share, 3) +
+                           " of all cases with " + tolerances_text(asked) + "\nsearched: secondary mass " +
+                           range(question.secondary_mass, units.mass) + ", clearance " +
+                           range(question.clearance, units.length) + "\n\n";
+  if (answer.designs.empty())
+    return head + "No design was found. The heaviest secondary mass takes longer than " +
+           of_unit(longest_followed * question.time, units.time) + " with each clearance.\n";
+  const std::string table = table_of(question, answer, units) + '\n';
+  const std::string verdict =
+      !answer.met ? "No design was found. The heaviest secondary mass is soonest with this clearance.\n"
+      : answer.designs.front().check.confirmed
+          ? "The first is the lightest, and is confirmed by its neighbours.\n"
+          : "The first is the lightest of the search, but is not confirmed: too few of its neighbours are in "
+            "time.\n";
+  return head + table + verdict + advice_on(question, answer, units);
 }
 
 // Problems of the question, as those of options.

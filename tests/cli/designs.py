@@ -112,7 +112,7 @@ for key, unit in (("nominal_time", 0.05), ("largest_impact_speed", 200), ("large
 # Not in time: said so, with the heaviest mass.
 said = call(*words[:6], 1.5, *words[7:], "-o", "none.json", code=1)
 none = json.loads((folder / "none.json").read_text())
-demand(said.startswith("No design comes from 60 mm below 20 mm within 1.5 s, ") and "A heavier secondary mass" in said, f"none: {said}")
+demand("No design was found." in said and "A heavier secondary mass" in said, f"none: {said}")
 demand(not none["met"] and [each["secondary_mass"] for each in none["designs"]] == [8] and not list(validator.iter_errors(none)), f"none: {none}")
 
 print("\n".join(faults + [f"{len(faults)} faults"]))
