@@ -85,9 +85,9 @@ Asked asked_of(Arguments& arguments) {
     if (const auto value = arguments.number(option, above(0))) *number = *value;
   }
   question.share = arguments.number("--share", within(0.5, 0.999)).value_or(question.share);
-  const double mass = *question.scene.mass;
   question.secondary_mass =
-      range_of(arguments, "--secondary-mass", {least_mass_ratio * mass, most_mass_ratio * mass});
+      range_of(arguments, "--secondary-mass",
+               {least_mass_ratio * *question.scene.mass, most_mass_ratio * *question.scene.mass});
   question.clearance =
       range_of(arguments, "--clearance", default_clearances(question.amplitude, *question.scene.restitution));
   std::vector<std::string> tolerances = arguments.texts("--tolerance");

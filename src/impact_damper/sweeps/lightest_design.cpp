@@ -74,31 +74,30 @@ class Search {
     const double time = question_.time;
     const std::vector<double> coarse = steps_between(question_.secondary_mass, coarse_mass_step);
     const auto found = first_of(coarse, time);
-    if (!found) return std::nullopt;
-    if (found->index == 0) return found->design;
-    std::vector<double> fine = steps_between({coarse[found->index - 1], coarse[found->index]}, mass_step);
+    if (!found || found->secondary_mass == coarse.front()) return found;
+    const auto place = std::ranges::find(coarse, found->secondary_mass);
+    std::vector<double> fine = steps_between({place[-1], *place}, mass_step);
     fine.erase(fine.begin());
     fine.pop_back();
     const auto lighter = fine.empty() ? std::nullopt : first_of(fine, time);
-    return lighter ? lighter->design : found->design;
+    return lighter ? lighter : found;
   }
 
   // The shortest of the times time * time_step^n that the heaviest mass keeps.
   std::optional<FoundDesign> soonest() {
-    for (double time = question_.time; time <= longest_followed * question_.time; time *= time_step)
+    double time = question_.time;
+    while (time <= longest_followed * question_.time) {
       if (const auto found = first_of({question_.secondary_mass.most}, time))
-        return FoundDesign{time, question_.clearance.most, found->design, {}};
+        return FoundDesign{time, question_.clearance.most, *found, {}};
+      time *= time_step;
+    }
     return std::nullopt;
   }
 
  private:
   // The lightest mass of a list that ascends for which a clearance is in time, with that of its clearances
-  // that is soonest (M15.7), and where it stands in the list.
-  struct Found {
-    std::size_t index = 0;
-    Design design;
-  };
-  std::optional<Found> first_of(const std::vector<double>& masses, double time) {
+  // that is soonest (M15.7).
+  std::optional<Design> first_of(const std::vector<double>& masses, double time) {
     const Plan plan = search_plan(question_, time, masses, clearances_);
     const auto count = std::int64_t(clearances_.size());
     for (std::size_t m = 0; m < masses.size(); ++m) {
@@ -111,7 +110,7 @@ class Search {
       std::optional<std::size_t> best;
       for (std::size_t c = 0; c < times.size(); ++c)
         if (times[c] && !(best && *times[*best] <= *times[c])) best = c;
-      if (best) return Found{m, {masses[m], clearances_[*best]}};
+      if (best) return Design{masses[m], clearances_[*best]};
     }
     return std::nullopt;
   }
@@ -191,7 +190,8 @@ std::int64_t late_allowed_of(std::int64_t draws, double share) {
 // (M15.8).
 std::vector<double> steps_between(DesignRange range, double ratio) {
   std::vector<double> values{range.least};
-  for (double value = range.least * ratio; value < range.most; value *= ratio) {
+  double value = range.least;
+  while ((value *= ratio) < range.most) {
     const double next = rounded(value);
     if (next > values.back() && next < range.most) values.push_back(next);
   }
