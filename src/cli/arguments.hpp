@@ -48,6 +48,7 @@ class Arguments {
     const std::optional<std::size_t> index = word(option, words);
     return index ? allowed.begin()[*index] : otherwise;
   }
+  bool offers(const std::string& option) const { return options_.contains(option); }
   bool given(const std::string& option) const { return !texts(option).empty(); }
   const std::vector<std::string>& more() const { return more_; }
   bool flag(const std::string& option);  // given, once and without a value

@@ -174,6 +174,19 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
   return file;
 }
 
+void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {
+  if (!scene.in_units) return;
+  const auto reject = [&](std::string_view field) {
+    const std::string option = option_of(field);
+    if (arguments.offers(option) && arguments.given(option))
+      arguments.reject(option,
+                       "is dimensionless, the scene is in units: its file" + instead + " sets its numbers");
+  };
+  for (const SceneField& field : scene_fields) reject(field.name);
+  reject("until_time");
+  reject("until_amplitude");
+}
+
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines) {
   const std::optional<std::size_t> chosen = arguments.word("--engine", names_of(engines));
   if (!chosen && arguments.given("--engine")) return {};  // rejected; which options belong to it is unknown

@@ -14,6 +14,8 @@ namespace impact_damper::cli {
 // A command for which a scene's stops mean nothing neither offers them nor reads those of the file.
 enum class Stops { needed, ignored };
 SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
+// For commands that change a scene in units by its own numbers: the options beside --scene are rejected.
+void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());
 
 // The options that these two read.

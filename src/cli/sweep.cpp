@@ -122,14 +122,7 @@ Plan plan_of_options(Arguments& arguments) {
   Plan plan;
   plan.scene = scene_of(arguments);
   plan.engine = engine_of(arguments);
-  if (plan.scene.in_units) {
-    for (const Option& option : scene_options()) {
-      const std::string name = long_name(option.name);
-      if (name != "--scene" && arguments.given(name))
-        arguments.reject(name,
-                         "is dimensionless, the scene is in units: its file, or --vary, sets its numbers");
-    }
-  }
+  reject_options_beside_units(arguments, plan.scene, ", or --vary,");
   for (const std::string& text : arguments.texts("--vary"))
     if (auto axis = axis_of(arguments, text, variables_of(plan.scene))) plan.grid.push_back(std::move(*axis));
   if (!arguments.given("--vary")) arguments.reject("--vary", "it or a plan must be given: what is to vary?");

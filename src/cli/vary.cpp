@@ -7,15 +7,15 @@
 namespace impact_damper::cli {
 
 std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
-                                const std::vector<std::string_view>& names) {
+                                const std::vector<std::string_view>& names, const std::string& option) {
   const std::size_t equals = text.find('=');
   std::string name = text.substr(0, equals);
   std::ranges::replace(name, '-', '_');
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     const auto meant = nearest(name, names);
-    arguments.reject("--vary", "must name a number of the scene before the =, got " + in_quotes(text) +
-                                   (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+    arguments.reject(option, "must name a number of the scene before the =, got " + in_quotes(text) +
+                                 (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
     return std::nullopt;
   }
   return Varied{static_cast<std::size_t>(found - names.begin()),

@@ -1,4 +1,4 @@
-// --vary NAME=VALUES, of every command that gives a number of a scene several values.
+// NAME=VALUES, of every option that gives a number of a scene several values: --vary, --tolerance.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,7 @@ struct Varied {
 };
 // Absent, and noted, unless `text` names one of `names` ('-' counts as '_').
 std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
-                                const std::vector<std::string_view>& names);
+                                const std::vector<std::string_view>& names,
+                                const std::string& option = "--vary");
 
 }  // namespace impact_damper::cli

@@ -1,0 +1,332 @@
+#include "impact_damper/sweeps/lightest_design.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "impact_damper/simulate.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// P(at most k of n trials succeed) with probability p, from logarithms of factorials.
+double binomial(std::int64_t k, std::int64_t n, double p) {
+  double sum = 0;
+  for (std::int64_t i = 0; i <= k; ++i)
+    sum += std::exp(std::lgamma(double(n + 1)) - std::lgamma(double(i + 1)) - std::lgamma(double(n - i + 1)) +
+                    double(i) * std::log(p) + double(n - i) * std::log1p(-p));
+  return sum;
+}
+
+// The mast of data/examples, asked for what takes little time to find.
+DesignQuestion mast() {
+  DesignQuestion question;
+  question.scene.mass = 40;
+  question.scene.stiffness = 16000;
+  question.scene.damping_ratio = 0.002;
+  question.scene.initial_displacement = 60;
+  question.scene = with_defaults(question.scene);
+  question.amplitude = 20;
+  question.time = 5;
+  question.share = 0.8;
+  question.secondary_mass = {1, 8};
+  question.clearance = {20, 50};
+  question.neighbours = 400;
+  SceneFile file;
+  file.in_units = question.scene;
+  const std::vector<Variable> variables = variables_of(file);
+  for (const std::string_view name : {"restitution", "clearance"}) {
+    SampledNumber number;
+    number.variable = *std::ranges::find(variables, name, &Variable::name);
+    number.law = SampledNumber::Law::uniform;
+    number.width = 0.1;
+    number.relative = name == "clearance";
+    question.tolerances.push_back(number);
+  }
+  return question;
+}
+
+// The first peak below the amplitude, in seconds, found among samples of x of the motion.
+double sampled_time(const Scene& scene, const Scales& scales, double amplitude) {
+  Record record;
+  record.half_cycles = true;
+  Scene longer = scene;
+  longer.until_amplitude.reset();
+  record.history = {{0, *scene.until_time, 200'001}};
+  const Run run = simulate(longer, Exact{}, record);
+  const std::vector<double>& x = run.history->x;
+  double peak = std::abs(x[0]), at = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if (std::signbit(x[i]) != std::signbit(x[i - 1])) {
+      if (peak * scales.length < amplitude) return at * scales.time();
+      peak = 0;
+    }
+    if (std::abs(x[i]) > peak) peak = std::abs(x[i]), at = run.history->time[i];
+  }
+  return HUGE_VAL;
+}
+
+// Of the draws of a design, in ascending order, by runs that the sweep does not make; without what follows
+// the first `most` + 1 late ones.
+struct Drawn {
+  std::vector<double> times;
+  std::int64_t late = 0;
+};
+Drawn drawn_of(const DesignQuestion& question, double mass, double clearance, std::int64_t most) {
+  const Plan plan = search_plan(question, question.time, {mass}, {clearance});
+  Drawn found;
+  for (std::int64_t i = 0; i < runs_of(plan) && found.late <= most; ++i) {
+    SceneInUnits scene = *scene_of_design(question, {mass, clearance}, 2 * question.time).in_units;
+    const std::vector<double> drawn = run_of(plan, i).values;  // both axes, then the tolerances
+    scene.restitution = drawn[2];
+    scene.clearance = drawn[3];
+    const Run run = simulate(dimensionless(scene), Exact{}, {});
+    const HalfCycles& rows = *run.half_cycles;
+    const Scales scales = scales_of(scene);
+    double time = HUGE_VAL;
+    for (std::size_t n = rows.amplitude.size(); n-- > 0;)
+      if (rows.amplitude[n] * scales.length < question.amplitude) time = rows.peak_time[n] * scales.time();
+    found.late += time <= question.time ? 0 : 1;
+    found.times.push_back(time);
+  }
+  std::ranges::sort(found.times);
+  return found;
+}
+
+void ignore(const std::string&) {}
+
+}  // namespace
+
+TEST_CASE("the interval of a share has the ends at which what was seen is z deviations away") {
+  const double z = 1.959963984540054;
+  CHECK(std::erfc(z / std::sqrt(2)) == doctest::Approx(0.05).epsilon(1e-14));
+  for (const auto& [count, of] :
+       {std::pair(1.0, 400.0), {200.0, 400.0}, {1989.0, 2000.0}, {9997.0, 10000.0}}) {
+    const Interval interval = interval_of_share(std::int64_t(count), std::int64_t(of));
+    CHECK(interval.low < count / of);
+    CHECK(interval.high > count / of);
+    for (const double p : {interval.low, interval.high})
+      CHECK(std::abs(count / of - p) == doctest::Approx(z * std::sqrt(p * (1 - p) / of)).epsilon(1e-11));
+  }
+  CHECK(interval_of_share(10, 10).high == 1);
+  CHECK(interval_of_share(0, 10).low == 0);
+  CHECK(interval_of_share(10'000, 10'000).low == doctest::Approx(1 / (1 + z * z / 10'000)).epsilon(1e-14));
+}
+
+TEST_CASE("a search of a design allows as many late draws as the exact binomial distribution, to one") {
+  for (const double share : {0.8, 0.9, 0.99, 0.999}) {
+    const auto draws = std::int64_t(std::llround(20 / (1 - share)));
+    std::int64_t exact = 0;
+    while (binomial(exact + 1, draws, 1 - share) <= 0.025) ++exact;
+    const std::int64_t late = late_allowed_of(draws, share);
+    CAPTURE(share);
+    CHECK(std::abs(late - exact) <= 1);
+  }
+  CHECK(late_allowed_of(380, 0.99) == -1);
+  CHECK(late_allowed_of(381, 0.99) == 0);
+}
+
+TEST_CASE("steps have three digits and both ends of the range") {
+  CHECK(steps_between({1, 1.3}, 1.1) == std::vector<double>{1, 1.1, 1.21, 1.3});
+  CHECK(steps_between({0.2345678, 0.25}, 1.05) == std::vector<double>{0.2345678, 0.246, 0.25});
+  CHECK(steps_between({3, 3}, 1.1) == std::vector<double>{3});
+}
+
+TEST_CASE("clearances are looked for up to where impacts have a margin of 1.5 to their failure") {
+  // One impact in each half cycle needs A >= b / sqrt(pi^2 + 4 b^2), b = (1 - e)/(1 + e).
+  const double b = 0.4 / 1.6, fold = b / std::sqrt(M_PI * M_PI + 4 * b * b);
+  CHECK(*failing_clearance(6, 0.6) == doctest::Approx(6 / fold).epsilon(1e-14));
+  const DesignRange range = default_clearances(6, 0.6);
+  CHECK(range.least == 6);
+  CHECK(range.most == doctest::Approx(6 / (1.5 * fold)).epsilon(1e-2));
+  CHECK_FALSE(failing_clearance(6, 1));
+  CHECK(default_clearances(6, 1).most == 600);
+}
+
+TEST_CASE("a scene with unit scales is the dimensionless scene") {
+  Scene scene;
+  scene.mass_ratio = 0.037;
+  scene.restitution = 0.45;
+  scene.damping_ratio = 0.01;
+  scene.wall_stiffness = 12345;
+  scene.x0 = 5.7;
+  scene.v0 = -0.3;
+  scene.w0 = 0.7;
+  scene.until_time = 1;
+  SceneInUnits units = with_unit_scales(scene);
+  units.until_seconds = 1;
+  CHECK(dimensionless(units) == scene);
+  CHECK(scales_of(units).time() == 1);
+}
+
+TEST_CASE("the check has other draws than the search, on both sides of the design's numbers") {
+  const DesignQuestion question = mast();
+  const Plan search = search_plan(question, question.time, {2, 3}, {30, 40});
+  const Plan check = check_plan(question, {2, 30});
+  std::set<double> searched, restitution, clearance;
+  for (std::int64_t i = 0; i < runs_of(search); ++i) searched.insert(run_of(search, i).values[2]);
+  for (std::int64_t i = 0; i < runs_of(check); ++i) {
+    const PlannedRun run = run_of(check, i);
+    CHECK(searched.count(run.values[0]) == 0);
+    restitution.insert(run.values[0]);
+    clearance.insert(run.values[1]);
+    CHECK(run.scene.mass_ratio == 2.0 / 40);
+  }
+  // 400 uniform draws: all miss the outer tenth of one side with a probability of 0.95^400 = 1e-9.
+  CHECK(*restitution.begin() > 0.5);
+  CHECK(*restitution.begin() < 0.51);
+  CHECK(*restitution.rbegin() > 0.69);
+  CHECK(*restitution.rbegin() < 0.7);
+  CHECK(*clearance.begin() > 27);
+  CHECK(*clearance.begin() < 27.3);
+  CHECK(*clearance.rbegin() > 32.7);
+  CHECK(*clearance.rbegin() < 33);
+}
+
+TEST_CASE("no lighter design is in time") {
+  for (const std::int64_t seed : {1, 2}) {
+    DesignQuestion question = mast();
+    question.seed = seed;
+    const DesignAnswer answer = find_designs(question, 2, ignore);
+    REQUIRE(answer.met);
+    const Design found = answer.designs.front().design;
+    const std::int64_t late = answer.late_allowed;
+    const std::vector<double> clearances = steps_between(question.clearance, 1.05);
+    REQUIRE(std::ranges::count(clearances, found.clearance) == 1);
+    const auto is_in_time = [&](double mass, double clearance) {
+      return drawn_of(question, mass, clearance, late).late <= late;
+    };
+    CAPTURE(seed);
+    CAPTURE(found.secondary_mass);
+    CHECK(is_in_time(found.secondary_mass, found.clearance));
+    // All masses in steps of 1 % between the last one in steps of 10 % that was late and the one found.
+    const std::vector<double> coarse = steps_between(question.secondary_mass, 1.1);
+    const auto next = std::ranges::lower_bound(coarse, found.secondary_mass);
+    REQUIRE(next != coarse.begin());
+    REQUIRE(next != coarse.end());
+    for (const double mass : steps_between({next[-1], *next}, 1.01)) {
+      if (mass >= found.secondary_mass) break;
+      for (const double clearance : clearances) {
+        CAPTURE(mass);
+        CAPTURE(clearance);
+        CHECK_FALSE(is_in_time(mass, clearance));
+      }
+    }
+    // What is lighter is late with clearances between those that were tried, too.
+    if (seed == 1)
+      for (double mass = question.secondary_mass.least; mass < 0.99 * found.secondary_mass; mass *= 1.01)
+        for (double clearance = 20; clearance <= 50; clearance += 2) {
+          CAPTURE(mass);
+          CAPTURE(clearance);
+          CHECK_FALSE(is_in_time(mass, clearance));
+        }
+  }
+}
+
+TEST_CASE("of the clearances with which the lightest mass is in time the soonest is taken") {
+  DesignQuestion question = mast();
+  question.secondary_mass = {4, 8};
+  const DesignAnswer answer = find_designs(question, 2, ignore);
+  REQUIRE(answer.designs.front().design.secondary_mass == 4);
+  const auto late = std::size_t(answer.late_allowed);
+  const auto time_of_most = [&](double clearance) {
+    const Drawn drawn = drawn_of(question, 4, clearance, answer.late_allowed);
+    return drawn.late <= answer.late_allowed ? drawn.times[drawn.times.size() - 1 - late] : HUGE_VAL;
+  };
+  const double soonest = time_of_most(answer.designs.front().design.clearance);
+  int in_time = 0;
+  for (const double clearance : steps_between(question.clearance, 1.05)) {
+    CHECK(time_of_most(clearance) >= soonest);
+    in_time += time_of_most(clearance) <= question.time ? 1 : 0;
+  }
+  CHECK(in_time > 3);
+  // For that very time as many draws are late as may be, and for a shorter one they are too many.
+  question.time = soonest * (1 + 1e-12);
+  CHECK(find_designs(question, 2, ignore).designs.front().design == answer.designs.front().design);
+  question.time = soonest * (1 - 1e-12);
+  CHECK(find_designs(question, 2, ignore).designs.front().design.secondary_mass > 4);
+}
+
+TEST_CASE("what a check says of a design is counted from its neighbours") {
+  DesignQuestion question = mast();
+  question.neighbours = 200;
+  const DesignAnswer answer = find_designs(question, 2, ignore);
+  REQUIRE(answer.designs.size() >= 2);
+  for (const FoundDesign& each : answer.designs) {
+    const DesignCheck& check = each.check;
+    const SceneInUnits scene = *scene_of_design(question, each.design, 10).in_units;
+    // Samples are 5e-5 s apart and the peak is flat: the largest one is at most half of that away.
+    CHECK(*check.nominal_time ==
+          doctest::Approx(sampled_time(dimensionless(scene), scales_of(scene), question.amplitude))
+              .epsilon(1e-5));
+    const Plan plan = check_plan(question, each.design);
+    std::vector<double> times;
+    for (std::int64_t i = 0; i < 200; ++i) {
+      const PlannedRun run = run_of(plan, i);
+      const HalfCycles rows = *simulate(run.scene, Exact{}, {}).half_cycles;
+      const auto below = std::ranges::find_if(
+          rows.amplitude, [&](double a) { return a * run.scales->length < question.amplitude; });
+      REQUIRE(below != rows.amplitude.end());
+      times.push_back(rows.peak_time[std::size_t(below - rows.amplitude.begin())] * run.scales->time());
+    }
+    std::ranges::sort(times);
+    CHECK(*check.slowest == doctest::Approx(times.back()).epsilon(1e-14));
+    CHECK(*check.time_of_share == doctest::Approx(times[159]).epsilon(1e-14));
+    CHECK(check.in_time == std::ranges::count_if(times, [&](double t) { return t <= question.time; }));
+    CHECK(check.share.low == interval_of_share(check.in_time, 200).low);
+    CHECK(check.confirmed == (check.share.low >= 0.8));
+    CHECK(check.largest_impact_speed > 0);
+    CHECK(check.largest_wall_force.has_value());
+  }
+  // What is asked for more is heavier, and obeys it.
+  for (std::size_t i = 1; i < answer.designs.size(); ++i) {
+    CHECK(answer.designs[i].design.secondary_mass >= answer.designs[0].design.secondary_mass);
+    CHECK(answer.designs[i].design.clearance <= answer.designs[i].widest);
+  }
+  CHECK(answer.designs[1].widest == 25);
+}
+
+TEST_CASE("where no design is in time the heaviest is told with its soonest clearance") {
+  DesignQuestion question = mast();
+  question.time = 2;
+  question.secondary_mass = {1, 1.2};
+  const DesignAnswer answer = find_designs(question, 1, ignore);
+  CHECK_FALSE(answer.met);
+  REQUIRE(answer.designs.size() == 1);
+  CHECK(answer.designs[0].design.secondary_mass == 1.2);
+  CHECK(answer.designs[0].time > 2);
+  CHECK_FALSE(answer.designs[0].check.confirmed);
+  CHECK(*answer.designs[0].check.nominal_time > 2);
+  question.time = 0.2;
+  CHECK(find_designs(question, 1, ignore).designs.empty());
+}
+
+TEST_CASE("what is wrong with a question is told") {
+  const auto fields = [](const DesignQuestion& question) {
+    std::set<std::string> names;
+    for (const Problem& problem : problems_of(question)) names.insert(problem.field);
+    return names;
+  };
+  using Names = std::set<std::string>;
+  CHECK(fields(mast()).empty());
+  DesignQuestion question = mast();
+  question.amplitude = 60;
+  question.time = NAN;
+  question.share = 1;
+  CHECK(fields(question) == Names{"amplitude", "time", "share"});
+  question = mast();
+  question.scene.exciting_force = 1;
+  CHECK(fields(question) == Names{"scene"});
+  question = mast();
+  question.tolerances[0].width = 0.5;
+  CHECK(fields(question) == Names{"tolerance"});
+  question.tolerances[0] = question.tolerances[1];
+  CHECK(fields(question) == Names{"tolerance"});
+  question = mast();
+  question.clearance = {50, 25};
+  CHECK(fields(question) == Names{"clearance"});
+  CHECK_THROWS_AS(find_designs(question, 1, ignore), InvalidArguments);
+}
