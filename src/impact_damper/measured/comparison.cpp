@@ -148,7 +148,8 @@ void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays&
 Comparison compared(const std::string& record_name, const MeasuredRecord& record, const std::string& scene_name,
                     const SceneInUnits& scene, const Engine& engine, const ComparisonOptions& options,
                     const std::function<void(const std::string&)>& tell) {
-  Comparison c{.record_name = record_name, .scene_name = scene_name, .record = record, .engine = engine};
+  Comparison c;
+  c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
   c.reduction = reduced(record_name, record);
   c.loss = loss_of(half_cycles_of(c.reduction, 1, 1), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
@@ -192,12 +193,12 @@ std::string comparison_text(const Comparison& c) {
   out.open_array("bins", Layout::lines);
   for (std::size_t k = 0; k < c.bins.size(); ++k) {
     const LossBin& bin = c.bins[k];
-    const auto given = c.given.bins ? std::optional((*c.given.bins)[k]) : std::nullopt;
+    std::optional<double> given, fitted, scatter;
+    if (c.given.bins) given = (*c.given.bins)[k];
+    if (c.fit) fitted = c.fit->loss[k], scatter = c.fit->scatter[k];
     out.open_object(Layout::one_line);
     out.fields("upper", bin.upper, "lower", bin.lower, "half_cycles", bin.half_cycles, "eta", bin.loss,
-               "relative_error", bin.error, "simulated", given, "fitted",
-               c.fit ? std::optional(c.fit->loss[k]) : std::nullopt, "relative_scatter",
-               c.fit ? std::optional(c.fit->scatter[k]) : std::nullopt);
+               "relative_error", bin.error, "simulated", given, "fitted", fitted, "relative_scatter", scatter);
     out.close();
   }
   out.close();

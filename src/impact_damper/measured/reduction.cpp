@@ -199,13 +199,13 @@ class Limits {
     const auto [low, high] = std::ranges::minmax(value);
     at_limit_.resize(value.size());
     for (const double limit : {low, high}) {
-      constexpr std::size_t long_row = 3;
+      constexpr std::size_t long_row = 2;
       std::vector<std::size_t> ends;  // of rows at this limit
       for (std::size_t i = 0, row = 0; i < value.size(); ++i) {
         row = value[i] == limit ? row + 1 : 0;
         if (row == long_row) ends.push_back(i);
       }
-      if (ends.size() < 2) continue;  // once is what coarse steps of the values do to the largest peak
+      if (ends.size() < 2) continue;  // at one place it may be the largest peak in coarse steps
       for (std::size_t i = 0; i < value.size(); ++i)
         if (value[i] == limit) at_limit_[i] = true;
     }
