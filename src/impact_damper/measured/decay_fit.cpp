@@ -100,20 +100,27 @@ class Search {
     for (const FitParameter each : options.parameters) axes.push_back(searched_axis(each, scene, bins));
   }
 
-  // `count` points of a Latin hypercube in the box, one run at each.
-  Points points(const Box& box, std::int64_t count) {
-    std::vector<Vector> places(std::size_t(count), Vector(axes.size()));
-    std::vector<std::optional<Vector>> losses(places.size());
+  // `count` points of a Latin hypercube in the box for which `is_near` holds, or fewer if these are rare; one run at
+  // each.
+  template <class IsNear>
+  Points points(const Box& box, std::int64_t wanted, const IsNear& is_near) {
+    constexpr std::int64_t most_candidates = 64;  // for each point
     const std::uint64_t seed = (options_.seed << 8) + std::uint64_t(++stage_);
+    std::vector<Vector> places;
+    const std::int64_t candidates = wanted * most_candidates;
+    for (std::int64_t i = 0; i < candidates && std::int64_t(places.size()) < wanted; ++i) {
+      Vector place(axes.size());
+      for (std::size_t j = 0; j < axes.size(); ++j)
+        place[j] = box.low[j] + (box.high[j] - box.low[j]) * stratified_draw({seed, std::uint32_t(j), i}, candidates);
+      if (is_near(place)) places.push_back(std::move(place));
+    }
+    const auto count = std::int64_t(places.size());
+    std::vector<std::optional<Vector>> losses(places.size());
     std::atomic<std::int64_t> done{0};
     for_each_index(count, options_.threads, [&](std::int64_t i) {
-      Vector& place = places[std::size_t(i)];
+      const Vector& place = places[std::size_t(i)];
       SceneInUnits scene = scene_;
-      for (std::size_t j = 0; j < axes.size(); ++j) {
-        const double part = stratified_draw({seed, std::uint32_t(j), i}, count);
-        place[j] = box.low[j] + (box.high[j] - box.low[j]) * part;
-        set_value(scene, axes[j].parameter, axes[j].value(place[j]));
-      }
+      for (std::size_t j = 0; j < axes.size(); ++j) set_value(scene, axes[j].parameter, axes[j].value(place[j]));
       const Scene decay = decay_scene(scene, reduction_, seed, i);
       const HalfCycles rows = simulated_half_cycles(decay, engine_);
       losses[std::size_t(i)] = log_losses(rows, *scene.clearance, bins_);
@@ -293,7 +300,9 @@ double node_of(const Box& box, std::size_t axis, std::size_t node, std::size_t n
   return box.low[axis] + (box.high[axis] - box.low[axis]) * double(node) / double(nodes - 1);
 }
 
-Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes) {
+// Where `is_near` does not hold chi square counts as infinite: the polynomial knows nothing of there.
+template <class IsNear>
+Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes, const IsNear& is_near) {
   const std::size_t axes = box.low.size();
   Profiles profiles;
   profiles.of.assign(axes, Vector(nodes, std::numeric_limits<double>::infinity()));
@@ -301,7 +310,7 @@ Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes
   Vector place(axes), values;
   for (bool more = true; more;) {
     for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(box, j, index[j], nodes);
-    const double chi = emulator.chi_square(place);
+    const double chi = is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
     values.push_back(chi);
     if (chi < profiles.least) profiles.least = chi, profiles.best = place;
     for (std::size_t j = 0; j < axes; ++j) profiles.of[j][index[j]] = std::min(profiles.of[j][index[j]], chi);
@@ -594,25 +603,34 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   constexpr int coarse_stages = 3, most_stages = 6;
   constexpr double kept = 0.1, generous = 16;  // of chi square: four standard deviations
   for (int stage = 0; stage < coarse_stages; ++stage) {
-    const Points points = search.points(box, options.runs);
+    const Points points = search.points(box, options.runs, [](const Vector&) { return true; });
     if (double(points.loss.size()) * kept < double(4 * count)) return none;
     box = box_of_nearest(points, bins, box, kept);
   }
-  Emulator emulator;
+  // The polynomial of the stage before tells which points of the box matter.
+  Emulator emulator, before;
   Profiles profiles;
+  std::optional<double> limit;
+  const auto is_near = [&](const Vector& place) { return !limit || before.chi_square(place) <= *limit; };
+  const auto refine = [&](std::int64_t runs) {
+    if (!emulator.fit(search.points(box, runs, is_near), box, bins)) return false;
+    profiles = profiles_of(emulator, box, nodes, is_near);
+    return !profiles.best.empty();
+  };
   for (int stage = 0; stage < most_stages; ++stage) {
-    if (!emulator.fit(search.points(box, options.runs), box, bins)) return none;
-    profiles = profiles_of(emulator, box, nodes);
+    if (!refine(options.runs)) return none;
     const Narrowed next = narrowed(profiles, box, profiles.least + generous);
     double part = 0;
     for (std::size_t j = 0; j < count; ++j)
       part = std::max(part, 1 - (next.box.high[j] - next.box.low[j]) / (box.high[j] - box.low[j]));
     box = next.box;
+    before = emulator;
+    limit = profiles.least + generous;
+    if (next.was_too_small) limit.reset();
     constexpr double little = 0.2;
     if (!next.was_too_small && part < little) break;
   }
-  if (!emulator.fit(search.points(box, 2 * options.runs), box, bins)) return none;
-  profiles = profiles_of(emulator, box, nodes);
+  if (!refine(2 * options.runs)) return none;
 
   DecayFit fit;
   for (std::size_t j = 0; j < count; ++j) {

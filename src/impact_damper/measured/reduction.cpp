@@ -103,7 +103,15 @@ struct PeakFit {
 };
 
 struct Solved {
-  std::array<double, 3> x{}, diagonal{};  // solution and diagonal of the inverse
+  std::array<double, 3> x{};
+  std::array<std::array<double, 3>, 3> inverse{};
+  // b^T m^-1 b: the leverage of a sample with the basis b.
+  double leverage(const std::array<double, 3>& b) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) sum += b[j] * inverse[j][k] * b[k];
+    return sum;
+  }
 };
 // m x = r by Gauss and Jordan; m symmetric, positive definite.
 std::optional<Solved> solved(std::array<std::array<double, 3>, 3> m, std::array<double, 3> r) {
@@ -120,7 +128,7 @@ std::optional<Solved> solved(std::array<std::array<double, 3>, 3> m, std::array<
       r[i] -= f * r[k];
     }
   }
-  return Solved{r, {inverse[0][0], inverse[1][1], inverse[2][2]}};
+  return Solved{r, inverse};
 }
 
 struct Samples {
@@ -129,7 +137,7 @@ struct Samples {
 };
 
 PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is_maximum,
-                    const ReductionOptions& options) {
+                    const ReductionOptions& options, bool removes_outliers = true) {
   constexpr int rounds = 5;  // the first ones move the centre to the peak
   PeakFit peak;
   peak.time = centre;
@@ -150,7 +158,8 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
     std::vector<double> residual(count, 0.0);
     std::vector<bool> used(count, true);
     std::optional<Solved> solution;
-    for (int pass = 0; pass < 3; ++pass) {
+    std::size_t left = count;
+    for (const std::size_t least_left = count - count / 4;;) {
       std::array<std::array<double, 3>, 3> m{};
       std::array<double, 3> r{};
       for (std::size_t i = 0; i < count; ++i) {
@@ -162,28 +171,34 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
       }
       solution = solved(m, r);
       if (!solution) return peak;
-      std::vector<double> sizes;
       double sum = 0;
-      std::size_t left = 0;
       for (std::size_t i = 0; i < count; ++i) {
         residual[i] = samples.value[first + i];
         for (std::size_t j = 0; j < 3; ++j) residual[i] -= solution->x[j] * basis[i][j];
-        sizes.push_back(std::abs(residual[i]));
-        if (used[i]) sum += residual[i] * residual[i], ++left;
+        if (used[i]) sum += residual[i] * residual[i];
       }
       peak.variance = left > 3 ? sum / double(left - 3) : 0;
-      const double limit = options.outlier * to_standard_deviation * median_of(sizes);
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < count; ++i) kept += residual[i] <= limit && residual[i] >= -limit;
-      if (kept == count || 4 * kept < 3 * count || kept < options.least_window) break;
-      for (std::size_t i = 0; i < count; ++i) used[i] = std::abs(residual[i]) <= limit;
+      constexpr std::size_t enough = 8;  // or the variance of the others is hardly known
+      if (!removes_outliers || left < enough || left == least_left) break;
+      // The sample without which the others lie closest together.
+      double worst = 0;
+      std::size_t at = count;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!used[i]) continue;
+        const double share = residual[i] * residual[i] / (1 - solution->leverage(basis[i]));
+        if (share > worst) worst = share, at = i;
+      }
+      // Squares of the studentised residual and of its limit, times the variance of the others.
+      if (at == count || worst <= options.outlier * options.outlier * (sum - worst) / double(left - 4)) break;
+      used[at] = false;
+      --left;
     }
     const auto [level, a, b] = solution->x;
     const double amplitude = std::sqrt(a * a + b * b);
     peak.value = level - a + sign * amplitude;
     peak.curvature = a;
-    peak.value_factor = std::sqrt(solution->diagonal[0]);
-    peak.curvature_factor = std::sqrt(solution->diagonal[1]);
+    peak.value_factor = std::sqrt(solution->inverse[0][0]);
+    peak.curvature_factor = std::sqrt(solution->inverse[1][1]);
     const double phase = a * sign > 0 ? angle_of(b * sign, a * sign) : 0;
     peak.is_single = a * sign > 0 && std::abs(phase) <= options.half_window;
     if (!peak.is_single || round + 1 == rounds) break;
@@ -229,6 +244,27 @@ struct Candidate {
   double amplitude = 0;      // of the measured quantity
   std::int64_t number = 0;
 };
+
+// Where two flat peaks or more are at the top of all maxima, or of all minima, the instrument has a limit there: what
+// reaches it is clipped, even if it is not flat for long.
+void drop_below_limit(std::vector<Candidate>& all, double noise) {
+  constexpr double noise_multiple = 5, part_of_range = 0.03;  // the fit overshoots a cut top
+  double low = all[0].fit.value, high = low;
+  for (const Candidate& each : all)
+    low = std::min(low, each.fit.value), high = std::max(high, each.fit.value);
+  const double tolerance = noise_multiple * noise + part_of_range * (high - low);
+  for (const bool is_maximum : {false, true}) {
+    const auto reaches = [&](const Candidate& each) {
+      return each.is_maximum == is_maximum && each.kind != Kind::in_gap &&
+             (is_maximum ? each.fit.value >= high - tolerance : each.fit.value <= low + tolerance);
+    };
+    const auto flat = std::ranges::count_if(
+        all, [&](const Candidate& each) { return reaches(each) && each.kind == Kind::clipped; });
+    if (flat < 2) continue;
+    for (Candidate& each : all)
+      if (reaches(each)) each.kind = Kind::clipped;
+  }
+}
 
 bool are_neighbours(const Candidate& a, const Candidate& b) {
   constexpr double tolerance = 0.25;
@@ -345,6 +381,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
       each.kind = Kind::unclear;
     }
   }
+  drop_below_limit(all, result.noise);
   find_middle_line(all);
 
   // The number of each: half cycles without a peak in between are counted by time.
@@ -429,7 +466,7 @@ HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine, const
     const double half_cycle = (rows.peak_time[after] - rows.peak_time[before]) / double(after - before);
     if (!(half_cycle > 0)) continue;
     const PeakFit peak =
-        fitted_peak(samples, rows.peak_time[i], half_turn<double>() / half_cycle, i % 2 == 0, options);
+        fitted_peak(samples, rows.peak_time[i], half_turn<double>() / half_cycle, i % 2 == 0, options, false);
     const bool is_valid = peak.is_covered && peak.is_single;
     fitted.peak_time.push_back(is_valid ? peak.time : rows.peak_time[i]);
     fitted.amplitude.push_back(is_valid ? std::abs(peak.value) : rows.amplitude[i]);

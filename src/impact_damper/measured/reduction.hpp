@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,10 @@ namespace impact_damper {
 
 // Thresholds of the reduction.
 struct ReductionOptions {
-  double half_window = 0.785398163397448;  // of the fit to a peak, in radians of the oscillation: pi / 4
+  double half_window = std::numbers::pi / 4;  // of the fit to a peak, in radians of the oscillation
   double least_covered = 0.75;   // a window must have so many of the samples that fit into it
   double least_curvature = 0.5;  // a peak is flat, clipped, below this part of a sinusoid's curvature
-  double outlier = 4;            // in standard deviations of the window, estimated by the median
+  double outlier = 5;            // studentised by the others of the window: then a sample is left out
   double noise_multiple = 5;     // the decay ends where its amplitude is first below so many times the noise
   std::size_t least_window = 5;      // samples in a window
   std::size_t least_half_cycles = 12;  // or there is no decay
