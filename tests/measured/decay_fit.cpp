@@ -16,16 +16,19 @@ SceneInUnits truth() {
   return scene;
 }
 const MeasuredRecord& record() {
-  static const MeasuredRecord made = made::measured(truth(), {.noise = 0.05, .offset = 1, .drift = 1, .seed = 3});
+  static const MeasuredRecord made =
+      made::measured(truth(), {.noise = 0.05, .offset = 1, .drift = 1, .seed = 3});
   return made;
 }
-DecayFit fit_of(const MeasuredRecord& record, Threads threads = {}, std::vector<FitParameter> parameters = FitOptions{}.parameters) {
+DecayFit fit_of(const MeasuredRecord& record, Threads threads = {},
+                std::vector<FitParameter> parameters = FitOptions{}.parameters) {
   const Reduction reduction = reduced("made", record);
   FitOptions options;
   options.threads = threads;
   options.runs = 300;
   options.parameters = std::move(parameters);
-  FitResult result = fit_decay(made::mast(), Restitution{}, reduction, loss_bins(reduction), options, [](const std::string&) {});
+  FitResult result = fit_decay(made::mast(), Restitution{}, reduction, loss_bins(reduction), options,
+                               [](const std::string&) {});
   REQUIRE(result.fit.has_value());
   return *result.fit;
 }
@@ -33,7 +36,9 @@ const DecayFit& fit() {
   static const DecayFit fit = fit_of(record());
   return fit;
 }
-double middle(const DecayFit& fit, std::size_t j) { return (fit.parameters[j].low + fit.parameters[j].high) / 2; }
+double middle(const DecayFit& fit, std::size_t j) {
+  return (fit.parameters[j].low + fit.parameters[j].high) / 2;
+}
 double width(const DecayFit& fit, std::size_t j) { return fit.parameters[j].high - fit.parameters[j].low; }
 
 }  // namespace
@@ -41,8 +46,8 @@ double width(const DecayFit& fit, std::size_t j) { return fit.parameters[j].high
 TEST_CASE("a record by another integrator is fitted by the numbers it was made with") {
   for (const FittedParameter& each : fit().parameters) {
     const double expected = value_of(truth(), each.parameter);
-    // An interval of 90 % is 3.3 standard deviations wide; this record's truth is within it, and allowed one more on
-    // either side: how often it is inside is what measured_coverage counts.
+    // An interval of 90 % is 3.3 standard deviations wide; this record's truth is within it, and allowed one
+    // more on either side: how often it is inside is what measured_coverage counts.
     const double spare = 0.3 * (each.high - each.low);
     CAPTURE(name_of(each.parameter));
     CHECK(expected > each.low - spare);
@@ -77,7 +82,8 @@ TEST_CASE("a wrong sampling rate changes nothing") {
   MeasuredRecord slower = record();
   for (double& each : slower.time) each *= 1.2;
   const DecayFit changed = fit_of(slower);
-  for (std::size_t j = 0; j < 3; ++j) CHECK(std::abs(middle(changed, j) - middle(fit(), j)) < 0.4 * width(fit(), j));
+  for (std::size_t j = 0; j < 3; ++j)
+    CHECK(std::abs(middle(changed, j) - middle(fit(), j)) < 0.4 * width(fit(), j));
 }
 
 TEST_CASE("a record of large amplitudes alone does not tell restitution and clearance") {
@@ -100,12 +106,14 @@ TEST_CASE("losses that no damper of the searched range has are told from those t
 }
 
 TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
-  // Without impacts, the secondary mass at rest in the middle of a wide cavity, eta = 2 zeta / sqrt(1 - zeta^2).
+  // Without impacts, the secondary mass at rest in the middle of a wide cavity, eta = 2 zeta / sqrt(1 -
+  // zeta^2).
   Scene scene{.damping_ratio = 0.01, .x0 = 0.05, .y0 = 0.5, .until_time = 400, .until_amplitude = 0.004};
   const HalfCycles rows = simulated_half_cycles(scene, Restitution{});
   const std::vector<LossBin> bins{{0.04, 0.02}, {0.02, 0.01}, {0.01, 0.005}};
   const auto losses = log_losses(rows, 1, bins);
   REQUIRE(losses.has_value());
-  for (const double each : *losses) CHECK(std::exp(each) == doctest::Approx(0.02 / std::sqrt(1 - 1e-4)).epsilon(1e-4));
+  for (const double each : *losses)
+    CHECK(std::exp(each) == doctest::Approx(0.02 / std::sqrt(1 - 1e-4)).epsilon(1e-4));
   CHECK_FALSE(log_losses(rows, 1, {{0.0035, 0.001}}).has_value());
 }

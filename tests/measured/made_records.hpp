@@ -27,9 +27,9 @@ inline SceneInUnits mast() {
 
 struct Instrument {
   double samples_per_cycle = 50;
-  double noise = 0;          // standard deviation, mm or mm/s^2
+  double noise = 0;              // standard deviation, mm or mm/s^2
   double offset = 0, drift = 0;  // mm, and mm over the record, half of it as a slow wave
-  double time_factor = 1;    // of a wrong sampling rate
+  double time_factor = 1;        // of a wrong sampling rate
   MeasuredQuantity quantity = MeasuredQuantity::displacement;
   unsigned seed = 1;
 };
@@ -49,7 +49,8 @@ inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& i
     // Between impacts; a stuck mass is carried along.
     const double acceleration = -(history.x[i] + 2 * scene.damping_ratio * history.v[i]) * scales.length /
                                 (scales.time() * scales.time());
-    double value = instrument.quantity == MeasuredQuantity::displacement ? history.x[i] * scales.length : acceleration;
+    double value =
+        instrument.quantity == MeasuredQuantity::displacement ? history.x[i] * scales.length : acceleration;
     value += instrument.offset + instrument.drift / 2 * (part + std::sin(2 * std::numbers::pi * part) / 2) +
              instrument.noise * normal(random);
     record.time.push_back(history.time[i] * scales.time() * instrument.time_factor);

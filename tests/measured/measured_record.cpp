@@ -1,10 +1,9 @@
-#include "impact_damper/measured/record.hpp"
-
 #include <doctest/doctest.h>
 
 #include <string>
 
 #include "impact_damper/base/errors.hpp"
+#include "impact_damper/measured/record.hpp"
 
 using namespace impact_damper;
 
@@ -56,16 +55,20 @@ TEST_CASE("an empty cell is a missing sample") {
 }
 
 TEST_CASE("what is wrong is told with its line") {
-  CHECK(problem_of("") == "r.csv: line 1: must head two columns with their units, as in \"t_s,x_mm\", got \"\"");
+  CHECK(problem_of("") ==
+        "r.csv: line 1: must head two columns with their units, as in \"t_s,x_mm\", got \"\"");
   CHECK(problem_of("t_s;x_mm\n").find("line 1: must head two columns") != std::string::npos);
-  CHECK(problem_of("t_s,x_cm\n").find("line 1: a column must be headed x_mm, x_m, x_um, a_m_per_s2, a_mm_per_s2 or "
-                                      "a_g, got \"x_cm\"") != std::string::npos);
-  CHECK(problem_of("time,x_mm\n").find("line 1: a column must be headed t_s or t_ms, got \"time\"") != std::string::npos);
+  CHECK(problem_of("t_s,x_cm\n")
+            .find("line 1: a column must be headed x_mm, x_m, x_um, a_m_per_s2, a_mm_per_s2 or "
+                  "a_g, got \"x_cm\"") != std::string::npos);
+  CHECK(problem_of("time,x_mm\n").find("line 1: a column must be headed t_s or t_ms, got \"time\"") !=
+        std::string::npos);
   CHECK(problem_of("t_s,x_mm\n0,1\n1,abc\n") ==
         "r.csv: line 3: x_mm must be a number, or empty where a sample is missing, got \"abc\"");
   CHECK(problem_of("t_s,x_mm\n0,1\n1,nan\n").find("line 3: x_mm must be a number") != std::string::npos);
   CHECK(problem_of("t_s,x_mm\n,1\n").find("line 2: t_s must be a number, got \"\"") != std::string::npos);
-  CHECK(problem_of("t_s,x_mm\n0,1\n0,1\n") == "r.csv: line 3: t_s must be larger than in the row before, 0, got 0");
+  CHECK(problem_of("t_s,x_mm\n0,1\n0,1\n") ==
+        "r.csv: line 3: t_s must be larger than in the row before, 0, got 0");
   CHECK(problem_of("t_s,x_mm\n0,1,2\n") == "r.csv: line 2: must have 2 cells, got 3");
   CHECK(problem_of("t_s,x_mm\n" + rows(63)) == "r.csv: must have at least 64 samples, got 63");
   std::string many = "t_s,x_mm\n";

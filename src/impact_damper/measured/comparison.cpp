@@ -29,8 +29,8 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
   SimulatedDecays result{.scene = scene, .decays = {}, .losses = {}, .bins = {}};
   result.decays.resize(std::size_t(options.releases));
   for_each_index(options.releases, options.fit.threads, [&](std::int64_t i) {
-    result.decays[std::size_t(i)] =
-        simulated_half_cycles(decay_scene(scene, reduction, options.fit.seed, i), engine);
+    result.decays[std::size_t(i)] = simulated_half_cycles(
+        decay_scene(scene, reduction, reduction.amplitude.back(), options.fit.seed, i), engine);
   });
   const Scales scales = scales_of(scene);
   const double time_unit = scales.time(), length = *scene.clearance;
@@ -62,9 +62,9 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
     rows.peak_time.erase(rows.peak_time.begin(), rows.peak_time.begin() + from);
     rows.amplitude.erase(rows.amplitude.begin(), rows.amplitude.begin() + from);
     const std::size_t count = rows.peak_time.size();
-    result.losses.push_back(
-        count < 3 ? LossFactor{}
-                  : loss_of(rows, half_turn<double>() * double(count - 1) / (rows.peak_time.back() - rows.peak_time[0])));
+    result.losses.push_back(count < 3 ? LossFactor{}
+                                      : loss_of(rows, half_turn<double>() * double(count - 1) /
+                                                          (rows.peak_time.back() - rows.peak_time[0])));
   }
   if (all_have) {
     result.bins.emplace();
@@ -83,29 +83,32 @@ void remark_on_frequency(Comparison& c) {
   const double f = c.reduction.frequency;
   if (f >= c.lowest_frequency * (1 - tolerance) && f <= c.highest_frequency * (1 + tolerance)) return;
   const double nearest = f < c.lowest_frequency ? c.lowest_frequency : c.highest_frequency;
-  c.remarks.push_back("The record oscillates at " + text_of(f) + " Hz, " + text_of(f / nearest) +
-                      " times what the scene does: its sampling rate is wrong, or the scene's mass or stiffness. Loss "
-                      "factors are per radian of the record's own oscillation, so a wrong sampling rate does not change "
-                      "them" +
-                      (c.record.quantity == MeasuredQuantity::acceleration
-                           ? ", but it changes the displacements that are made of accelerations: nothing is fitted."
-                           : "."));
+  c.remarks.push_back(
+      "The record oscillates at " + text_of(f) + " Hz, " + text_of(f / nearest) +
+      " times what the scene does: its sampling rate is wrong, or the scene's mass or stiffness. Loss "
+      "factors are per radian of the record's own oscillation, so a wrong sampling rate does not change "
+      "them" +
+      (c.record.quantity == MeasuredQuantity::acceleration
+           ? ", but it changes the displacements that are made of accelerations: nothing is fitted."
+           : "."));
 }
 
 void remark_on_fit(Comparison& c) {
   const DecayFit& fit = *c.fit;
   if (fit.normal_deviate > most_normal_deviate)
-    c.remarks.push_back("No decay in the searched range is like the record: chi square is " + text_of(fit.chi_square) +
-                        " with " + std::to_string(fit.degrees) + " degrees of freedom. The intervals mean nothing.");
+    c.remarks.push_back("No decay in the searched range is like the record: chi square is " +
+                        text_of(fit.chi_square) + " with " + std::to_string(fit.degrees) +
+                        " degrees of freedom. The intervals mean nothing.");
   for (const FittedParameter& each : fit.parameters) {
     const std::string name(name_of(each.parameter));
     const bool is_bounded_by_0 = each.parameter == FitParameter::damping_ratio;
     if (each.open_below && each.open_above) {
       c.remarks.push_back("The record does not tell " + name + ": the whole searched range agrees with it.");
     } else if (each.open_above || (each.open_below && !is_bounded_by_0)) {
-      c.remarks.push_back("The interval of " + name + " ends where the search did, at " +
-                          with_unit(each.open_above ? each.searched_to : each.searched_from, unit_of(each.parameter)) +
-                          ": it may be longer on that side.");
+      c.remarks.push_back(
+          "The interval of " + name + " ends where the search did, at " +
+          with_unit(each.open_above ? each.searched_to : each.searched_from, unit_of(each.parameter)) +
+          ": it may be longer on that side.");
     }
   }
   constexpr double strong = 0.9;
@@ -125,7 +128,8 @@ void remark_on_range(Comparison& c) {
   const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.clearance;
   if (c.reduction.amplitude.back() > fold)
     c.remarks.push_back("The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " +
-                        text_of(fold) + " mm where impacts cease: from there restitution and clearance could be told apart.");
+                        text_of(fold) +
+                        " mm where impacts cease: from there restitution and clearance could be told apart.");
 }
 
 void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays& decays) {
@@ -145,9 +149,9 @@ void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays&
 
 }  // namespace
 
-Comparison compared(const std::string& record_name, const MeasuredRecord& record, const std::string& scene_name,
-                    const SceneInUnits& scene, const Engine& engine, const ComparisonOptions& options,
-                    const std::function<void(const std::string&)>& tell) {
+Comparison compared(const std::string& record_name, const MeasuredRecord& record,
+                    const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
+                    const ComparisonOptions& options, const std::function<void(const std::string&)>& tell) {
   Comparison c;
   c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
   c.reduction = reduced(record_name, record);
@@ -172,8 +176,10 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   }
   remark_on_range(c);
   if (record.quantity == MeasuredQuantity::acceleration)
-    c.remarks.push_back("Displacements are accelerations divided by the square of the local angular frequency; they may err by " +
-                        text_of(100 * dimensionless(scene).mass_ratio) + " % (the mass ratio).");
+    c.remarks.push_back(
+        "Displacements are accelerations divided by the square of the local angular frequency; they may err "
+        "by " +
+        text_of(100 * dimensionless(scene).mass_ratio) + " % (the mass ratio).");
   return c;
 }
 
@@ -182,14 +188,16 @@ std::string comparison_text(const Comparison& c) {
   out.open_object(Layout::lines);
   out.field("schema", std::string_view("impact-damper/comparison/1"));
   const Reduction& r = c.reduction;
-  out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity), "samples",
-             r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration, "sampling_rate", r.sampling_rate);
-  out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset, "drift",
-             r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear, "ends_in_noise",
-             r.ends_in_noise);
-  out.object("half_cycles", Layout::lines, "number", r.half_cycle, "time", r.time, "amplitude", r.amplitude, "error",
-             r.error);
-  out.object("loss_factor", Layout::lines, "amplitude", c.loss.amplitude, "time", c.loss.time, "eta", c.loss.eta);
+  out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity),
+             "samples", r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration,
+             "sampling_rate", r.sampling_rate);
+  out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset,
+             "drift", r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear,
+             "ends_in_noise", r.ends_in_noise);
+  out.object("half_cycles", Layout::lines, "number", r.half_cycle, "time", r.time, "amplitude", r.amplitude,
+             "error", r.error);
+  out.object("loss_factor", Layout::lines, "amplitude", c.loss.amplitude, "time", c.loss.time, "eta",
+             c.loss.eta);
   out.open_array("bins", Layout::lines);
   for (std::size_t k = 0; k < c.bins.size(); ++k) {
     const LossBin& bin = c.bins[k];
@@ -198,11 +206,13 @@ std::string comparison_text(const Comparison& c) {
     if (c.fit) fitted = c.fit->loss[k], scatter = c.fit->scatter[k];
     out.open_object(Layout::one_line);
     out.fields("upper", bin.upper, "lower", bin.lower, "half_cycles", bin.half_cycles, "eta", bin.loss,
-               "relative_error", bin.error, "simulated", given, "fitted", fitted, "relative_scatter", scatter);
+               "relative_error", bin.error, "simulated", given, "fitted", fitted, "relative_scatter",
+               scatter);
     out.close();
   }
   out.close();
-  out.object("scene_frequency", Layout::one_line, "lowest", c.lowest_frequency, "highest", c.highest_frequency);
+  out.object("scene_frequency", Layout::one_line, "lowest", c.lowest_frequency, "highest",
+             c.highest_frequency);
   write_engine(out, c.engine);
   write_decays(out, "simulated", c.given);
   if (c.fit) {
@@ -210,9 +220,9 @@ std::string comparison_text(const Comparison& c) {
     out.open_array("parameters", Layout::lines);
     for (const FittedParameter& each : c.fit->parameters) {
       out.open_object(Layout::one_line);
-      out.fields("name", name_of(each.parameter), "unit", unit_of(each.parameter), "best", each.best, "low", each.low,
-                 "high", each.high, "searched_from", each.searched_from, "searched_to", each.searched_to,
-                 "open_below", each.open_below, "open_above", each.open_above);
+      out.fields("name", name_of(each.parameter), "unit", unit_of(each.parameter), "best", each.best, "low",
+                 each.low, "high", each.high, "searched_from", each.searched_from, "searched_to",
+                 each.searched_to, "open_below", each.open_below, "open_above", each.open_above);
       out.close();
     }
     out.close();

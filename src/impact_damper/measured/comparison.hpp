@@ -29,7 +29,7 @@ struct Comparison {
   Reduction reduction;
   LossFactor loss;  // (M12.1) of the record, amplitudes in mm, per radian of its own frequency
   std::vector<LossBin> bins;
-  SimulatedDecays given;                 // of the scene
+  SimulatedDecays given;                  // of the scene
   std::optional<SimulatedDecays> fitted;  // of the scene with the best numbers
   std::optional<DecayFit> fit;
   // Between these lies the frequency of the scene: secondary mass carried along, and not.
@@ -42,11 +42,11 @@ struct ComparisonOptions {
   std::int64_t releases = 8;
 };
 
-// `scene` must be valid, without a force, and `record` as it was read from `record_name`. Throws InputError as
-// reduced() does.
-Comparison compared(const std::string& record_name, const MeasuredRecord& record, const std::string& scene_name,
-                    const SceneInUnits& scene, const Engine& engine, const ComparisonOptions& options,
-                    const std::function<void(const std::string&)>& tell);
+// `scene` must be valid, without a force, and `record` as it was read from `record_name`. Throws InputError
+// as reduced() does.
+Comparison compared(const std::string& record_name, const MeasuredRecord& record,
+                    const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
+                    const ComparisonOptions& options, const std::function<void(const std::string&)>& tell);
 
 // The file: data/schema/comparison.schema.json.
 std::string comparison_text(const Comparison& comparison);

@@ -25,7 +25,8 @@ struct Line {
 Line line_through(std::span<const double> x, std::span<const double> y) {
   Line line;
   const double count = double(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) line.mean_x += (x[i] - x[0]) / count, line.mean_y += (y[i] - y[0]) / count;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    line.mean_x += (x[i] - x[0]) / count, line.mean_y += (y[i] - y[0]) / count;
   line.mean_x += x[0], line.mean_y += y[0];
   double products = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -38,8 +39,8 @@ Line line_through(std::span<const double> x, std::span<const double> y) {
 
 // --- The searched range -----------------------------------------------------------------------------------
 
-// Each parameter has a coordinate in which the loss factor is nearly a polynomial: ln(1 - e), zeta, ln epsilon,
-// ln m. The search moves in parts of its range, from 0 to 1.
+// Each parameter has a coordinate in which the loss factor is nearly a polynomial: ln(1 - e), zeta, ln
+// epsilon, ln m. The search moves in parts of its range, from 0 to 1.
 struct Axis {
   FitParameter parameter = FitParameter::restitution;
   double from = 0, to = 1;  // coordinates of the ends
@@ -94,14 +95,15 @@ struct Points {
 
 class Search {
  public:
-  Search(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction, const std::vector<LossBin>& bins,
-         const FitOptions& options, const std::function<void(const std::string&)>& tell)
+  Search(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
+         const std::vector<LossBin>& bins, const FitOptions& options,
+         const std::function<void(const std::string&)>& tell)
       : scene_(scene), engine_(engine), reduction_(reduction), bins_(bins), options_(options), tell_(tell) {
     for (const FitParameter each : options.parameters) axes.push_back(searched_axis(each, scene, bins));
   }
 
-  // `count` points of a Latin hypercube in the box for which `is_near` holds, or fewer if these are rare; one run at
-  // each.
+  // `count` points of a Latin hypercube in the box for which `is_near` holds, or fewer if these are rare; one
+  // run at each.
   template <class IsNear>
   Points points(const Box& box, std::int64_t wanted, const IsNear& is_near) {
     constexpr std::int64_t most_candidates = 64;  // for each point
@@ -111,7 +113,8 @@ class Search {
     for (std::int64_t i = 0; i < candidates && std::int64_t(places.size()) < wanted; ++i) {
       Vector place(axes.size());
       for (std::size_t j = 0; j < axes.size(); ++j)
-        place[j] = box.low[j] + (box.high[j] - box.low[j]) * stratified_draw({seed, std::uint32_t(j), i}, candidates);
+        place[j] = box.low[j] +
+                   (box.high[j] - box.low[j]) * stratified_draw({seed, std::uint32_t(j), i}, candidates);
       if (is_near(place)) places.push_back(std::move(place));
     }
     const auto count = std::int64_t(places.size());
@@ -120,8 +123,9 @@ class Search {
     for_each_index(count, options_.threads, [&](std::int64_t i) {
       const Vector& place = places[std::size_t(i)];
       SceneInUnits scene = scene_;
-      for (std::size_t j = 0; j < axes.size(); ++j) set_value(scene, axes[j].parameter, axes[j].value(place[j]));
-      const Scene decay = decay_scene(scene, reduction_, seed, i);
+      for (std::size_t j = 0; j < axes.size(); ++j)
+        set_value(scene, axes[j].parameter, axes[j].value(place[j]));
+      const Scene decay = decay_scene(scene, reduction_, bins_.back().lower, seed, i);
       const HalfCycles rows = simulated_half_cycles(decay, engine_);
       losses[std::size_t(i)] = log_losses(rows, *scene.clearance, bins_);
       constexpr std::int64_t often = 50;
@@ -231,7 +235,8 @@ class Emulator {
       solve_lower(normal, right);
       solve_upper(normal, right);
       for (std::size_t i = 0; i < count; ++i)
-        residual[k][i] = points.loss[i][k] - std::inner_product(right.begin(), right.end(), design[i].begin(), 0.0);
+        residual[k][i] =
+            points.loss[i][k] - std::inner_product(right.begin(), right.end(), design[i].begin(), 0.0);
       coefficients_[k] = std::move(right);
     }
     covariance_.assign(bins.size(), Vector(bins.size(), 0.0));
@@ -239,8 +244,9 @@ class Emulator {
     observed_.clear();
     for (std::size_t a = 0; a < bins.size(); ++a) {
       for (std::size_t b = 0; b < bins.size(); ++b)
-        covariance_[a][b] = std::inner_product(residual[a].begin(), residual[a].end(), residual[b].begin(), 0.0) /
-                            double(count - terms);
+        covariance_[a][b] =
+            std::inner_product(residual[a].begin(), residual[a].end(), residual[b].begin(), 0.0) /
+            double(count - terms);
       scatter.push_back(std::sqrt(covariance_[a][a]));
       covariance_[a][a] += bins[a].error * bins[a].error;
       observed_.push_back(logarithm(bins[a].loss));
@@ -367,8 +373,8 @@ Interval interval_of(const Vector& profile, double limit) {
   return interval;
 }
 
-// The box in which no profile is more than `limit`, a node wider; and whether it is the whole of `box` somewhere
-// inside the searched range: then it was chosen too small.
+// The box in which no profile is more than `limit`, a node wider; and whether it is the whole of `box`
+// somewhere inside the searched range: then it was chosen too small.
 struct Narrowed {
   Box box;
   bool was_too_small = false;
@@ -379,7 +385,8 @@ Narrowed narrowed(const Profiles& profiles, const Box& box, double limit) {
     const Interval interval = interval_of(profiles.of[j], limit);
     const double width = box.high[j] - box.low[j];
     constexpr double wider = 0.5, margin = 0.05;
-    const bool below = interval.reaches_low && box.low[j] > 0, above = interval.reaches_high && box.high[j] < 1;
+    const bool below = interval.reaches_low && box.low[j] > 0,
+               above = interval.reaches_high && box.high[j] < 1;
     next.box.low[j] = std::max(0.0, box.low[j] + width * (below ? -wider : interval.low - margin));
     next.box.high[j] = std::min(1.0, box.low[j] + width * (above ? 1 + wider : interval.high + margin));
     next.was_too_small = next.was_too_small || below || above;
@@ -398,8 +405,8 @@ std::size_t nodes_for(std::size_t axes) {
 
 namespace {
 
-// The rows of each bin: from the first one at or below its upper end on, those before the first one below its lower
-// end.
+// The rows of each bin: from the first one at or below its upper end on, those before the first one below its
+// lower end.
 struct RowRange {
   std::size_t first = 0, end = 0;
 };
@@ -438,12 +445,13 @@ double log_loss_error(const Reduction& reduction, const Line& line, const RowRan
 
 std::vector<LossBin> loss_bins(const Reduction& reduction) {
   constexpr std::size_t least_rows = 8;
-  constexpr std::int64_t longest_gap = 3;               // half cycles
-  constexpr double least_ratio = 0.25, most_bins = 16;  // of the logarithm of the amplitude
+  constexpr std::int64_t longest_gap = 3;                             // half cycles
+  constexpr double usual_ratio = 0.25, most_bins = 16, few_bins = 8;  // of the logarithm of the amplitude
   constexpr double good_error = 0.1, worst_error = 0.3;
   const Vector logarithms = logarithms_of(reduction.amplitude, 1);
   const double whole = logarithms.front() - logarithms.back();
-  const double ratio = std::max(least_ratio, whole / most_bins), widest = std::max(4 * least_ratio, ratio);
+  const double ratio = std::max(std::min(usual_ratio, whole / few_bins), whole / most_bins);
+  const double widest = std::max(4 * usual_ratio, ratio);
   const auto line_of = [&](const RowRange& rows) {
     return line_through(std::span(reduction.time).subspan(rows.first, rows.end - rows.first),
                         std::span(logarithms).subspan(rows.first, rows.end - rows.first));
@@ -489,10 +497,18 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
     bins[k].half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
     if (bins[k].loss > 0 && bins[k].error < worst_error) valid.push_back(bins[k]);
   }
+  // Behind impact failure single impacts decide: no scatter about a mean tells that.
+  constexpr double failed = 0.5;  // of the largest loss factor
+  double largest = 0;
+  std::size_t kept = 0;
+  for (; kept < valid.size() && valid[kept].loss >= failed * largest; ++kept)
+    largest = std::max(largest, valid[kept].loss);
+  valid.resize(kept);
   return valid;
 }
 
-std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins) {
+std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length,
+                                              const std::vector<LossBin>& bins) {
   constexpr std::size_t least_rows = 4;
   const Vector logarithms = logarithms_of(rows.amplitude, length);
   Vector losses;
@@ -571,7 +587,8 @@ void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
   }
 }
 
-Scene decay_scene(const SceneInUnits& given, const Reduction& reduction, std::uint64_t seed, std::int64_t draw) {
+Scene decay_scene(const SceneInUnits& given, const Reduction& reduction, double until, std::uint64_t seed,
+                  std::int64_t draw) {
   constexpr double above = 1.1, below = 0.97, longer = 3;
   constexpr std::uint32_t place_in_cavity = 100;  // the number of a draw that no axis has
   SceneInUnits scene = given;
@@ -579,7 +596,7 @@ Scene decay_scene(const SceneInUnits& given, const Reduction& reduction, std::ui
   scene.initial_velocity.reset();
   scene.secondary_velocity.reset();
   scene.secondary_displacement.reset();
-  scene.until_millimetres = below * reduction.amplitude.back();
+  scene.until_millimetres = below * until;
   scene.until_seconds = longer * (reduction.time.back() - reduction.time.front());
   Scene made = dimensionless(scene);
   made.y0 = uniform_draw({seed, place_in_cavity, draw});
@@ -593,7 +610,8 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                     const std::function<void(const std::string&)>& tell) {
   const std::size_t count = options.parameters.size(), nodes = nodes_for(count);
   if (bins.size() < count + 1)
-    return {std::nullopt, "a fit of " + std::to_string(count) + " numbers needs " + std::to_string(count + 1) +
+    return {std::nullopt, "a fit of " + std::to_string(count) + " numbers needs " +
+                              std::to_string(count + 1) +
                               " ranges of amplitude with a known loss factor, the record has " +
                               std::to_string(bins.size())};
   const FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
@@ -652,10 +670,11 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   fit.chi_square = profiles.least;
   fit.degrees = std::int64_t(bins.size() - count);
   const double ninth = 2.0 / (9.0 * double(fit.degrees));  // (M16.9)
-  fit.normal_deviate =
-      (exponential(logarithm(std::max(fit.chi_square, std::numeric_limits<double>::min()) / double(fit.degrees)) / 3) -
-       (1 - ninth)) /
-      std::sqrt(ninth);
+  fit.normal_deviate = (exponential(logarithm(std::max(fit.chi_square, std::numeric_limits<double>::min()) /
+                                              double(fit.degrees)) /
+                                    3) -
+                        (1 - ninth)) /
+                       std::sqrt(ninth);
   fit.runs = search.runs;
   return {fit, {}};
 }

@@ -24,12 +24,14 @@ struct LossBin {
   double error = 0;             // standard error of ln eta by the noise of the record
   std::int64_t half_cycles = 0;
 };
-// In the order of time; empty if the record holds too little.
+// In the order of time, up to where the loss factor is less than half of its largest value: impacts have
+// failed. Empty if the record holds too little.
 std::vector<LossBin> loss_bins(const Reduction& reduction);
 
-// The same of a simulated decay, the logarithms of eta: none if a bin has too few rows or no loss. Amplitudes in
-// units of `length` mm.
-std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins);
+// The same of a simulated decay, the logarithms of eta: none if a bin has too few rows or no loss. Amplitudes
+// in units of `length` mm.
+std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length,
+                                              const std::vector<LossBin>& bins);
 
 enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
 std::string_view name_of(FitParameter parameter);  // as in a scene file
@@ -39,8 +41,9 @@ double value_of(const SceneInUnits& scene, FitParameter parameter);
 void set_value(SceneInUnits& scene, FitParameter parameter, double value);
 
 // A free decay of `scene` over the amplitudes of the record: released at rest from somewhat above them, the
-// secondary mass anywhere in its cavity, by `draw`.
-Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, std::uint64_t seed, std::int64_t draw);
+// secondary mass anywhere in its cavity, by `draw`; down to `until` mm.
+Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
+                  std::int64_t draw);
 
 struct FitOptions {
   std::vector<FitParameter> parameters{FitParameter::restitution, FitParameter::damping_ratio,
@@ -53,7 +56,7 @@ struct FitOptions {
 
 struct FittedParameter {
   FitParameter parameter = FitParameter::restitution;
-  double best = 0, low = 0, high = 0;             // (M16.8)
+  double best = 0, low = 0, high = 0;  // (M16.8)
   double searched_from = 0, searched_to = 0;
   // The interval does not end within the searched range on that side.
   bool open_below = false, open_above = false;
@@ -62,12 +65,13 @@ struct FittedParameter {
 struct DecayFit {
   std::vector<FittedParameter> parameters;
   std::vector<std::vector<double>> correlation;  // of the parameters' coordinates (M16.6)
-  std::vector<double> loss;     // of each bin at the best point
-  std::vector<double> scatter;  // standard deviation of ln eta between runs that differ in their release alone
-  double chi_square = 0;        // least value of (M16.7)
-  std::int64_t degrees = 0;     // of freedom: bins less parameters
-  double normal_deviate = 0;    // of chi_square (M16.9)
-  std::int64_t runs = 0;        // simulated in all
+  std::vector<double> loss;                      // of each bin at the best point
+  std::vector<double>
+      scatter;                // standard deviation of ln eta between runs that differ in their release alone
+  double chi_square = 0;      // least value of (M16.7)
+  std::int64_t degrees = 0;   // of freedom: bins less parameters
+  double normal_deviate = 0;  // of chi_square (M16.9)
+  std::int64_t runs = 0;      // simulated in all
 };
 // A larger one of chi_square tells that no point of the searched range is like the record: one in a thousand.
 inline constexpr double most_normal_deviate = 3.09;

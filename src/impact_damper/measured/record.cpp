@@ -32,8 +32,7 @@ class Problems {
  public:
   explicit Problems(const std::string& name) : name_(name) {}
   void add(std::size_t line, const std::string& what) {
-    if (++count_ <= most_problems)
-      lines_.push_back(name_ + ": line " + std::to_string(line) + ": " + what);
+    if (++count_ <= most_problems) lines_.push_back(name_ + ": line " + std::to_string(line) + ": " + what);
   }
   void add(const std::string& what) {
     ++count_;
@@ -43,7 +42,8 @@ class Problems {
   void throw_if_any() {
     if (count_ == 0) return;
     if (count_ > lines_.size())
-      lines_.push_back(name_ + ": and " + std::to_string(count_ - lines_.size()) + " more lines that are not valid");
+      lines_.push_back(name_ + ": and " + std::to_string(count_ - lines_.size()) +
+                       " more lines that are not valid");
     throw InputError(lines_);
   }
 
@@ -146,9 +146,11 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
       continue;
     }
     const auto time = parse_number(cells[0]), value = parse_number(cells[1]);
-    if (!time) problems.add(line, std::string(time_unit->heading) + " must be a number, got " + in_quotes(cells[0]));
+    if (!time)
+      problems.add(line, std::string(time_unit->heading) + " must be a number, got " + in_quotes(cells[0]));
     if (!value && !cells[1].empty())
-      problems.add(line, std::string(value_unit->heading) + " must be a number, or empty where a sample is missing, got " +
+      problems.add(line, std::string(value_unit->heading) +
+                             " must be a number, or empty where a sample is missing, got " +
                              in_quotes(cells[1]));
     if (!time) continue;
     if (last && !(*time > *last))

@@ -1,5 +1,5 @@
-// A measured free decay as a CSV file (RFC 4180): a header that names two columns with their units, then a row
-// for each sample, in the order of time,
+// A measured free decay as a CSV file (RFC 4180): a header that names two columns with their units, then a
+// row for each sample, in the order of time,
 //
 //   t_s,x_mm
 //   0.000,59.82
@@ -33,8 +33,9 @@ struct MeasuredRecord {
 inline constexpr FileKind measured_kind{"measured record", std::size_t{1} << 26};
 inline constexpr std::size_t least_samples = 64;
 
-// Throws IoError if `file` cannot be read, InputError, with a line for each of the first problems, if it is not
-// as above or has fewer than `least_samples` values. These lines begin with the name of the file, or `name`.
+// Throws IoError if `file` cannot be read, InputError, with a line for each of the first problems, if it is
+// not as above or has fewer than `least_samples` values. These lines begin with the name of the file, or
+// `name`.
 MeasuredRecord read_measured_record(const std::filesystem::path& file);
 MeasuredRecord parse_measured_record(const std::string& name, std::string_view text);
 

@@ -34,8 +34,8 @@ std::vector<double> without_spikes(const std::vector<double>& value) {
   return smooth;
 }
 
-// Standard deviation of white noise on a smooth signal, from its third differences in the last quarter, where the
-// signal is smallest: those of white noise have the variance 20 sigma^2.
+// Standard deviation of white noise on a smooth signal, from its third differences in the last quarter, where
+// the signal is smallest: those of white noise have the variance 20 sigma^2.
 double rough_noise(const std::vector<double>& value) {
   std::vector<double> differences;
   for (std::size_t i = value.size() * 3 / 4; i + 3 < value.size(); ++i)
@@ -48,10 +48,11 @@ struct Extreme {
   bool is_maximum = false;
 };
 
-// Maxima and minima in turn. An extreme counts once the signal has come back from it by half of its distance from the
-// extreme before, and by more than `least`. Where it does not within the mean time between the last few, as behind a
-// gap, the search begins anew.
-std::vector<Extreme> extremes_of(const std::vector<double>& time, const std::vector<double>& value, double least) {
+// Maxima and minima in turn. An extreme counts once the signal has come back from it by half of its distance
+// from the extreme before, and by more than `least`. Where it does not within the mean time between the last
+// few, as behind a gap, the search begins anew.
+std::vector<Extreme> extremes_of(const std::vector<double>& time, const std::vector<double>& value,
+                                 double least) {
   constexpr std::size_t few = 5;
   constexpr double look_ahead = 3;  // half cycles
   std::vector<Extreme> extremes;
@@ -95,10 +96,10 @@ std::vector<Extreme> extremes_of(const std::vector<double>& time, const std::vec
 // A sinusoid of the angular frequency `omega` about a level of its own, fitted near a peak (M16.1).
 struct PeakFit {
   double time = 0, value = 0;
-  double curvature = 0;        // a: amplitude of the sinusoid, negative at a minimum
-  double value_factor = 0;     // standard error of `value`, divided by that of a sample
+  double curvature = 0;         // a: amplitude of the sinusoid, negative at a minimum
+  double value_factor = 0;      // standard error of `value`, divided by that of a sample
   double curvature_factor = 0;  // the same of `curvature`
-  double variance = 0;         // of the samples about the sinusoid
+  double variance = 0;          // of the samples about the sinusoid
   bool is_covered = false, is_single = false;
 };
 
@@ -147,8 +148,9 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
     const auto to = std::ranges::upper_bound(samples.time, peak.time + reach) - samples.time.begin();
     const std::size_t first = std::size_t(from), last = std::size_t(to), count = last - first;
     const double expected = 2 * reach / samples.step;
-    peak.is_covered = count >= options.least_window && double(count) >= options.least_covered * std::floor(expected) &&
-                      first > 0 && last < samples.time.size();
+    peak.is_covered = count >= options.least_window &&
+                      double(count) >= options.least_covered * std::floor(expected) && first > 0 &&
+                      last < samples.time.size();
     if (!peak.is_covered) return peak;
     std::vector<std::array<double, 3>> basis(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -201,7 +203,8 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
     peak.curvature_factor = std::sqrt(solution->inverse[1][1]);
     const double phase = a * sign > 0 ? angle_of(b * sign, a * sign) : 0;
     peak.is_single = a * sign > 0 && std::abs(phase) <= options.half_window;
-    if (!peak.is_single || round + 1 == rounds) break;
+    constexpr double close = 1e-6;
+    if (!peak.is_single || std::abs(phase) < close || round + 1 == rounds) break;
     peak.time += phase / omega;
   }
   return peak;
@@ -226,8 +229,8 @@ class Limits {
     }
   }
   bool any(std::size_t first, std::size_t last) const {
-    return std::find(at_limit_.begin() + std::ptrdiff_t(first), at_limit_.begin() + std::ptrdiff_t(last), true) !=
-           at_limit_.begin() + std::ptrdiff_t(last);
+    return std::find(at_limit_.begin() + std::ptrdiff_t(first), at_limit_.begin() + std::ptrdiff_t(last),
+                     true) != at_limit_.begin() + std::ptrdiff_t(last);
   }
 
  private:
@@ -239,14 +242,14 @@ struct Candidate {
   PeakFit fit;
   bool is_maximum = false;
   Kind kind = Kind::good;
-  double half_cycle = 0;     // duration near it, s
-  double middle = 0;         // of the line about which the mass swings
-  double amplitude = 0;      // of the measured quantity
+  double half_cycle = 0;  // duration near it, s
+  double middle = 0;      // of the line about which the mass swings
+  double amplitude = 0;   // of the measured quantity
   std::int64_t number = 0;
 };
 
-// Where two flat peaks or more are at the top of all maxima, or of all minima, the instrument has a limit there: what
-// reaches it is clipped, even if it is not flat for long.
+// Where two flat peaks or more are at the top of all maxima, or of all minima, the instrument has a limit
+// there: what reaches it is clipped, even if it is not flat for long.
 void drop_below_limit(std::vector<Candidate>& all, double noise) {
   constexpr double noise_multiple = 5, part_of_range = 0.03;  // the fit overshoots a cut top
   double low = all[0].fit.value, high = low;
@@ -268,8 +271,7 @@ void drop_below_limit(std::vector<Candidate>& all, double noise) {
 
 bool are_neighbours(const Candidate& a, const Candidate& b) {
   constexpr double tolerance = 0.25;
-  return a.is_maximum != b.is_maximum &&
-         std::abs((b.fit.time - a.fit.time) / a.half_cycle - 1) < tolerance;
+  return a.is_maximum != b.is_maximum && std::abs((b.fit.time - a.fit.time) / a.half_cycle - 1) < tolerance;
 }
 
 // The middle line by (M16.2); candidates far from every place where it is known are unclear.
@@ -298,7 +300,8 @@ void find_middle_line(std::vector<Candidate>& all) {
     const auto first = std::size_t(from), last = std::size_t(to);
     const double count = double(last - first);
     double mean_time = 0, mean = 0, squares = 0, products = 0;
-    for (std::size_t i = first; i < last; ++i) mean_time += (time[i] - here.fit.time) / count, mean += middle[i] / count;
+    for (std::size_t i = first; i < last; ++i)
+      mean_time += (time[i] - here.fit.time) / count, mean += middle[i] / count;
     for (std::size_t i = first; i < last; ++i) {
       const double t = time[i] - here.fit.time - mean_time;
       squares += t * t;
@@ -322,14 +325,16 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   result.sampling_rate = 1 / step;
 
   constexpr double above_noise = 5;
-  const std::vector<Extreme> extremes = extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
+  const std::vector<Extreme> extremes =
+      extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
   const auto reject = [&](const std::string& what) { throw InputError(std::vector{name + ": " + what}); };
   const std::string needed = std::to_string(options.least_half_cycles);
   if (extremes.size() < options.least_half_cycles)
     reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
            std::to_string(extremes.size()));
 
-  // The duration of a half cycle is that of the median of those around: a gap or a false extreme is no matter.
+  // The duration of a half cycle is that of the median of those around: a gap or a false extreme is no
+  // matter.
   constexpr std::size_t around = 5;
   std::vector<double> intervals;
   for (std::size_t i = 1; i < extremes.size(); ++i)
@@ -409,16 +414,17 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   if (good.size() < options.least_half_cycles)
     reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
            std::to_string(good.size()) + " (" + std::to_string(result.clipped) + " clipped, " +
-           std::to_string(result.in_gaps) + " with samples missing, " + std::to_string(result.unclear) + " unclear)");
+           std::to_string(result.in_gaps) + " with samples missing, " + std::to_string(result.unclear) +
+           " unclear)");
   const double turns = double(good.back()->number - good.front()->number);
   result.frequency = turns / 2 / (good.back()->fit.time - good.front()->fit.time);
   // Half cycles within gaps in which no extreme was found.
-  result.in_gaps += std::max<std::int64_t>(
-      0, good.back()->number + 1 - std::int64_t(good.size()) -
-             std::ranges::count_if(all, [&](const Candidate& each) {
-               return each.kind != Kind::good && each.fit.time > good.front()->fit.time &&
-                      each.fit.time < good.back()->fit.time;
-             }));
+  result.in_gaps += std::max<std::int64_t>(0, good.back()->number + 1 - std::int64_t(good.size()) -
+                                                  std::ranges::count_if(all, [&](const Candidate& each) {
+                                                    return each.kind != Kind::good &&
+                                                           each.fit.time > good.front()->fit.time &&
+                                                           each.fit.time < good.back()->fit.time;
+                                                  }));
 
   double least = good[0]->middle, greatest = least;
   for (std::size_t i = 0; i < good.size(); ++i) {
@@ -427,7 +433,8 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
     result.offset += each.middle / double(good.size());
     double factor = 1;
     if (record.quantity == MeasuredQuantity::acceleration) {
-      const Candidate &first = *good[i < around ? 0 : i - around], &last = *good[std::min(i + around, good.size() - 1)];
+      const Candidate &first = *good[i < around ? 0 : i - around],
+                      &last = *good[std::min(i + around, good.size() - 1)];
       const double omega =
           half_turn<double>() * double(last.number - first.number) / (last.fit.time - first.fit.time);
       factor = 1 / (omega * omega);  // (M16.4)
