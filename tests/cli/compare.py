@@ -83,7 +83,8 @@ demand(f"left out: {found['reduction']['clipped']} half cycles clipped" in text,
 text, slower = compare(record("slower.csv", "time_factor=1.25"), "--fit", "none")
 demand(re.search(r"oscillates at 2\.5 Hz, 0\.8\d* times what the scene does: its sampling rate is wrong", text) is not None, text)
 for one, other in zip(found["bins"], slower["bins"]):
-    demand(abs(one["eta"] / other["eta"] - 1) < 1e-3, "a wrong sampling rate changes the loss factor")
+    # Samples at the very ends of windows may fall out of them by rounding: that is less than the noise.
+    demand(abs(one["eta"] / other["eta"] - 1) < one["relative_error"], "a wrong sampling rate changes the loss factor")
 
 # Large amplitudes alone: restitution and clearance are not told apart.
 text, begin = compare(record("begin.csv", "seconds=8", "gap_from=99"), "--engine", "restitution")
