@@ -312,28 +312,30 @@ Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes
   const std::size_t axes = box.low.size();
   Profiles profiles;
   profiles.of.assign(axes, Vector(nodes, std::numeric_limits<double>::infinity()));
-  std::vector<std::size_t> index(axes, 0);
-  Vector place(axes), values;
-  for (bool more = true; more;) {
-    for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(box, j, index[j], nodes);
-    const double chi = is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
-    values.push_back(chi);
-    if (chi < profiles.least) profiles.least = chi, profiles.best = place;
-    for (std::size_t j = 0; j < axes; ++j) profiles.of[j][index[j]] = std::min(profiles.of[j][index[j]], chi);
-    more = false;
-    for (std::size_t j = 0; j < axes && !more; ++j) {
-      more = ++index[j] < nodes;
-      if (!more) index[j] = 0;
+  std::size_t all = 1;
+  for (std::size_t j = 0; j < axes; ++j) all *= nodes;
+  const auto index = [&](std::size_t i, std::size_t axis) {
+    for (std::size_t j = 0; j < axis; ++j) i /= nodes;
+    return i % nodes;
+  };
+  Vector place(axes), values(all);
+  for (std::size_t i = 0; i < all; ++i) {
+    for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(box, j, index(i, j), nodes);
+    values[i] = is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
+    if (values[i] < profiles.least) profiles.least = values[i], profiles.best = place;
+    for (std::size_t j = 0; j < axes; ++j) {
+      double& least = profiles.of[j][index(i, j)];
+      least = std::min(least, values[i]);
     }
   }
   // Moments with the weights exp(-chi^2 / 2).
   Vector mean(axes, 0.0);
   Matrix moments(axes, Vector(axes, 0.0));
   double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < all; ++i) {
+    if (!std::isfinite(values[i])) continue;
     const double weight = exponential(-(values[i] - profiles.least) / 2);
-    std::size_t rest = i;
-    for (std::size_t j = 0; j < axes; ++j, rest /= nodes) place[j] = double(rest % nodes) / double(nodes - 1);
+    for (std::size_t j = 0; j < axes; ++j) place[j] = double(index(i, j)) / double(nodes - 1);
     sum += weight;
     for (std::size_t j = 0; j < axes; ++j) {
       mean[j] += weight * place[j];
