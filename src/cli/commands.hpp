@@ -38,6 +38,7 @@ using Commands = std::vector<Command>;
 
 Command check_command();
 Command cite_command();
+Command compare_command();
 Command design_command();
 Command figures_command();
 // `program`: what is said above the subcommands. Both must live as long as the command.

@@ -151,9 +151,9 @@ int main(int argc, char** argv) {
   const cli::Command about = whole_program();
   cli::Commands commands{cli::run_command(),    cli::report_command(),  cli::response_command(),
                          cli::design_command(), cli::sweep_command(),   cli::merge_command(),
-                         cli::map_command(),    cli::scenes_command(),  cli::verify_command(),
-                         cli::series_command(), cli::figures_command(), cli::check_command(),
-                         cli::cite_command()};
+                         cli::map_command(),    cli::compare_command(), cli::scenes_command(),
+                         cli::verify_command(), cli::series_command(),  cli::figures_command(),
+                         cli::check_command(),  cli::cite_command()};
   commands.push_back(cli::generate_command(about, commands));
   for (cli::Command& command : commands)
     command.options.insert(command.options.begin(), about.options.front());

@@ -9,7 +9,7 @@ file(GLOB_RECURSE before RELATIVE ${FOLDER} ${FOLDER}/*)
 execute_process(COMMAND sh -fc "exec \"$0\" ${ARGUMENTS}" ${PROGRAM} WORKING_DIRECTORY ${FOLDER} TIMEOUT 60
                 RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
 # What takes longer than two seconds says how far it is: on a slow machine, or under the sanitizers.
-string(REGEX REPLACE "(verify|response|sweep): [0-9]+ of [0-9]+ [^\n]*\n|design: (searched|checking) [^\n]*\n|report: (release [0-9]|simulating|recording|drawing)[^\n]*\n" "" err "${err}")
+string(REGEX REPLACE "(verify|response|sweep): [0-9]+ of [0-9]+ [^\n]*\n|compare: (fitting|simulating|drawing)[^\n]*\n|design: (searched|checking) [^\n]*\n|report: (release [0-9]|simulating|recording|drawing)[^\n]*\n" "" err "${err}")
 # Dot files too: that is what temporary files are called.
 file(GLOB_RECURSE after RELATIVE ${FOLDER} ${FOLDER}/* ${FOLDER}/.*)
 list(REMOVE_DUPLICATES after)

@@ -1,0 +1,54 @@
+// A measured decay beside the simulation of a scene: what `impact-damper compare` finds, and its JSON.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/measured/decay_fit.hpp"
+#include "impact_damper/measured/record.hpp"
+#include "impact_damper/measured/reduction.hpp"
+
+namespace impact_damper {
+
+// Decays of one scene that differ in where the secondary mass begins.
+struct SimulatedDecays {
+  SceneInUnits scene;
+  std::vector<HalfCycles> decays;  // times in s, from the record's first peak on, amplitudes in mm
+  std::vector<LossFactor> losses;  // (M12.1) of each, amplitudes in mm, per radian of its own frequency
+  // The median of each bin's loss factor; absent if some decay has none.
+  std::optional<std::vector<double>> bins;
+};
+
+struct Comparison {
+  std::string record_name, scene_name;
+  MeasuredRecord record;
+  Engine engine;
+  Reduction reduction;
+  LossFactor loss;  // (M12.1) of the record, amplitudes in mm, per radian of its own frequency
+  std::vector<LossBin> bins;
+  SimulatedDecays given;                  // of the scene
+  std::optional<SimulatedDecays> fitted;  // of the scene with the best numbers
+  std::optional<DecayFit> fit;
+  // Between these lies the frequency of the scene: secondary mass carried along, and not.
+  double lowest_frequency = 0, highest_frequency = 0;  // Hz
+  std::vector<std::string> remarks;  // what the record does not tell, or contradicts: a sentence each
+};
+
+struct ComparisonOptions {
+  FitOptions fit;  // no parameters: nothing is fitted
+  std::int64_t releases = 8;
+};
+
+// `scene` must be valid, without a force, and `record` as it was read from `record_name`. Throws InputError
+// as reduced() does.
+Comparison compared(const std::string& record_name, const MeasuredRecord& record,
+                    const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
+                    const ComparisonOptions& options, const std::function<void(const std::string&)>& tell);
+
+// The file: data/schema/comparison.schema.json.
+std::string comparison_text(const Comparison& comparison);
+
+}  // namespace impact_damper

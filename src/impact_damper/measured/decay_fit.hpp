@@ -1,0 +1,90 @@
+// Restitution, viscous damping, clearance and secondary mass from a measured decay, with intervals
+// (docs/mathematics.md, 16.2 and 16.3).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/engine.hpp"
+#include "impact_damper/measured/reduction.hpp"
+#include "impact_damper/run.hpp"
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+// A range of amplitudes and the mean loss factor in it (M16.5).
+struct LossBin {
+  double upper = 0, lower = 0;  // mm
+  double loss = 0;              // eta, per radian
+  double error = 0;             // standard error of ln eta by the noise of the record
+  std::int64_t half_cycles = 0;
+};
+// In the order of time, up to where the loss factor is less than half of its largest value: impacts have
+// failed. Empty if the record holds too little.
+std::vector<LossBin> loss_bins(const Reduction& reduction);
+
+// The same of a simulated decay, the logarithms of eta: none if a bin has too few rows or no loss. Amplitudes
+// in units of `length` mm.
+std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length,
+                                              const std::vector<LossBin>& bins);
+
+enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
+std::string_view name_of(FitParameter parameter);  // as in a scene file
+std::string_view unit_of(FitParameter parameter);
+const std::vector<FitParameter>& all_fit_parameters();
+double value_of(const SceneInUnits& scene, FitParameter parameter);
+void set_value(SceneInUnits& scene, FitParameter parameter, double value);
+
+// A free decay of `scene` over the amplitudes of the record: released at rest from somewhat above them, the
+// secondary mass anywhere in its cavity, by `draw`; down to `until` mm.
+Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
+                  std::int64_t draw);
+
+struct FitOptions {
+  std::vector<FitParameter> parameters{FitParameter::restitution, FitParameter::damping_ratio,
+                                       FitParameter::clearance};
+  std::int64_t runs = 800;  // of each stage; twice as many in the last
+  std::uint64_t seed = 1;
+  double level = 2.705543;  // of (M16.8): intervals of 90 %
+  Threads threads;
+};
+
+struct FittedParameter {
+  FitParameter parameter = FitParameter::restitution;
+  double best = 0, low = 0, high = 0;  // (M16.8)
+  double searched_from = 0, searched_to = 0;
+  // The interval does not end within the searched range on that side.
+  bool open_below = false, open_above = false;
+};
+
+struct DecayFit {
+  std::vector<FittedParameter> parameters;
+  std::vector<std::vector<double>> correlation;  // of the parameters' coordinates (M16.6)
+  std::vector<double> loss;                      // of each bin at the best point
+  std::vector<double>
+      scatter;                // standard deviation of ln eta between runs that differ in their release alone
+  double chi_square = 0;      // least value of (M16.7)
+  std::int64_t degrees = 0;   // of freedom: bins less parameters
+  double normal_deviate = 0;  // of chi_square (M16.9)
+  std::int64_t runs = 0;      // simulated in all
+};
+// A larger one of chi_square tells that no point of the searched range is like the record: one in a thousand.
+inline constexpr double most_normal_deviate = 3.09;
+
+// Why there is no fit stands in `problem`.
+struct FitResult {
+  std::optional<DecayFit> fit;
+  std::string problem;
+};
+// `tell` is told how far it is. The scene must be valid and free of force. No result depends on the number of
+// threads.
+FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
+                    const std::vector<LossBin>& bins, const FitOptions& options,
+                    const std::function<void(const std::string&)>& tell);
+
+}  // namespace impact_damper

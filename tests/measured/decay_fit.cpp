@@ -1,0 +1,119 @@
+#include "impact_damper/measured/decay_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include "made_records.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// Released from 40 mm; the scene that is fitted is made::mast() itself.
+SceneInUnits truth() {
+  SceneInUnits scene = made::mast();
+  scene.restitution = 0.5, scene.damping_ratio = 0.003, scene.clearance = 12;
+  scene.initial_displacement = 40, scene.until_seconds = 25;
+  return scene;
+}
+const MeasuredRecord& record() {
+  static const MeasuredRecord made =
+      made::measured(truth(), {.noise = 0.05, .offset = 1, .drift = 1, .seed = 3});
+  return made;
+}
+DecayFit fit_of(const MeasuredRecord& record, Threads threads = {},
+                std::vector<FitParameter> parameters = FitOptions{}.parameters) {
+  const Reduction reduction = reduced("made", record);
+  FitOptions options;
+  options.threads = threads;
+  options.runs = 300;
+  options.parameters = std::move(parameters);
+  FitResult result = fit_decay(made::mast(), Restitution{}, reduction, loss_bins(reduction), options,
+                               [](const std::string&) {});
+  REQUIRE(result.fit.has_value());
+  return *result.fit;
+}
+const DecayFit& fit() {
+  static const DecayFit fit = fit_of(record());
+  return fit;
+}
+double middle(const DecayFit& fit, std::size_t j) {
+  return (fit.parameters[j].low + fit.parameters[j].high) / 2;
+}
+double width(const DecayFit& fit, std::size_t j) { return fit.parameters[j].high - fit.parameters[j].low; }
+
+}  // namespace
+
+TEST_CASE("a record by another integrator is fitted by the numbers it was made with") {
+  for (const FittedParameter& each : fit().parameters) {
+    const double expected = value_of(truth(), each.parameter);
+    // An interval of 90 % is 3.3 standard deviations wide; this record's truth is within it, and allowed one
+    // more on either side: how often it is inside is what measured_coverage counts.
+    const double spare = 0.3 * (each.high - each.low);
+    CAPTURE(name_of(each.parameter));
+    CHECK(expected > each.low - spare);
+    CHECK(expected < each.high + spare);
+    CHECK(each.high - each.low < 0.25 * expected);
+    CHECK_FALSE(each.open_below);
+    CHECK_FALSE(each.open_above);
+  }
+  CHECK(fit().normal_deviate < most_normal_deviate);
+}
+
+TEST_CASE("the fit does not depend on the number of threads") {
+  const DecayFit one = fit_of(record(), 1), three = fit_of(record(), 3);
+  for (std::size_t j = 0; j < 3; ++j) {
+    CHECK(one.parameters[j].best == three.parameters[j].best);
+    CHECK(one.parameters[j].low == three.parameters[j].low);
+    CHECK(one.parameters[j].high == three.parameters[j].high);
+  }
+  CHECK(one.chi_square == three.chi_square);
+}
+
+TEST_CASE("larger displacements are a larger clearance, and nothing else") {
+  MeasuredRecord larger = record();
+  for (double& each : larger.value) each *= 1.1;
+  const DecayFit changed = fit_of(larger);
+  CHECK(std::abs(middle(changed, 0) - middle(fit(), 0)) < 0.4 * width(fit(), 0));
+  CHECK(std::abs(middle(changed, 1) - middle(fit(), 1)) < 0.4 * width(fit(), 1));
+  CHECK(std::abs(middle(changed, 2) - 1.1 * middle(fit(), 2)) < 0.4 * width(fit(), 2));
+}
+
+TEST_CASE("a wrong sampling rate changes nothing") {
+  MeasuredRecord slower = record();
+  for (double& each : slower.time) each *= 1.2;
+  const DecayFit changed = fit_of(slower);
+  for (std::size_t j = 0; j < 3; ++j)
+    CHECK(std::abs(middle(changed, j) - middle(fit(), j)) < 0.4 * width(fit(), j));
+}
+
+TEST_CASE("a record of large amplitudes alone does not tell restitution and clearance") {
+  MeasuredRecord begin = record();
+  const auto end = std::ptrdiff_t(begin.time.size() * 2 / 5);
+  begin.time.resize(std::size_t(end)), begin.value.resize(std::size_t(end));
+  const DecayFit wide = fit_of(begin);
+  CHECK((width(wide, 2) > 3 * width(fit(), 2)));
+}
+
+TEST_CASE("losses that no damper of the searched range has are told from those that one has") {
+  // The amplitude falls faster at first and slower later on than that of any impact damper.
+  MeasuredRecord other = record();
+  const Reduction before = reduced("made", record());
+  for (std::size_t i = 0; i < other.time.size(); ++i) {
+    const double part = (other.time[i] - other.time[0]) / 8;
+    other.value[i] *= std::exp(-0.6 * part * part * std::exp(-part));
+  }
+  CHECK(fit_of(other).normal_deviate > most_normal_deviate);
+}
+
+TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
+  // Without impacts, the secondary mass at rest in the middle of a wide cavity, eta = 2 zeta / sqrt(1 -
+  // zeta^2).
+  Scene scene{.damping_ratio = 0.01, .x0 = 0.05, .y0 = 0.5, .until_time = 400, .until_amplitude = 0.004};
+  const HalfCycles rows = simulated_half_cycles(scene, Restitution{});
+  const std::vector<LossBin> bins{{0.04, 0.02}, {0.02, 0.01}, {0.01, 0.005}};
+  const auto losses = log_losses(rows, 1, bins);
+  REQUIRE(losses.has_value());
+  for (const double each : *losses)
+    CHECK(std::exp(each) == doctest::Approx(0.02 / std::sqrt(1 - 1e-4)).epsilon(1e-4));
+  CHECK_FALSE(log_losses(rows, 1, {{0.0035, 0.001}}).has_value());
+}

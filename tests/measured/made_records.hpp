@@ -1,0 +1,62 @@
+// Records as an instrument would make them, of decays by the plain integration, which shares nothing with the
+// engines.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "impact_damper/measured/record.hpp"
+#include "impact_damper/units.hpp"
+#include "plain_integration.hpp"
+
+namespace made {
+
+using namespace impact_damper;
+
+// The mast of data/examples, 60 s.
+inline SceneInUnits mast() {
+  SceneInUnits scene;
+  scene.mass = 40, scene.stiffness = 16000, scene.secondary_mass = 1.6, scene.clearance = 10;
+  scene.restitution = 0.6, scene.damping_ratio = 0.002;
+  scene.initial_displacement = 60;
+  scene.until_seconds = 60;
+  return scene;
+}
+
+struct Instrument {
+  double samples_per_cycle = 50;
+  double noise = 0;              // standard deviation, mm or mm/s^2
+  double offset = 0, drift = 0;  // mm, and mm over the record, half of it as a slow wave
+  double time_factor = 1;        // of a wrong sampling rate
+  MeasuredQuantity quantity = MeasuredQuantity::displacement;
+  unsigned seed = 1;
+};
+
+inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& instrument) {
+  const Scales scales = scales_of(in_units);
+  const Scene scene = dimensionless(in_units);
+  const int samples = int(*scene.until_time / (2 * std::numbers::pi) * instrument.samples_per_cycle) + 1;
+  const Run run = reference::PlainIntegration(scene, true, samples).run();
+  std::mt19937 random(instrument.seed);
+  std::normal_distribution<double> normal;
+  MeasuredRecord record;
+  record.quantity = instrument.quantity;
+  const History& history = *run.history;
+  for (std::size_t i = 0; i < history.time.size(); ++i) {
+    const double part = history.time[i] / history.time.back();
+    // Between impacts; a stuck mass is carried along.
+    const double acceleration = -(history.x[i] + 2 * scene.damping_ratio * history.v[i]) * scales.length /
+                                (scales.time() * scales.time());
+    double value =
+        instrument.quantity == MeasuredQuantity::displacement ? history.x[i] * scales.length : acceleration;
+    value += instrument.offset + instrument.drift / 2 * (part + std::sin(2 * std::numbers::pi * part) / 2) +
+             instrument.noise * normal(random);
+    record.time.push_back(history.time[i] * scales.time() * instrument.time_factor);
+    record.value.push_back(value);
+  }
+  return record;
+}
+
+}  // namespace made

@@ -1,0 +1,185 @@
+// Against records of the viscous oscillator x = A exp(-zeta t) cos(w t), whose peaks and loss factor are
+// known.
+#include "impact_damper/measured/reduction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/base/errors.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr double hertz = 4, omega = 2 * std::numbers::pi * hertz, zeta = 0.01, largest = 20, rate = 203;
+
+struct Made {
+  double noise = 0, duration = 15;
+  bool acceleration = false;
+  double time_factor = 1;
+  double samples_per_second = rate;
+  std::function<double(double, double)> changed = [](double, double x) { return x; };  // of t, x
+  std::function<bool(double)> missing = [](double) { return false; };
+};
+// x = A exp(-zeta omega t) cos(omega t - 1): the record begins anywhere in a cycle.
+double displacement(double t) { return largest * std::exp(-zeta * omega * t) * std::cos(omega * t - 1); }
+MeasuredRecord made(const Made& m) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  MeasuredRecord record;
+  if (m.acceleration) record.quantity = MeasuredQuantity::acceleration;
+  for (int i = 0; i < int(m.duration * m.samples_per_second); ++i) {
+    const double t = i / m.samples_per_second;
+    double x = displacement(t);
+    if (m.acceleration) {  // (i omega - zeta omega)^2, real part
+      const double phase = omega * t - 1, decay = largest * std::exp(-zeta * omega * t) * omega * omega;
+      x = decay * ((zeta * zeta - 1) * std::cos(phase) + 2 * zeta * std::sin(phase));
+    }
+    const double value = m.changed(t, x + m.noise * normal(random));
+    if (m.missing(t)) continue;
+    record.time.push_back(t * m.time_factor);
+    record.value.push_back(value);
+  }
+  return record;
+}
+// cos(omega t - 1) exp(...) has its peaks where tan(omega t - 1) = -zeta: atan(zeta) before those of the
+// cosine.
+double peak_time(std::int64_t n) { return (1 - std::atan(zeta) + double(n) * std::numbers::pi) / omega; }
+double peak(double t) { return largest * std::exp(-zeta * omega * t) / std::sqrt(1 + zeta * zeta); }
+std::int64_t nearest_peak(double t) { return std::lround((t * omega - 1) / std::numbers::pi); }
+
+// Of the loss factor (M12.1), per radian of the record's own frequency: the largest relative error.
+double loss_error(const Reduction& r) {
+  const LossFactor loss =
+      local_loss_factor(half_cycles_of(r, 1, 1 / (2 * std::numbers::pi * r.frequency)), 0, r.time.size());
+  double worst = 0;
+  for (const double each : loss.eta) worst = std::max(worst, std::abs(each / (2 * zeta) - 1));
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("times and heights of peaks, frequency and loss factor are those of the oscillator") {
+  const Reduction r = reduced("r", made({}));
+  CHECK(r.frequency == doctest::Approx(hertz).epsilon(1e-5));
+  CHECK(r.clipped + r.unclear == 0);
+  REQUIRE(r.time.size() > 100);
+  for (std::size_t i = 0; i < r.time.size(); ++i) {
+    const double t = peak_time(nearest_peak(r.time[i]));
+    // A shift of all peaks by one sample is 5e-3 s. The fit's sinusoid does not decay: of the order of
+    // zeta^2.
+    CHECK(std::abs(r.time[i] - t) < 2e-4);
+    CHECK(std::abs(r.amplitude[i] / peak(t) - 1) < 1e-3);
+  }
+  CHECK(loss_error(r) < 1e-2);
+}
+
+TEST_CASE("offset and drift are taken out, and the noise is estimated") {
+  constexpr double noise = 0.1;
+  const auto level = [](double t) { return 7 + 3 * std::sin(2 * std::numbers::pi * t / 15); };
+  const Reduction r =
+      reduced("r", made({.noise = noise, .changed = [&](double t, double x) { return x + level(t); }}));
+  double mean = 0;
+  for (const double t : r.time) mean += level(t) / double(r.time.size());
+  CHECK(r.noise == doctest::Approx(noise).epsilon(0.1));
+  CHECK(std::abs(r.offset - mean) < 0.05);
+  CHECK(r.drift == doctest::Approx(6).epsilon(0.1));
+  REQUIRE(r.time.size() > 60);
+  double squares = 0;
+  for (std::size_t i = 0; i < r.time.size(); ++i) {
+    const double deviation = (r.amplitude[i] - peak(peak_time(nearest_peak(r.time[i])))) / r.error[i];
+    squares += deviation * deviation / double(r.time.size());
+  }
+  // Deviations in units of the error that is stated; five standard errors of the mean of 60 squares are 0.9.
+  CHECK(squares > 0.4);
+  CHECK(squares < 1.9);
+  CHECK(r.ends_in_noise);
+}
+
+TEST_CASE("half cycles that the instrument clipped are left out, sharply or softly clipped") {
+  const auto clip = [](double, double x) { return std::min(15.0, std::max(-1000.0, x)); };
+  const Reduction sharp = reduced("r", made({.noise = 0.02, .changed = clip}));
+  // Maxima above 15: peaks 0, 2, ... while 20 exp(-zeta omega t) > 15, t < 1.145 s, n < 8.8: 0, 2, 4, 6, 8.
+  CHECK(sharp.clipped >= 5);
+  CHECK(sharp.clipped <= 6);  // the maximum just below may go with them
+  // Two maxima, 19.8 and 18.6, cut off so little that they are not flat.
+  CHECK(reduced("r", made({.noise = 0.02, .changed = [](double, double x) { return std::min(18.2, x); }}))
+            .clipped == 2);
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, 0.02);
+  const Reduction soft =
+      reduced("r", made({.changed = [&](double t, double x) { return clip(t, x) + normal(random); }}));
+  // Those just below the limit go with them.
+  CHECK(soft.clipped >= 5);
+  CHECK(soft.clipped <= 8);
+  for (const Reduction* r : {&sharp, &soft})
+    for (std::size_t i = 0; i < r->time.size(); ++i)
+      CHECK(std::abs(r->amplitude[i] / peak(peak_time(nearest_peak(r->time[i]))) - 1) <
+            0.04 + 5 * r->error[i] / r->amplitude[i]);
+}
+
+TEST_CASE("missing samples cost their half cycles alone, and half cycles are counted across a gap") {
+  const Reduction whole = reduced("r", made({.noise = 0.02}));
+  const Reduction gap =
+      reduced("r", made({.noise = 0.02, .missing = [](double t) { return t > 2 && t < 4; }}));
+  // 16 half cycles lie in the gap, and the windows at its ends reach into it.
+  CHECK(whole.time.size() - gap.time.size() >= 16);
+  CHECK(whole.time.size() - gap.time.size() <= 18);
+  CHECK(gap.in_gaps - whole.in_gaps == std::int64_t(whole.time.size() - gap.time.size()));
+  for (const Reduction* r : {&whole, &gap})
+    for (std::size_t i = 0; i < r->time.size(); ++i) {
+      CHECK(r->half_cycle[i] - r->half_cycle[0] == nearest_peak(r->time[i]) - nearest_peak(r->time[0]));
+      CHECK(std::abs(r->amplitude[i] / peak(peak_time(nearest_peak(r->time[i]))) - 1) <
+            6 * r->error[i] / r->amplitude[i] + 1e-3);
+    }
+  CHECK(gap.frequency == doctest::Approx(hertz).epsilon(3e-4));  // of the last peak, 0.03 rad of 112 pi
+  int n = 0;
+  const Reduction scattered =
+      reduced("r", made({.noise = 0.02, .missing = [&](double) { return ++n % 11 == 0; }}));
+  CHECK(scattered.time.size() + 2 >= whole.time.size());
+}
+
+TEST_CASE("a long gap in which the amplitude falls to a tenth does not end the search") {
+  const Reduction r = reduced("r", made({.missing = [](double t) { return t > 1 && t < 10; }}));
+  CHECK(r.time.back() > 14);
+}
+
+TEST_CASE("a wrong sampling rate is a wrong frequency, and changes no loss factor") {
+  const Reduction r = reduced("r", made({.time_factor = 0.8}));
+  CHECK(r.frequency == doctest::Approx(hertz / 0.8).epsilon(1e-5));
+  CHECK(loss_error(r) < 1e-2);
+}
+
+TEST_CASE("accelerations become displacements by the local frequency") {
+  const Reduction r = reduced("r", made({.acceleration = true}));
+  for (std::size_t i = 0; i < r.time.size(); ++i) {
+    const double expected = largest * std::exp(-zeta * omega * r.time[i]);
+    CHECK(std::abs(r.amplitude[i] / expected - 1) < 2e-3);
+  }
+}
+
+TEST_CASE("spikes, of impacts or of the instrument, are neither peaks nor amplitudes") {
+  int n = 0;
+  const Reduction r = reduced(
+      "r", made({.noise = 0.02, .changed = [&](double, double x) { return ++n % 37 == 0 ? x + 30 : x; }}));
+  REQUIRE(r.time.size() > 90);
+  for (std::size_t i = 0; i < r.time.size(); ++i)
+    CHECK(std::abs(r.amplitude[i] - peak(peak_time(nearest_peak(r.time[i])))) < 6 * r.error[i] + 0.03);
+}
+
+TEST_CASE("a record without a decay, or with too few samples in a cycle, is rejected") {
+  CHECK_THROWS_WITH_AS(
+      reduced("r", made({.duration = 1})),
+      doctest::Contains("r: must hold a free decay of at least 12 half cycles above the noise, got"),
+      InputError);
+  CHECK_THROWS_WITH_AS(reduced("r", made({.noise = 30})), doctest::Contains("r: must hold a free decay"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(reduced("r", made({.samples_per_second = 40})),
+                       doctest::Contains("r: must have at least 20 samples in a cycle, got"), InputError);
+}
