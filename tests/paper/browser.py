@@ -17,7 +17,7 @@ import chromium
 
 PAGE, TABLES, SCREENSHOTS = None, None, None
 WIDTHS = {"phone": 390, "desk": 1280}
-FIGURES = [*"ABCDE", *map(str, range(1, 16))]
+FIGURES = [*"ABCDEH", *map(str, range(1, 16))]
 
 
 def luminance(colour: str) -> float:
