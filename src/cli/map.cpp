@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "commands.hpp"
 #include "drawing.hpp"
@@ -125,8 +126,9 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
         if (values.size() > most && i >= most - 1 && i + 1 < values.size()) continue;
         known += (i ? ", " : "") + number_text(values[i]);
       }
-      arguments.reject("--where",
-                       "must give " + name + " one of its values: " + known + "; got " + in_quotes(text));
+      std::string message = "must give ";
+      message.append(name).append(" one of its values: ").append(known).append("; got ");
+      arguments.reject("--where", message + in_quotes(text));
       continue;
     }
     question.fixed[*index] = *value;
@@ -138,9 +140,10 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
       question.fixed[n] = plan.grid[n].value(0);
     } else {
       const std::string name(plan.grid[n].variable.name);
-      arguments.reject("--where", "must be given for " + name + ", which has " +
-                                      std::to_string(plan.grid[n].size()) + " values: --where " + name + "=" +
-                                      number_text(plan.grid[n].value(0)));
+      std::string message = "must be given for ";
+      message.append(name).append(", which has ").append(std::to_string(plan.grid[n].size()));
+      message.append(" values: --where ").append(name).append("=");
+      arguments.reject("--where", message + number_text(plan.grid[n].value(0)));
     }
   }
 }
@@ -225,7 +228,8 @@ void add_cells(Table& table, const std::string& name, const Map& map, CellState 
 // A number of the level on the piece of its contour that is nearest to the middle of the picture.
 void add_contours(Table& table, const Map& map) {
   const auto values = values_of(map);
-  double least = INFINITY, greatest = -INFINITY;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity, greatest = -infinity;
   for (const auto& value : values)
     if (value) least = std::min(least, *value), greatest = std::max(greatest, *value);
   const auto from_middle = [](const MapAxis& axis, double value) {

@@ -589,18 +589,18 @@ void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
   }
 }
 
-Scene decay_scene(const SceneInUnits& given, const Reduction& reduction, double until, std::uint64_t seed,
+Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
                   std::int64_t draw) {
   constexpr double above = 1.1, below = 0.97, longer = 3;
   constexpr std::uint32_t place_in_cavity = 100;  // the number of a draw that no axis has
-  SceneInUnits scene = given;
-  scene.initial_displacement = above * reduction.amplitude.front();
-  scene.initial_velocity.reset();
-  scene.secondary_velocity.reset();
-  scene.secondary_displacement.reset();
-  scene.until_millimetres = below * until;
-  scene.until_seconds = longer * (reduction.time.back() - reduction.time.front());
-  Scene made = dimensionless(scene);
+  SceneInUnits released = scene;
+  released.initial_displacement = above * reduction.amplitude.front();
+  released.initial_velocity.reset();
+  released.secondary_velocity.reset();
+  released.secondary_displacement.reset();
+  released.until_millimetres = below * until;
+  released.until_seconds = longer * (reduction.time.back() - reduction.time.front());
+  Scene made = dimensionless(released);
   made.y0 = uniform_draw({seed, place_in_cavity, draw});
   return made;
 }
@@ -616,7 +616,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                               std::to_string(count + 1) +
                               " ranges of amplitude with a known loss factor, the record has " +
                               std::to_string(bins.size())};
-  const FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
+  FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
   Search search(scene, engine, reduction, bins, options, tell);
   Box box{Vector(count, 0.0), Vector(count, 1.0)};
   // While the range is wide no polynomial follows the loss factor: the nearest runs tell where to look.

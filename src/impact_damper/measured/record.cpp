@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -30,7 +31,7 @@ constexpr std::size_t most_problems = 10;
 
 class Problems {
  public:
-  explicit Problems(const std::string& name) : name_(name) {}
+  explicit Problems(std::string name) : name_(std::move(name)) {}
   void add(std::size_t line, const std::string& what) {
     if (++count_ <= most_problems) lines_.push_back(name_ + ": line " + std::to_string(line) + ": " + what);
   }
@@ -100,8 +101,8 @@ template <std::size_t Count>
 const Unit* unit_of(const std::array<Unit, Count>& units, const std::string& heading, Problems& problems) {
   const auto found = std::ranges::find(units, std::string_view(heading), &Unit::heading);
   if (found != units.end()) return &*found;
-  std::vector<std::string_view> known;
-  for (const Unit& unit : units) known.push_back(unit.heading);
+  std::vector<std::string_view> known(units.size());
+  std::ranges::transform(units, known.begin(), &Unit::heading);
   const auto meant = nearest(heading, known);
   problems.add(1, "a column must be headed " + listed(known, "or") + ", got " + in_quotes(heading) +
                       (meant ? ", did you mean " + std::string(*meant) + "?" : ""));

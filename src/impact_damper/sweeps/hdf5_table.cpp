@@ -102,7 +102,7 @@ struct Hdf5Table::File {
     const auto rows = hsize_t(runs_of(plan));
     const H5::DataSpace space(1, &rows);
     const H5::DSetCreatPropList timeless;  // or no two files would be equal
-    H5Pset_obj_track_times(timeless.getId(), 0);
+    H5Pset_obj_track_times(timeless.getId(), false);
     for (const PlanColumn& column : columns_of(plan)) {
       const bool is_text = column.name == "end" || column.name == "problem";
       const H5::DataType number(column.name == "run" ? H5::PredType::STD_I64LE : H5::PredType::IEEE_F64LE);

@@ -210,7 +210,8 @@ std::vector<double> contour_levels(double least, double greatest) {
       break;
     }
   std::vector<double> levels;
-  for (double n = std::floor(least / step) + 1; n * step < greatest; ++n) levels.push_back(n * step);
+  const double below = std::floor(least / step);
+  for (int n = 1; (below + n) * step < greatest; ++n) levels.push_back((below + n) * step);
   return levels;
 }
 
