@@ -64,7 +64,8 @@ void make_all(const Work& work, Parts& parts, FigureSet& set) {
     ++set.scenes;
   }
   for (const Figure& figure : work.catalogue.figures) {
-    if (figure.table == TableKind::drawing || !figure.responses.empty()) continue;  // the paper's figures
+    // The paper's figures, of runs alone.
+    if (figure.table == TableKind::drawing || !figure.responses.empty() || !figure.plan.empty()) continue;
     bool ensemble = false;
     for (const FigureCurve& curve : figure.curves) ensemble |= curve.ensemble > 0;
     const std::string kind =

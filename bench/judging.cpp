@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "allocations.hpp"
+#include "figure_set.hpp"
 #include "findings.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/simulate.hpp"
@@ -241,6 +242,14 @@ TEST_CASE("amplitudes are compared up to the scene's time and no further") {
   CHECK(error_of(0, 0.5) == Approx(0.5));
   scene.compared_until = 4;  // the first half cycle only
   CHECK(error_of(0, 0.5) < 1e-12);
+}
+
+TEST_CASE("all figures of the catalogue that need no more than runs are made") {
+  const FigureSet set = measure_figure_set(IMPACT_DAMPER_SOURCE, 1);
+  CHECK(set.scenes >= 8);
+  CHECK(set.tables >= 14);  // of the paper
+  CHECK(set.bytes > 100000);
+  CHECK(set.timing.seconds.median > 0);
 }
 
 TEST_CASE("a very fast force is held against a slow one by its periods") {
