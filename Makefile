@@ -180,7 +180,7 @@ lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no find
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
 	@tests/checks/lint.py $(BUILD)
 
-sanitize:  ## the tests once more, under clang's address and undefined-behaviour sanitizers (minutes)
+sanitize:  ## the quick tests once more, under clang's address and undefined-behaviour sanitizers (minutes)
 	@$(alone) tests/checks/sanitize $(BUILD)/sanitize
 
 coverage: sanitize  ## the same; then which lines of the library they ran: at least 95 % of them

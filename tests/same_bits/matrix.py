@@ -8,16 +8,18 @@ programs are built below BUILD/same_bits, kept for the next time: {g++, clang++}
 with link-time optimisation}.
 What is crossed with what:
 
-    all programs        x processor features {as they are, without FMA and AVX2}
-                        x {at home, all surroundings at once: time zone, comma locale, folder, ~/.gnuplot}
-    two of them         x the same features x each of the four surroundings by itself
+    all programs        x {at home, without the processor's FMA and AVX2 and in all surroundings at once: time zone,
+                           comma locale, folder, ~/.gnuplot}
+    two of them         x each of the four surroundings by itself, and all at once with the processor as it is
                           (g++ -O2 with link-time optimisation, clang++ -O3 -march=native)
+    the project's own   x processor features {as they are, without FMA and AVX2} x {at home, all surroundings at once}
     pictures            gnuplot is no part of a build, so they are drawn from the tables that by then are the same for
                         all programs, once in each of the four surroundings, once in all at once without FMA and AVX2
 
 Each time all three engines run all scenes of the catalogue and those in scenes/ (forced and damped, the component
-element method also with its other ways to step), the catalogue's responses are found, and all tables are made. The heap is filled with rubbish where the
-surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
+element method also with its other ways to step), the catalogue's responses are found with fewer points and periods, and
+all tables are made. The heap is filled with rubbish where the surroundings are strange, and at -O0 so are variables that
+nobody set: what reads them shows.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -40,6 +42,7 @@ from asked import respond  # noqa: E402
 from differences import compare_files  # noqa: E402
 
 VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+OWN = "the project's own build"
 COMPILERS = ["g++", "clang++"]
 # Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
 FLAGS = {
@@ -141,13 +144,24 @@ def make_places(work: Path) -> Places:
 
 
 def small_catalogues(work: Path) -> dict:
-    """The catalogue, with ensembles of two for the component element method, which takes a hundred times as long."""
-    text = (SOURCE / "figures/catalogue.json").read_text()
+    """The catalogue with shorter responses, and with ensembles of two for the component element method, which takes a
+    hundred times as long."""
+    catalogue = json.loads((SOURCE / "figures/catalogue.json").read_text())
+    for entry in catalogue["responses"]:
+        for axis in entry["vary"]:
+            if "count" in axis:
+                axis["count"] = min(axis["count"], 5)
+        rule = entry.setdefault("rule", {})
+        for name in {"max_periods", "mean_periods"} & rule.keys():
+            rule[name] = min(rule[name], 200)
+        if entry["kind"] == "orbits":
+            rule |= {"max_points": 60, "max_branches": 3}
     paths = {}
     for engine in ENGINES:
+        text = json.dumps(catalogue, ensure_ascii=False, indent=1)
         paths[engine] = work / f"catalogue-{engine}.json"
         paths[engine].write_text(re.sub(r'"ensemble": \d+', '"ensemble": 2', text) if engine == "cem" else text)
-    for plan in plans_of(json.loads(text)):  # beside them; two releases are as good as many
+    for plan in plans_of(catalogue):  # beside them; two releases are as good as many
         (work / plan).write_text(re.sub(r'"count": \d+', '"count": 2', (SOURCE / "figures" / plan).read_text()))
     return paths
 
@@ -191,12 +205,17 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
                 call([program, *respond(entry, "data/scenes"), "-o", file], **options)
             else:
                 shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
-        for plan in plans_of(catalogue):
-            call([program, "sweep", catalogues[engine].with_name(plan), "-o", runs / f"{Path(plan).stem}.csv"], **options)
+        for plan in plans_of(catalogue):  # an engine of its own, too
+            table = runs / f"{Path(plan).stem}.csv"
+            if engine == ENGINES[0]:
+                call([program, "sweep", catalogues[engine].with_name(plan), "-o", table], **options)
+            else:
+                for file in (table, table.with_name(table.name + ".json")):
+                    shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
         call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",
               "-o", tables], **options)
-        for plan in plans_of(catalogue):  # names the program, of which each is another
-            (runs / f"{Path(plan).stem}.csv.json").unlink()
+    for table in results.rglob("*.csv.json"):  # names the program, of which each is another
+        table.unlink()
 
 
 def draw_all(places: Places, features: str, surroundings, tables: Path, pictures: Path):
@@ -232,13 +251,16 @@ def held_against(reference: Path, results: Path) -> list:
 
 
 def settings_of(programs: dict) -> list:
+    usual, reduced = FEATURES
+    at_home, all_at_once = (), tuple(SURROUNDINGS)
     cells = []
     for name, program in programs.items():
-        for features in FEATURES:
-            chosen = [(), tuple(SURROUNDINGS)]
-            if name in EACH_SURROUNDING_BY_ITSELF:
-                chosen += [(each,) for each in SURROUNDINGS]
-            cells += [Setting(program, name, features, surroundings) for surroundings in chosen]
+        chosen = [(usual, at_home), (reduced, all_at_once)]
+        if name == OWN:
+            chosen += [(usual, all_at_once), (reduced, at_home)]
+        if name in EACH_SURROUNDING_BY_ITSELF:
+            chosen += [(usual, all_at_once)] + [(usual, (each,)) for each in SURROUNDINGS]
+        cells += [Setting(program, name, *each) for each in chosen]
     return cells
 
 
@@ -262,7 +284,7 @@ def main() -> int:
     places = make_places(work)
     catalogues = small_catalogues(work)
 
-    programs = {"the project's own build": own}
+    programs = {OWN: own}
     wanted = [(compiler, name) for compiler in compilers for name in FLAGS
               if not arguments.only or arguments.only in f"{compiler} {name}"]
     # Several builds at a time, each a step at a time: none waits for the last step of another.
