@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/largest_amplitude.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/steady/response_file.hpp"
@@ -30,28 +31,22 @@ const Kind& response_of(Runs& runs, const std::string& name) {
 
 double amplitude_of(const SteadyState& steady) { return steady.means ? steady.means->amplitude : no_number; }
 
-using Way = std::vector<SteadyState> Sweep::*;
-constexpr Way rising = &Sweep::up, falling = &Sweep::down;
+constexpr SweepWay rising = &Sweep::up, falling = &Sweep::down;
 
-// At each force that the sweeps have, the largest amplitude of all of them; NaN where one has none. Throws
-// std::invalid_argument if they are not over the same forces.
-Curve largest_amplitudes(Runs& runs, const MeasureCall& call, Way way) {
+// The largest amplitude at each force that the sweeps have. Throws std::invalid_argument if they are not over
+// the same forces.
+Curve largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
   Curve curve;
+  std::vector<const SweepResponse*> responses;
   for (const std::string& name : call.responses) {
     const auto& response = response_of<SweepResponse>(runs, name);
     const std::vector<double> forces = response.axis.values();
     if (response.axis.number != &Scene::force_amplitude || (!curve.x.empty() && curve.x != forces))
       throw std::invalid_argument(name + ": must be over the same forces as all responses of the measure");
     curve.x = forces;
-    curve.y.resize(forces.size(), 0);
-    for (const Sweep& sweep : response.sweeps) {
-      for (std::size_t i = 0; i < forces.size(); ++i) {
-        const double amplitude = amplitude_of((sweep.*way)[i]);
-        double& largest = curve.y[i];
-        if (largest == largest && !(amplitude <= largest)) largest = amplitude;
-      }
-    }
+    responses.push_back(&response);
   }
+  for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y.push_back(largest_amplitude(responses, way, i));
   return curve;
 }
 
@@ -81,7 +76,7 @@ double most(const std::vector<double>& values) {
   return values.empty() ? no_number : *std::ranges::max_element(values);
 }
 
-template <Way way, double (*of_all)(const std::vector<double>&)>
+template <SweepWay way, double (*of_all)(const std::vector<double>&)>
 Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
   const Curve found = largest_amplitudes(runs, call, way);
   return over_members(runs, call, [&](const Run& run) {

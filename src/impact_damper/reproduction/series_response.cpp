@@ -7,6 +7,7 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/reproduction/largest_amplitude.hpp"
 #include "impact_damper/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
@@ -118,24 +119,6 @@ const Kind& as(const Figure& figure, const FigureResponse& source) {
   return *response;
 }
 
-// The largest amplitude at each force over sweeps along the same forces.
-struct Largest {
-  Axis axis;
-  std::vector<double> up, down;
-
-  void add(const SweepResponse& response) {
-    for (const Sweep& sweep : response.sweeps) {
-      const auto larger = [](std::vector<double>& most, const std::vector<SteadyState>& way) {
-        most.resize(way.size(), 0);
-        for (std::size_t i = 0; i < way.size(); ++i)
-          if (way[i].means) most[i] = std::max(most[i], way[i].means->amplitude);
-      };
-      larger(up, sweep.up);
-      larger(down, sweep.down);
-    }
-  }
-};
-
 }  // namespace
 
 const Scene& scene_of(const Response& response) {
@@ -186,23 +169,22 @@ void add_response_blocks(const Figure& figure, const std::vector<const FigureRes
 void add_largest_blocks(const Figure& figure, const FigureRun& decay,
                         const std::vector<const FigureResponse*>& sources, Table& table) {
   const double nu = decay.run.scene.mass_ratio;
-  std::vector<Largest> all;
+  std::vector<std::vector<const SweepResponse*>> along_the_same_forces;
   for (const FigureResponse* source : sources) {
     const SweepResponse& response = as<SweepResponse>(figure, *source);
-    const auto same = std::ranges::find_if(all, [&](const Largest& each) {
-      return each.axis.from == response.axis.from && each.axis.to == response.axis.to &&
-             each.axis.count == response.axis.count;
+    const auto same = std::ranges::find_if(along_the_same_forces, [&](const auto& each) {
+      return each.front()->axis.values() == response.axis.values();
     });
-    Largest& largest = same == all.end() ? all.emplace_back() : *same;
-    largest.axis = response.axis;
-    largest.add(response);
+    (same == along_the_same_forces.end() ? along_the_same_forces.emplace_back() : *same).push_back(&response);
   }
   Points rising, falling;
-  for (const Largest& each : all) {
-    for (std::int64_t i = 0; i < each.axis.count; ++i) {
-      const double force = each.axis.value(i) / nu;
-      if (each.up[std::size_t(i)] > 0) rising.add(force, each.up[std::size_t(i)]);
-      if (each.down[std::size_t(i)] > 0) falling.add(force, each.down[std::size_t(i)]);
+  for (const auto& responses : along_the_same_forces) {
+    const std::vector<double> forces = responses.front()->axis.values();
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      const double up = largest_amplitude(responses, &Sweep::up, i),
+                   down = largest_amplitude(responses, &Sweep::down, i);
+      if (up > 0) rising.add(forces[i] / nu, up);
+      if (down > 0) falling.add(forces[i] / nu, down);
     }
   }
 

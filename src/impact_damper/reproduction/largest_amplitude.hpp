@@ -1,0 +1,29 @@
+// Which amplitude stands for several steady motions under the same force: Figure D and its claims.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "impact_damper/steady/response_file.hpp"
+
+namespace impact_damper {
+
+using SweepWay = std::vector<SteadyState> Sweep::*;
+
+// The largest amplitude that the motions of one way have at the axis's value of index `i`, in sweeps along
+// the same values. NaN if one of them has none: a smaller one does not stand for it.
+inline double largest_amplitude(const std::vector<const SweepResponse*>& responses, SweepWay way,
+                                std::size_t i) {
+  double largest = 0;
+  for (const SweepResponse* response : responses) {
+    for (const Sweep& sweep : response->sweeps) {
+      const SteadyState& steady = (sweep.*way).at(i);
+      if (!steady.means) return std::numeric_limits<double>::quiet_NaN();
+      largest = std::max(largest, steady.means->amplitude);
+    }
+  }
+  return largest;
+}
+
+}  // namespace impact_damper
