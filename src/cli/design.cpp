@@ -85,9 +85,7 @@ Asked asked_of(Arguments& arguments) {
     if (const auto value = arguments.number(option, above(0))) *number = *value;
   }
   question.share = arguments.number("--share", within(0.5, 0.999)).value_or(question.share);
-  question.secondary_mass =
-      range_of(arguments, "--secondary-mass",
-               {least_mass_ratio * *question.scene.mass, most_mass_ratio * *question.scene.mass});
+  question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(*question.scene.mass));
   question.clearance =
       range_of(arguments, "--clearance", default_clearances(question.amplitude, *question.scene.restitution));
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
@@ -180,7 +178,9 @@ std::string text_of(const Asked& asked, const DesignAnswer& answer) {
            of_unit(longest_followed * question.time, units.time) + " with each clearance.\n";
   const std::string table = table_of(question, answer, units) + '\n';
   const std::string verdict =
-      !answer.met ? "No design was found. The heaviest secondary mass is soonest with this clearance.\n"
+      !answer.met
+          ? "No design was found. The heaviest secondary mass is soonest with this clearance, within " +
+                of_unit(answer.designs.front().time, units.time) + ".\n"
       : answer.designs.front().check.confirmed
           ? "The first is the lightest, and is confirmed by its neighbours.\n"
           : "The first is the lightest of the search, but is not confirmed: too few of its neighbours are in "
@@ -291,9 +291,10 @@ Command design_command() {
       "time, the "
       "next\ncolumn the one within which the share of its neighbours is down, then that of the slowest, and "
       "how many "
-      "are within\nthe time asked. Speed and force are the largest of all. Exit code 1: no design was found, "
-      "or its "
-      "check did not\nconfirm it.\n\n"
+      "are within\nthe time of the line. Speed and force are the largest of all. A line is missing where "
+      "there "
+      "is no such design. Exit\ncode 1: no design was found, or the check of the first did not confirm "
+      "it.\n\n"
       "Example:\n"
       "  impact-damper design --scene data/examples/mast.json --to 6 --within 10 \\\n"
       "    --tolerance restitution=0.1 --tolerance clearance=10%";

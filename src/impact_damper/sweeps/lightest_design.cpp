@@ -140,8 +140,8 @@ class Search {
   std::int64_t draws_, late_allowed_;
 };
 
-DesignCheck checked(const DesignQuestion& question, const Design& design, const Threads& threads) {
-  const Plan plan = check_plan(question, design);
+DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, const Threads& threads) {
+  const Plan plan = check_plan(question, found.design);
   Plan alone = plan;
   alone.samples.reset();
   DesignCheck check;
@@ -154,7 +154,7 @@ DesignCheck checked(const DesignQuestion& question, const Design& design, const 
   for (const KeptNumbers& each : neighbours) {
     const auto& [time, speed, force] = std::tie(each.numbers[0], each.numbers[1], each.numbers[2]);
     times.push_back(time.value_or(std::numeric_limits<double>::infinity()));
-    check.in_time += time && *time <= question.time ? 1 : 0;
+    check.in_time += time && *time <= found.time ? 1 : 0;
     check.largest_impact_speed = std::max(check.largest_impact_speed, speed.value_or(0));
     if (force) check.largest_wall_force = std::max(check.largest_wall_force.value_or(0), *force);
   }
@@ -202,6 +202,10 @@ std::vector<double> steps_between(DesignRange range, double ratio) {
 // (M15.12).
 std::optional<double> failing_clearance(double amplitude, double restitution) {
   return restitution < 1 ? std::optional(amplitude / fold_amplitude(restitution)) : std::nullopt;
+}
+
+DesignRange default_masses(double mass) {
+  return {rounded(least_mass_ratio * mass), rounded(most_mass_ratio * mass)};
 }
 
 DesignRange default_clearances(double amplitude, double restitution) {
@@ -356,7 +360,7 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
   for (FoundDesign& each : answer.designs) {
     tell("checking the design for " + rounded_text(each.time, 3) + " with " +
          std::to_string(question.neighbours) + " neighbours");
-    each.check = checked(question, each.design, threads);
+    each.check = checked(question, each, threads);
   }
   answer.draws = draws_of_search(question.share);
   answer.late_allowed = late_allowed_of(answer.draws, question.share);

@@ -39,6 +39,8 @@ struct DesignQuestion {
   std::int64_t seed = 1;                  // >= 0; of the search, seed + 1 of the check
 };
 inline constexpr double most_mass_ratio = 0.2, least_mass_ratio = 0.005;  // of the default range
+// Beside a primary mass, to three digits.
+DesignRange default_masses(double mass);
 // The clearance with which impacts fail at an amplitude (M15.12); absent for e = 1, with which they never do.
 std::optional<double> failing_clearance(double amplitude, double restitution);
 // From the amplitude to come below up to the clearance that (M12.3) recommends for it, at most 100 times as
@@ -69,7 +71,7 @@ inline constexpr double longest_followed = 10;
 
 struct DesignCheck {
   std::optional<double> nominal_time;  // of the design itself; absent: later than it was followed
-  std::int64_t in_time = 0;            // neighbours within the question's time
+  std::int64_t in_time = 0;            // neighbours within the time of the design
   Interval share;                      // where their share lies
   // Within which the question's share of the neighbours is down, and all of them; absent as above.
   std::optional<double> time_of_share, slowest;
