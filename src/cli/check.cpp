@@ -14,6 +14,7 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/steady/response_file.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
+#include "impact_damper/sweeps/sweep_table.hpp"
 #include "project_files.hpp"
 #include "scene_arguments.hpp"
 
@@ -35,16 +36,22 @@ void check_scene(const std::string& file) {
   warn_of_cautions(file, scene.scene, scene.scales);
 }
 
+// A table and the file beside it, all rows. CSV only, as `map` reads it.
+void check_sweep(const std::string& table) {
+  read_sweep_rows(table, read_sweep_description(table), [](std::span<const std::string>) {});
+}
+
 struct Reader {
   std::string_view kind;
   void (*read)(const std::string& file, const fs::path& scenes);
 };
-constexpr std::array<Reader, 7> readers{
+constexpr std::array<Reader, 8> readers{
     {{"scene", [](const std::string& file, const fs::path&) { check_scene(file); }},
      {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
      {"response",
       [](const std::string& file, const fs::path&) { require_consistent(read_response(file), file); }},
      {"plan", [](const std::string& file, const fs::path&) { read_plan(file); }},
+     {"sweep", [](const std::string& file, const fs::path&) { check_sweep(file); }},
      {"catalogue", [](const std::string& file, const fs::path&) { read_catalogue(file); }},
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
@@ -67,7 +74,8 @@ int check(Arguments& arguments) {
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
   if (!arguments.given("KIND"))
-    arguments.reject("KIND", "must be given: scene, run, response, plan, catalogue, claims or manifest");
+    arguments.reject("KIND",
+                     "must be given: scene, run, response, plan, sweep, catalogue, claims or manifest");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.reject("FILE", "must be given, one or several");
@@ -92,7 +100,7 @@ int check(Arguments& arguments) {
 
 Command check_command() {
   Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
-  command.options = {{"KIND", "scene|run|response|plan|catalogue|claims|manifest", "what they are"},
+  command.options = {{"KIND", "scene|run|response|plan|sweep|catalogue|claims|manifest", "what they are"},
                      {"FILE", "", "one or several"},
                      scenes_option()};
   command.takes_more = true;
@@ -100,7 +108,7 @@ Command check_command() {
       "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
       "itself, and a run with the scene that it is named after, if --scenes has one. data/schema/ holds JSON "
       "Schemas of all these\n"
-      "kinds.\n\n"
+      "kinds. A sweep is given by its table, CSV, beside which FILE.json must be.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json";

@@ -10,7 +10,6 @@
 #include "drawing.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "impact_damper/sweeps/hdf5_table.hpp"
 #include "impact_damper/sweeps/sweep_table.hpp"
 #include "interruption.hpp"
 
@@ -346,10 +345,6 @@ std::string summary_of(const Named& named, const Map& map) {
 int make_map(Arguments& arguments) {
   const auto file = arguments.file("TABLE"), output = arguments.file("--output");
   if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
-  if (file && is_hdf5(*file))
-    arguments.reject(
-        "TABLE",
-        "must be a table as CSV: sweep and merge write one to a name without .h5, got " + in_quotes(*file));
   if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
   if (output && !output->ends_with(".svg"))
     arguments.reject("--output", "must end in .svg, got " + in_quotes(*output));

@@ -237,6 +237,8 @@ altered = "\n".join(lines).replace(rows[3][column], rows[4][column]) + "\n"
 (folder / "altered.csv").write_text(altered, encoding="utf-8", newline="")
 shutil.copy(folder / "map.csv.json", folder / "altered.csv.json")
 rejected("altered.csv: is not the table that altered.csv.json describes: its length or SHA-256 is another", "altered.csv", *usual[1:], code=3)
+demand("altered.csv: is not the table" in call("check", "sweep", "altered.csv", code=3), "check says nothing of a table that was altered")
+demand("map.csv: valid" in call("check", "sweep", "map.csv"), "check does not allow a table as it was written")
 other = (folder / "map.csv.json").read_text(encoding="utf-8")
 (folder / "altered.csv").write_text("\n".join(lines) + "\n", encoding="utf-8", newline="")
 (folder / "altered.csv.json").write_text(other.replace('"seed": 3', '"seed": 4'), encoding="utf-8")

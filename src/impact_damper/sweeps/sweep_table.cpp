@@ -8,6 +8,7 @@
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/sweeps/hdf5_table.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
 
 namespace impact_damper {
@@ -61,6 +62,10 @@ void split(const std::string& line, std::vector<std::string>& cells) {
 }  // namespace
 
 SweepDescription read_sweep_description(const fs::path& table) {
+  if (is_hdf5(table))
+    throw InputError(table.string(),
+                     {{"", "must be a table as CSV: make it again, or merge its parts, with -o " +
+                               fs::path(table).replace_extension(".csv").string()}});
   const fs::path file = description_of(table);
   const std::string text = read_text(file, sweep_kind);
   JsonDocument document = JsonDocument::parse(file.string(), text);

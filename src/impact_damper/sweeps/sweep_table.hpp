@@ -23,7 +23,8 @@ struct SweepDescription {
   std::int64_t rows = 0, bytes = 0;
   std::string digest;  // SHA-256 of the table
 };
-// Throws IoError if TABLE.json cannot be read, InputError unless it is as sweep or merge wrote it.
+// Throws IoError if TABLE.json cannot be read, InputError unless it is as sweep or merge wrote it, for
+// a table as CSV.
 SweepDescription read_sweep_description(const std::filesystem::path& table);
 
 // Calls visit(cells) with the cells of each row, in their order. Before that throws IoError if the table
