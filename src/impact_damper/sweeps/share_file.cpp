@@ -149,11 +149,12 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
   const bool is_cut = there.eof();  // within its first line, or before it
   Whole whole;
   if (!is_cut) {
-    if (line != first)
-      reject(file,
-             "holds runs of another plan, part or program, with which these must not be mixed: the program "
-             "is " +
-                 head.program + "; remove it, or choose another --output");
+    if (line != first) {
+      const bool is_of_it = line.find(in_quotes(head.program)) != std::string::npos;
+      reject(file, "holds runs of another plan, part or program, with which these must not be mixed: " +
+                       (is_of_it ? "the program is the same" : "this program is " + head.program) +
+                       "; remove it, or choose another --output");
+    }
     whole = scan(there, head, first, [](const std::string&) {});
   }
   if (::ftruncate(::fileno(stream_.get()), static_cast<off_t>(whole.bytes)) != 0)
