@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/reproduction/catalogue.hpp"
@@ -41,17 +42,31 @@ void check_sweep(const std::string& table) {
   read_sweep_rows(table, read_sweep_description(table), [](std::span<const std::string>) {});
 }
 
+// Files that no command reads: whether they are as they were written, which their digest tells of every byte.
+void check_digest(const std::string& file, std::string_view kind) {
+  constexpr std::size_t most_bytes = 1 << 24;
+  const std::string text = read_text(file, FileKind{kind, most_bytes});
+  const std::string schema = "impact-damper/" + std::string(kind) + "/1";
+  JsonDocument document = JsonDocument::parse(file, text);
+  ObjectReader root = document.root();
+  if (root.require("schema")) root.word("schema", {schema});
+  root.keys();
+  finish_sealed(document, root, is_sealed(text));
+}
+
 struct Reader {
   std::string_view kind;
   void (*read)(const std::string& file, const fs::path& scenes);
 };
-constexpr std::array<Reader, 8> readers{
+constexpr std::array<Reader, 10> readers{
     {{"scene", [](const std::string& file, const fs::path&) { check_scene(file); }},
      {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
      {"response",
       [](const std::string& file, const fs::path&) { require_consistent(read_response(file), file); }},
      {"plan", [](const std::string& file, const fs::path&) { read_plan(file); }},
      {"sweep", [](const std::string& file, const fs::path&) { check_sweep(file); }},
+     {"design", [](const std::string& file, const fs::path&) { check_digest(file, "design"); }},
+     {"comparison", [](const std::string& file, const fs::path&) { check_digest(file, "comparison"); }},
      {"catalogue", [](const std::string& file, const fs::path&) { read_catalogue(file); }},
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
@@ -75,7 +90,8 @@ int check(Arguments& arguments) {
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
   if (!arguments.given("KIND"))
     arguments.reject("KIND",
-                     "must be given: scene, run, response, plan, sweep, catalogue, claims or manifest");
+                     "must be given: scene, run, response, plan, sweep, design, comparison, catalogue, "
+                     "claims or manifest");
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.reject("FILE", "must be given, one or several");
@@ -100,15 +116,17 @@ int check(Arguments& arguments) {
 
 Command check_command() {
   Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
-  command.options = {{"KIND", "scene|run|response|plan|sweep|catalogue|claims|manifest", "what they are"},
-                     {"FILE", "", "one or several"},
-                     scenes_option()};
+  command.options = {
+      {"KIND", "scene|run|response|plan|sweep|design|comparison|catalogue|claims|manifest", "what they are"},
+      {"FILE", "", "one or several"},
+      scenes_option()};
   command.takes_more = true;
   command.footer =
       "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
       "itself, and a run with the scene that it is named after, if --scenes has one. data/schema/ holds JSON "
       "Schemas of all these\n"
-      "kinds. A sweep is given by its table, CSV, beside which FILE.json must be.\n\n"
+      "kinds. A sweep is given by its table, CSV, beside which FILE.json must be; of designs "
+      "and\ncomparisons the digest is checked.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json";

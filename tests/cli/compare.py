@@ -61,6 +61,8 @@ Draft7Validator.check_schema(schema)
 check = Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
 for error in check.iter_errors(found):
     faults.append(f"schema: {list(error.absolute_path)}: {error.message[:200]}")
+done = subprocess.run([str(program), "check", "comparison", str(folder / "out.json")], capture_output=True, text=True)
+demand(done.returncode == 0, f"check: {done.stderr}")
 for each in found["fit"]["parameters"]:
     truth = TRUTH[each["name"]]
     demand(each["low"] <= truth <= each["high"], f"{each['name']}: {truth} is not in {each['low']} to {each['high']}")

@@ -68,6 +68,10 @@ validator = Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
 demand(not list(validator.iter_errors(answer)), f"not as the schema says: {[error.message for error in validator.iter_errors(answer)]}")
 head, _, seal = text.rpartition(', "sha256": "')
 demand(hashlib.sha256(head.encode()).hexdigest() == seal[:64], "the file's own digest")
+demand("1.json: valid" in call("check", "design", "1.json"), "check does not allow a file as it was written")
+(folder / "altered.json").write_text(text.replace('"met": true', '"met": false'))
+call("check", "design", "altered.json", code=3)
+call("check", "comparison", "1.json", code=3)
 
 # The plan of the check, made by `sweep`, has the numbers of the first design.
 best = answer["designs"][0]
