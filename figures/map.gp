@@ -38,7 +38,8 @@ set cblabel header("z") offset 1,0
 set tics front
 set style fill solid 1 noborder
 set style textbox opaque noborder fillcolor rgb "white" margins 0.4,0.4
-set key at screen 0.45,screen 0.047 center maxrows 2 samplen 2.4 Left reverse width 1 font ",12"
+entries = has("empty") + has("failed") + has("failure") + has("bounce-down") + has("best")
+set key at screen 0.48,screen 0.047 center maxrows (entries > 4 ? 3 : 2) samplen 2.4 Left reverse width -1 font ",12"
 line(block, clause) = !has(block) ? "" : sprintf(", table index '%s' using 1:2 with lines lc rgb 'white' lw 4 notitle, '' index '%s' using 1:2 with lines ", block, block).clause." title columnheader(2)"
 missing(block, mark, legend) = !has(block) ? "" : sprintf( \
   ", table index '%s' using 1:2:3:4:5:6 with boxxyerror fc rgb 'white' notitle, '' index '%s' using 1:2 with points pt %d ps 0.7 lc rgb grey title '%s'", \
