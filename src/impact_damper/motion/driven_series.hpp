@@ -35,6 +35,12 @@ class DrivenSeriesTable {
     columns_[1] = column(oscillator, frequency, {0, 1}, {0, 0});
     columns_[2] = column(oscillator, frequency, {0, 0}, {1, 0});
     columns_[3] = column(oscillator, frequency, {0, 0}, {0, frequency});
+    undamped_ = oscillator.a() == 0;
+    if (!undamped_) return;
+    for (std::size_t n = 0; n < driven_terms / 2; ++n) {
+      columns_[0][n] = columns_[0][n] + columns_[1][n];
+      columns_[2][n] = columns_[2][n] + columns_[3][n];
+    }
   }
 
   // How long the series and its first two derivatives hold.
@@ -52,6 +58,11 @@ class DrivenSeriesTable {
   const Steady& steady() const { return steady_; }
   DrivenTerms<Real> terms_of(const Real& x, const Real& v, const Real& in_phase, const Real& across) const {
     DrivenTerms<Real> c;
+    if (undamped_) {
+      const SimdPair<Real> motion{x, v}, force{in_phase, across};
+      for (std::size_t n = 0; n < c.size(); ++n) c[n] = columns_[0][n] * motion + columns_[2][n] * force;
+      return c;
+    }
     for (std::size_t n = 0; n < c.size(); ++n)
       c[n] =
           (columns_[0][n] * x + columns_[1][n] * v) + (columns_[2][n] * in_phase + columns_[3][n] * across);
@@ -86,13 +97,19 @@ class DrivenSeriesTable {
   bool fast_;
   Steady steady_;
   std::array<Real, 8> growth_;
+  // Without damping x and the force's sine have even powers only, v and its cosine odd ones: then the first
+  // and the third column have these of the second and the fourth beside them.
+  bool undamped_;
   std::array<DrivenTerms<Real>, 4> columns_;
 };
 
 template <class Real>
 class DrivenSeries {
  public:
-  explicit DrivenSeries(const DrivenTerms<Real>& terms) : c_(terms) {}
+  // From x and v, and the force f0 sin(phi) and f0 cos(phi).
+  DrivenSeries(const DrivenSeriesTable<Real>& table, const Real& x, const Real& v, const Real& in_phase,
+               const Real& across)
+      : c_(table.terms_of(x, v, in_phase, across)) {}
 
   // By how much x and v differ from x0 + v0 t and v0, and x''; the first multiplied by `times`.
   Departure<Real, driven_terms / 2> departure(const Real& times = Real(1)) const { return {c_, times}; }

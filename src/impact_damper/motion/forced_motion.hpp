@@ -32,7 +32,7 @@ class ForcedMotion {
         phase_(forcing.phase(begin)),
         x0_(x0),
         v0_(v0),
-        cached_(series_of(*this)) {}
+        cached_(*this) {}
 
   struct Change {
     Real x, v;    // displacement and velocity at t
@@ -255,7 +255,9 @@ class ForcedMotion {
     // The ends alone tell most often that x or x' does not fall.
     if (whole && order < 2) {
       const auto [end, end_slope] = x_or_v(order, sign, until);
-      auto [begin, slope] = x_or_v(order, sign, from);
+      auto [begin, slope] = from == cached_.zero.time && order == cached_.zero.order
+                                ? std::array<Real, 2>{Real(0), sign * cached_.zero.slope}
+                                : x_or_v(order, sign, from);
       if (begin < 0 && from > 0) begin = 0;
       if (end > 0 && (begin > 0 || slope > 0) &&
           stays_open(begin, slope, end, end_slope, Real(until - from), fourth))
@@ -269,8 +271,10 @@ class ForcedMotion {
     if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
     if (const auto root = root_of_series(g, begin, from)) {
       if (root->slope < 0 &&
-          stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth))
+          stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth)) {
+        cached_.zero = {order, root->time, sign * root->slope};
         return PredictedFall{root->time < until ? std::optional(root->time) : std::nullopt};
+      }
     }
     if (!whole) return {};
     const SeriesAt<Real> end = sum<Real>(g, until);
@@ -318,24 +322,24 @@ class ForcedMotion {
   SinCos<Real> phase_;  // of the forcing at the beginning
   Real x0_, v0_;
   // All but the series made when first asked for; without a force never.
-  struct Nothing {};
+  struct Nothing {
+    explicit Nothing(const ForcedMotion&) {}
+  };
   struct Cached {
+    explicit Cached(const ForcedMotion& motion)
+        : series(motion.oscillator_.series, motion.x0_, motion.v0_,
+                 motion.forcing_.amplitude * motion.phase_.sin,
+                 motion.forcing_.amplitude * motion.phase_.cos) {}
     DrivenSeries<Real> series;
     Real time{-1};  // what was asked for last
     SeriesAt<Real> then{};
     std::optional<SeriesAt<Real>> at_reach{};
+    struct Zero {
+      std::size_t order;
+      Real time{-1}, slope;
+    } zero{};  // of x or a derivative of it: what fell last
     std::optional<Beginning> beginning{};
   };
-  static auto series_of(const ForcedMotion& motion) {
-    if constexpr (forced) {
-      const Real& f0 = motion.forcing_.amplitude;
-      const auto& [sin, cos] = motion.phase_;
-      return Cached{
-          DrivenSeries<Real>(motion.oscillator_.series.terms_of(motion.x0_, motion.v0_, f0 * sin, f0 * cos))};
-    } else {
-      return Nothing{};
-    }
-  }
   [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;
 };
 
