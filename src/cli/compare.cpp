@@ -60,8 +60,8 @@ std::string summary_of(const Comparison& c) {
           (r.ends_in_noise ? ", below which noise is too strong" : "") + "\n";
   text += "  noise " + text_of(r.noise) + " " + unit + ", offset " + text_of(r.offset) + " " + unit +
           ", drift " + text_of(r.drift) + " " + unit + "; left out: " + std::to_string(r.clipped) +
-          " half cycles clipped, " + std::to_string(r.in_gaps) + " with samples missing, " +
-          std::to_string(r.unclear) + " unclear\n";
+          " half cycles clipped or flat, " + std::to_string(r.in_gaps) +
+          " at its ends or with samples missing, " + std::to_string(r.unclear) + " unclear\n";
   text +=
       "  the scene: " + text_of(c.lowest_frequency, 4) + " to " + text_of(c.highest_frequency, 4) + " Hz\n";
   if (!c.bins.empty()) {
@@ -71,7 +71,7 @@ std::string summary_of(const Comparison& c) {
       const LossBin& bin = c.bins[k];
       rows.push_back({text_of(bin.upper) + " to " + text_of(bin.lower),
                       text_of(bin.loss) + " +- " + text_of(100 * bin.error, 2) + " %",
-                      c.given.bins ? text_of((*c.given.bins)[k]) : "-"});
+                      k < c.given.bins.size() ? text_of(c.given.bins[k]) : "-"});
       if (c.fit) {
         rows.back().push_back(text_of(c.fit->loss[k]));
         rows.back().push_back(text_of(100 * c.fit->scatter[k], 2) + " %");

@@ -104,16 +104,3 @@ TEST_CASE("losses that no damper of the searched range has are told from those t
   }
   CHECK(fit_of(other).normal_deviate > most_normal_deviate);
 }
-
-TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
-  // Without impacts, the secondary mass at rest in the middle of a wide cavity, eta = 2 zeta / sqrt(1 -
-  // zeta^2).
-  Scene scene{.damping_ratio = 0.01, .x0 = 0.05, .y0 = 0.5, .until_time = 400, .until_amplitude = 0.004};
-  const HalfCycles rows = simulated_half_cycles(scene, Restitution{});
-  const std::vector<LossBin> bins{{0.04, 0.02}, {0.02, 0.01}, {0.01, 0.005}};
-  const auto losses = log_losses(rows, 1, bins);
-  REQUIRE(losses.has_value());
-  for (const double each : *losses)
-    CHECK(std::exp(each) == doctest::Approx(0.02 / std::sqrt(1 - 1e-4)).epsilon(1e-4));
-  CHECK_FALSE(log_losses(rows, 1, {{0.0035, 0.001}}).has_value());
-}

@@ -28,20 +28,17 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
                           const std::vector<LossBin>& bins, const ComparisonOptions& options) {
   SimulatedDecays result{.scene = scene, .decays = {}, .losses = {}, .bins = {}};
   result.decays.resize(std::size_t(options.releases));
+  const double until = std::ranges::min(reduction.amplitude);
   for_each_index(options.releases, options.fit.threads, [&](std::int64_t i) {
-    result.decays[std::size_t(i)] = simulated_half_cycles(
-        decay_scene(scene, reduction, reduction.amplitude.back(), options.fit.seed, i), engine);
+    result.decays[std::size_t(i)] =
+        simulated_half_cycles(decay_scene(scene, reduction, until, options.fit.seed, i), engine);
   });
   const Scales scales = scales_of(scene);
   const double time_unit = scales.time(), length = *scene.clearance;
   std::vector<std::vector<double>> losses(bins.size());
-  bool all_have = !bins.empty();
   for (HalfCycles& rows : result.decays) {
-    if (const auto of_bins = bins.empty() ? std::nullopt : log_losses(rows, length, bins)) {
-      for (std::size_t k = 0; k < bins.size(); ++k) losses[k].push_back((*of_bins)[k]);
-    } else {
-      all_have = false;
-    }
+    const std::vector<double> of_bins = log_losses(rows, length, bins);
+    for (std::size_t k = 0; k < of_bins.size(); ++k) losses[k].push_back(of_bins[k]);
     for (double& each : rows.peak_time) each *= time_unit;
     for (double& each : rows.amplitude) each *= length;
     // From where the record's first peak would be.
@@ -66,9 +63,9 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
                                       : loss_of(rows, half_turn<double>() * double(count - 1) /
                                                           (rows.peak_time.back() - rows.peak_time[0])));
   }
-  if (all_have) {
-    result.bins.emplace();
-    for (auto& each : losses) result.bins->push_back(exponential(spread_of(std::move(each)).median));
+  for (auto& each : losses) {
+    if (each.size() < result.decays.size()) break;
+    result.bins.push_back(exponential(spread_of(std::move(each)).median));
   }
   return result;
 }
@@ -76,6 +73,15 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
 std::string text_of(double value) { return rounded_text(value, 3); }
 std::string with_unit(double value, std::string_view unit) {
   return text_of(value) + (unit.empty() ? "" : " " + std::string(unit));
+}
+
+void remark_on_what_is_left_out(Comparison& c) {
+  const std::int64_t left_out = c.reduction.clipped + c.reduction.unclear;
+  if (left_out <= std::int64_t(c.reduction.time.size())) return;
+  c.remarks.push_back(
+      "More half cycles are left out, " + std::to_string(left_out) +
+      ", than are used: what disturbs the record, such as impacts that ring in an accelerometer, must be "
+      "filtered out of it first.");
 }
 
 void remark_on_frequency(Comparison& c) {
@@ -174,12 +180,14 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
     c.fitted = decays_of(best, engine, c.reduction, c.bins, options);
     remark_on_fit(c);
   }
+  remark_on_what_is_left_out(c);
   remark_on_range(c);
   if (record.quantity == MeasuredQuantity::acceleration)
     c.remarks.push_back(
         "Displacements are accelerations divided by the square of the local angular frequency; they may err "
         "by " +
-        text_of(100 * dimensionless(scene).mass_ratio) + " % (the mass ratio).");
+        text_of(100 * dimensionless(scene).mass_ratio) + " % (the mass ratio)" +
+        (c.fit ? ", for which the intervals do not allow." : "."));
   return c;
 }
 
@@ -202,7 +210,7 @@ std::string comparison_text(const Comparison& c) {
   for (std::size_t k = 0; k < c.bins.size(); ++k) {
     const LossBin& bin = c.bins[k];
     std::optional<double> given, fitted, scatter;
-    if (c.given.bins) given = (*c.given.bins)[k];
+    if (k < c.given.bins.size()) given = c.given.bins[k];
     if (c.fit) fitted = c.fit->loss[k], scatter = c.fit->scatter[k];
     out.open_object(Layout::one_line);
     out.fields("upper", bin.upper, "lower", bin.lower, "half_cycles", bin.half_cycles, "eta", bin.loss,

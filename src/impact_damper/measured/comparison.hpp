@@ -18,8 +18,7 @@ struct SimulatedDecays {
   SceneInUnits scene;
   std::vector<HalfCycles> decays;  // times in s, from the record's first peak on, amplitudes in mm
   std::vector<LossFactor> losses;  // (M12.1) of each, amplitudes in mm, per radian of its own frequency
-  // The median of each bin's loss factor; absent if some decay has none.
-  std::optional<std::vector<double>> bins;
+  std::vector<double> bins;  // median loss factor of each bin, of those before the first that a decay lacks
 };
 
 struct Comparison {

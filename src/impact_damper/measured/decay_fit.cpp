@@ -118,7 +118,7 @@ class Search {
       if (is_near(place)) places.push_back(std::move(place));
     }
     const auto count = std::int64_t(places.size());
-    std::vector<std::optional<Vector>> losses(places.size());
+    Matrix losses(places.size());
     std::atomic<std::int64_t> done{0};
     for_each_index(count, options_.threads, [&](std::int64_t i) {
       const Vector& place = places[std::size_t(i)];
@@ -136,9 +136,9 @@ class Search {
     runs += count;
     Points points;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      if (!losses[i]) continue;
+      if (losses[i].size() < bins_.size()) continue;
       points.place.push_back(std::move(places[i]));
-      points.loss.push_back(std::move(*losses[i]));
+      points.loss.push_back(std::move(losses[i]));
     }
     return points;
   }
@@ -489,28 +489,35 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
   }
   // The loss by the rule that simulated decays have, too.
   const std::vector<RowRange> ranges = rows_of_bins(logarithms, bins);
-  const double omega = 2 * half_turn<double>() * reduction.frequency;
   std::vector<LossBin> valid;
+  RowRange all;  // of the valid bins
+  double largest = 0;
   for (std::size_t k = 0; k < bins.size(); ++k) {
     if (ranges[k].end < ranges[k].first + least_rows) continue;
     const Line line = line_of(ranges[k]);
-    bins[k].loss = -2 * line.slope / omega;
-    bins[k].error = log_loss_error(reduction, line, ranges[k]);
-    bins[k].half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
-    if (bins[k].loss > 0 && bins[k].error < worst_error) valid.push_back(bins[k]);
+    LossBin bin = bins[k];
+    bin.loss = -2 * line.slope;  // divided by omega below
+    bin.error = log_loss_error(reduction, line, ranges[k]);
+    bin.half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
+    if (!(bin.loss > 0 && bin.error < worst_error)) continue;
+    // Behind impact failure single impacts decide: no scatter about a mean tells that.
+    constexpr double failed = 0.5;  // of the largest loss factor
+    if (bin.loss < failed * largest) break;
+    largest = std::max(largest, bin.loss);
+    if (valid.empty()) all.first = ranges[k].first;
+    all.end = ranges[k].end;
+    valid.push_back(bin);
   }
-  // Behind impact failure single impacts decide: no scatter about a mean tells that.
-  constexpr double failed = 0.5;  // of the largest loss factor
-  double largest = 0;
-  std::size_t kept = 0;
-  for (; kept < valid.size() && valid[kept].loss >= failed * largest; ++kept)
-    largest = std::max(largest, valid[kept].loss);
-  valid.resize(kept);
+  if (valid.empty()) return valid;
+  // The frequency rises where impacts fail: that of the bins, not of the record (M16.5).
+  const double omega = half_turn<double>() *
+                       double(reduction.half_cycle[all.end - 1] - reduction.half_cycle[all.first]) /
+                       (reduction.time[all.end - 1] - reduction.time[all.first]);
+  for (LossBin& each : valid) each.loss /= omega;
   return valid;
 }
 
-std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length,
-                                              const std::vector<LossBin>& bins) {
+std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins) {
   constexpr std::size_t least_rows = 4;
   const Vector logarithms = logarithms_of(rows.amplitude, length);
   Vector losses;
@@ -519,15 +526,17 @@ std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double len
     if (end < first + least_rows) {  // damped so strongly: the rows about the bin tell it too
       first = first > 0 ? first - 1 : first;
       end = first + least_rows;
-      if (end > logarithms.size()) return std::nullopt;
+      if (end > logarithms.size()) break;
     }
     const Line line = line_through(std::span(rows.peak_time).subspan(first, end - first),
                                    std::span(logarithms).subspan(first, end - first));
-    if (!(line.slope < 0)) return std::nullopt;
+    if (!(line.slope < 0)) break;
     losses.push_back(-2 * line.slope);
   }
-  const std::size_t first = ranges.front().first, last = std::min(ranges.back().end, logarithms.size()) - 1;
-  if (!(last > first)) return std::nullopt;
+  if (losses.empty()) return losses;
+  const std::size_t first = ranges.front().first,
+                    last = std::min(ranges[losses.size() - 1].end, logarithms.size()) - 1;
+  if (!(last > first)) return {};
   const double omega =
       half_turn<double>() * double(last - first) / (rows.peak_time[last] - rows.peak_time[first]);
   for (double& each : losses) each = logarithm(each / omega);

@@ -28,10 +28,9 @@ struct LossBin {
 // failed. Empty if the record holds too little.
 std::vector<LossBin> loss_bins(const Reduction& reduction);
 
-// The same of a simulated decay, the logarithms of eta: none if a bin has too few rows or no loss. Amplitudes
-// in units of `length` mm.
-std::optional<std::vector<double>> log_losses(const HalfCycles& rows, double length,
-                                              const std::vector<LossBin>& bins);
+// The same of a simulated decay, the logarithms of eta, of the bins before the first one that has too few
+// rows or no loss. Amplitudes in units of `length` mm.
+std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins);
 
 enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
 std::string_view name_of(FitParameter parameter);  // as in a scene file

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -27,6 +28,7 @@ constexpr std::array<Unit, 6> value_units{{{"x_mm", 1},
                                            {"a_mm_per_s2", 1, MeasuredQuantity::acceleration},
                                            {"a_g", standard_gravity, MeasuredQuantity::acceleration}}};
 
+constexpr double largest = 1e15;  // s, mm or mm/s^2: as in scenes
 constexpr std::size_t most_problems = 10;
 
 class Problems {
@@ -153,8 +155,16 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
       problems.add(line, std::string(value_unit->heading) +
                              " must be a number, or empty where a sample is missing, got " +
                              in_quotes(cells[1]));
+    for (const bool is_time : {true, false}) {
+      const auto& number = is_time ? time : value;
+      const Unit& unit = is_time ? *time_unit : *value_unit;
+      if (number && !(std::abs(*number * unit.factor) <= largest))
+        problems.add(line, std::string(unit.heading) + " must be at most " +
+                               number_text(largest / unit.factor) + " either way, got " +
+                               in_quotes(cells[is_time ? 0 : 1]));
+    }
     if (!time) continue;
-    if (last && !(*time > *last))
+    if (last && !(*time * time_unit->factor > *last * time_unit->factor))
       problems.add(line, std::string(time_unit->heading) + " must be larger than in the row before, " +
                              number_text(*last) + ", got " + number_text(*time));
     last = time;

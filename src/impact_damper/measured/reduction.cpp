@@ -413,9 +413,9 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   }
   if (good.size() < options.least_half_cycles)
     reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
-           std::to_string(good.size()) + " (" + std::to_string(result.clipped) + " clipped, " +
-           std::to_string(result.in_gaps) + " with samples missing, " + std::to_string(result.unclear) +
-           " unclear)");
+           std::to_string(good.size()) + " (" + std::to_string(result.clipped) + " clipped or flat, " +
+           std::to_string(result.in_gaps) + " at its ends or with samples missing, " +
+           std::to_string(result.unclear) + " unclear)");
   const double turns = double(good.back()->number - good.front()->number);
   result.frequency = turns / 2 / (good.back()->fit.time - good.front()->fit.time);
   // Half cycles within gaps in which no extreme was found.
