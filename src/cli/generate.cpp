@@ -94,6 +94,7 @@ std::string roff(const std::string& text) {
   for (const char c : text) {
     if (begins && (c == '.' || c == '\'')) out += "\\&";
     out += c == '\\' ? std::string("\\e") : c == '-' ? std::string("\\-") : std::string(1, c);
+    if (c == '|') out += "\\:";  // where a list of words may be broken
     begins = c == '\n';
   }
   return out;

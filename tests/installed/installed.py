@@ -157,7 +157,7 @@ def shells_complete_every_option():
         demand(longs <= fish_completes(f"impact-damper {command} --"), f"fish: {command}")
     demand(bash_completes("run", "--engine", "") == engines, "bash: --engine")
     demand(bash_completes("run", "--engine", "=", "re") == {"restitution"}, "bash: --engine=re")
-    demand(bash_completes("check", "s") == {"scene"}, "bash: check")
+    demand(bash_completes("check", "s") == {"scene", "sweep"}, "bash: check")
     demand(bash_completes("run", "--scene", "") == set(), "bash: file names are left to readline")
     demand(fish_completes("impact-damper run --engine ") == engines, fish_completes("impact-damper run --engine "))
     screen = zsh_completes("impact-damper run --engine ")

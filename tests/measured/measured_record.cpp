@@ -70,7 +70,7 @@ TEST_CASE("what is wrong is told with its line") {
   CHECK(problem_of("t_s,x_mm\n0,1\n0,1\n") ==
         "r.csv: line 3: t_s must be larger than in the row before, 0, got 0");
   CHECK(problem_of("t_ms,x_m\n0,1\n1,-1e13\n") ==
-        "r.csv: line 3: x_m must be at most 1e+12 either way, got \"-1e13\"");
+        "r.csv: line 3: x_m must be at most 1e+12 either way, got -1e+13");
   CHECK(problem_of("t_ms,x_m\n0,1\n1e19,1\n").find("line 3: t_ms must be at most") != std::string::npos);
   // Equal once they are seconds.
   CHECK(problem_of("t_ms,x_mm\n1.9800000000000002,1\n1.9800000000000004,1\n")

@@ -141,6 +141,12 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
   const Unit* const value_unit = unit_of(value_units, cells[1], problems);
   problems.throw_if_any();
   record.quantity = value_unit->quantity;
+  const auto limit = [&problems](std::size_t where, const Unit& unit, const std::optional<double>& number) {
+    if (number && !(std::abs(*number * unit.factor) <= largest))
+      problems.add(where, std::string(unit.heading) + " must be at most " +
+                              number_text(largest / unit.factor) + " either way, got " +
+                              number_text(*number));
+  };
   std::optional<double> last;
   while (rows.next(cells, line)) {
     if (cells.size() == 1 && cells[0].empty()) continue;  // an empty line
@@ -155,14 +161,8 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
       problems.add(line, std::string(value_unit->heading) +
                              " must be a number, or empty where a sample is missing, got " +
                              in_quotes(cells[1]));
-    for (const bool is_time : {true, false}) {
-      const auto& number = is_time ? time : value;
-      const Unit& unit = is_time ? *time_unit : *value_unit;
-      if (number && !(std::abs(*number * unit.factor) <= largest))
-        problems.add(line, std::string(unit.heading) + " must be at most " +
-                               number_text(largest / unit.factor) + " either way, got " +
-                               in_quotes(cells[is_time ? 0 : 1]));
-    }
+    limit(line, *time_unit, time);
+    limit(line, *value_unit, value);
     if (!time) continue;
     if (last && !(*time * time_unit->factor > *last * time_unit->factor))
       problems.add(line, std::string(time_unit->heading) + " must be larger than in the row before, " +
