@@ -396,6 +396,24 @@ Narrowed narrowed(const Profiles& profiles, const Box& box, double limit) {
   return next;
 }
 
+Box half_about(const Vector& place, const Box& box) {
+  Box half = box;
+  for (std::size_t j = 0; j < place.size(); ++j) {
+    const double quarter = (box.high[j] - box.low[j]) / 4;
+    half.low[j] = std::max(box.low[j], place[j] - quarter);
+    half.high[j] = std::min(box.high[j], place[j] + quarter);
+  }
+  return half;
+}
+
+// Whether the scatter is less in most bins, by more than chance.
+bool is_less(const Vector& scatter, const Vector& than) {
+  constexpr double clearly = 0.8;  // of the scatter of some hundred runs a few percent are chance
+  std::size_t less = 0;
+  for (std::size_t k = 0; k < scatter.size(); ++k) less += scatter[k] < clearly * than[k] ? 1 : 0;
+  return 2 * less > scatter.size();
+}
+
 std::size_t nodes_for(std::size_t axes) {
   constexpr std::array<std::size_t, 5> nodes{1, 401, 121, 41, 21};
   return nodes[axes];
@@ -629,7 +647,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   Search search(scene, engine, reduction, bins, options, tell);
   Box box{Vector(count, 0.0), Vector(count, 1.0)};
   // While the range is wide no polynomial follows the loss factor: the nearest runs tell where to look.
-  constexpr int coarse_stages = 3, most_stages = 6;
+  constexpr int coarse_stages = 3, most_stages = 9;
   constexpr double kept = 0.1, generous = 16;  // of chi square: four standard deviations
   for (int stage = 0; stage < coarse_stages; ++stage) {
     const Points points = search.points(box, options.runs, [](const Vector&) { return true; });
@@ -646,8 +664,19 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     profiles = profiles_of(emulator, box, nodes, is_near);
     return !profiles.best.empty();
   };
+  // Scatter that the polynomial's own misfit adds to keeps the box from narrowing: if it is less about the
+  // best place, the search goes on there.
+  struct Stopped {
+    Box box;
+    Emulator before;
+    std::optional<double> limit;
+    Vector scatter;
+  };
+  std::optional<Stopped> stopped;
   for (int stage = 0; stage < most_stages; ++stage) {
     if (!refine(options.runs)) return none;
+    if (stopped && !is_less(emulator.scatter, stopped->scatter)) break;
+    stopped.reset();
     const Narrowed next = narrowed(profiles, box, profiles.least + generous);
     double part = 0;
     for (std::size_t j = 0; j < count; ++j)
@@ -657,8 +686,12 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     limit = profiles.least + generous;
     if (next.was_too_small) limit.reset();
     constexpr double little = 0.2;
-    if (!next.was_too_small && part < little) break;
+    if (!next.was_too_small && part < little) {
+      stopped = Stopped{box, before, limit, emulator.scatter};
+      box = half_about(profiles.best, box);
+    }
   }
+  if (stopped) box = stopped->box, before = stopped->before, limit = stopped->limit;
   if (!refine(2 * options.runs)) return none;
 
   DecayFit fit;
