@@ -369,6 +369,22 @@ TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and n
   CHECK(run.energy->initial.wall == doctest::Approx(0.5e4 * 0.01 * 0.01).epsilon(1e-13));
 }
 
+TEST_CASE("a peak that the wall's push brings about is as high as the motion there") {
+  // From rest in a very stiff wall: the push moves x on by nu q / (1 + nu), and x turns where it has just
+  // died away, 1e-8 later, before the slow mode by itself would.
+  Scene scene{.mass_ratio = 7.8656316044176389e-08,
+              .restitution = 0,
+              .damping_ratio = 0.47923816447962952,
+              .wall_stiffness = 376298906401.30078,
+              .x0 = 3.9183899940046203,
+              .y0 = 1.0321419220423089,
+              .until_time = 5};
+  const Run run = simulate(scene, Exact{}, everything({{0, 4e-8, 4001}}));
+  const double highest = *std::max_element(run.history->x.begin(), run.history->x.end());
+  CHECK(highest == doctest::Approx(scene.x0 + scene.mass_ratio * (scene.y0 - 1)).epsilon(1e-14));
+  CHECK(run.half_cycles->amplitude[0] == doctest::Approx(highest).epsilon(4e-16));
+}
+
 TEST_CASE("the same scene in extended precision agrees before the chaotic amplitudes") {
   struct Case {
     double x0, until;

@@ -124,14 +124,16 @@ class Contact {
     return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
                               from, until, search, resolution());
   }
-  // |x| at a turn.
+  // |x| at a turn: that of the slow mode if the ringing is below rounding, and turns x so close to where the
+  // slow mode turns that its height there is the same.
   Real height(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
     if (!c.forcing && parts_ && c.slow.rings()) {
       const auto& [slow, fast] = *parts_;
       const Real height = c.slow.height(slow.x, slow.v, t);
-      if (c.fast.bound_after(fast.x, fast.v, t) < height * (std::numeric_limits<Real>::epsilon() / 8))
-        return height;
+      const Real nothing = height * (std::numeric_limits<Real>::epsilon() / 8);
+      const Real ringing = c.fast.bound_after(fast.x, fast.v, t), late = ringing * c.fast.rate() / c.slow.b();
+      if (ringing < nothing && late * (c.slow.a() + late / height) < nothing) return height;
     }
     return absolute(at(t).x);
   }
