@@ -5,6 +5,7 @@
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
@@ -88,10 +89,7 @@ int check(Arguments& arguments) {
   std::vector<std::string_view> kinds;
   kinds.reserve(readers.size());
   for (const Reader& reader : readers) kinds.push_back(reader.kind);
-  if (!arguments.given("KIND"))
-    arguments.reject("KIND",
-                     "must be given: scene, run, response, plan, sweep, design, comparison, catalogue, "
-                     "claims or manifest");
+  if (!arguments.given("KIND")) arguments.reject("KIND", "must be given: " + listed(kinds, "or"));
   const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.reject("FILE", "must be given, one or several");
@@ -123,10 +121,9 @@ Command check_command() {
   command.takes_more = true;
   command.footer =
       "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
-      "itself, and a run with the scene that it is named after, if --scenes has one. data/schema/ holds JSON "
-      "Schemas of all these\n"
-      "kinds. A sweep is given by its table, CSV, beside which FILE.json must be; of designs "
-      "and\ncomparisons the digest is checked.\n\n"
+      "itself, and a run with the scene that it is named after, if --scenes has one. A sweep is given by\n"
+      "its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:\n"
+      "that they are as they were written is told by their digest. data/schema/ holds JSON Schemas.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json";
