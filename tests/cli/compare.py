@@ -39,7 +39,7 @@ def record(name, *words):
     return name
 
 
-def compare(name, *words):
+def compare(name, *words, scene=scene):
     done = subprocess.run([str(program), "compare", "--measured", str(name), "--scene", str(scene), "-o", "out.json", *words],
                           cwd=folder, capture_output=True, text=True)
     demand(done.returncode == 0, f"{name} {words}: exit code {done.returncode}: {done.stderr}")
@@ -87,6 +87,14 @@ demand(re.search(r"oscillates at 2\.5 Hz, 0\.8\d* times what the scene does: its
 for one, other in zip(found["bins"], slower["bins"]):
     # Samples at the very ends of windows may fall out of them by rounding: that is less than the noise.
     demand(abs(one["eta"] / other["eta"] - 1) < one["relative_error"], "a wrong sampling rate changes the loss factor")
+
+# With the damping known clearance and restitution are told far better: the page's advice, and its numbers.
+(folder / "known.json").write_text(json.dumps(json.loads(scene.read_text(encoding="utf-8")) | {"damping_ratio": TRUTH["damping_ratio"]}))
+text, known = compare(example, "--engine", "restitution", "--fit", "restitution,clearance", scene="known.json")
+interval = re.search(r"^clearance .* (\S+ to \S+ mm)  ", text, re.M)[1]
+demand(interval in (source / "docs/compare.md").read_text(encoding="utf-8"), f"docs/compare.md has another clearance than {interval}")
+widths = [each["high"] - each["low"] for each in (found["fit"]["parameters"][2], known["fit"]["parameters"][1])]
+demand(widths[1] < widths[0] / 5, f"widths of the clearance's interval: {widths}")
 
 # Large amplitudes alone: restitution and clearance are not told apart.
 text, begin = compare(record("begin.csv", "seconds=8", "gap_from=99"), "--engine", "restitution")
