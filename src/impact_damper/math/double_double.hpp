@@ -2,6 +2,8 @@
 // same bits everywhere (Dekker 1971, doi:10.1007/BF01397083). For tables that are made once in a scene.
 #pragma once
 
+#include <cmath>
+
 namespace impact_damper {
 
 class DoubleDouble {
@@ -18,10 +20,17 @@ class DoubleDouble {
     const DoubleDouble product = exact_product(a.high_, b.high_);
     return quick_sum(product.high_, product.low_ + (a.high_ * b.low_ + a.low_ * b.high_));
   }
-  friend DoubleDouble operator/(const DoubleDouble& a, double b) {
-    const double quotient = a.high_ / b;
-    const DoubleDouble rest = a + DoubleDouble(-quotient) * DoubleDouble(b);
-    return quick_sum(quotient, (rest.high_ + rest.low_) / b);
+  friend DoubleDouble operator-(const DoubleDouble& a) { return {-a.high_, -a.low_}; }
+  friend DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
+  friend DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
+    const double quotient = a.high_ / b.high_;
+    const DoubleDouble rest = a + DoubleDouble(-quotient) * b;
+    return quick_sum(quotient, (rest.high_ + rest.low_) / b.high_);
+  }
+  friend DoubleDouble sqrt(const DoubleDouble& a) {  // a > 0
+    const double root = std::sqrt(a.high_);
+    const DoubleDouble rest = a - exact_product(root, root);
+    return quick_sum(root, (rest.high_ + rest.low_) / (2 * root));
   }
 
  private:

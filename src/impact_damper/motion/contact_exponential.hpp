@@ -93,7 +93,7 @@ class ContactExponential {
       for (int n = 1; n <= 30; ++n) {
         term = derivative<Number>(term);
         for (std::size_t i = 0; i < 6; ++i) {
-          term[i] = term[i] * Number(shortest_) / double(n);
+          term[i] = term[i] * Number(shortest_) / Number(double(n));
           sum[j][i] = sum[j][i] + term[i];
         }
       }

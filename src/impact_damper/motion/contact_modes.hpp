@@ -44,9 +44,9 @@ class ContactModes {
     drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
     drive_slow.v = driven_slow_centre.v - share_ * drive_slow.w;
     std::array<Touch<Real>, 3> touch;
-    touch[0].fast_centre = split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
-    touch[1].fast_centre = split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
-    touch[2].fast_centre = split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
     piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
     slow_piece = slow.propagate(piece);
     fast_piece = fast.propagate(piece);
@@ -55,15 +55,11 @@ class ContactModes {
       coupled.emplace(
           ContactEquations<Real>{nu, zeta, stiffness, damping, {forcing.amplitude, forcing.frequency}});
     } else if (!(forcing && forcing.frequency > fast.rate())) {
+      const Real rate = slow.rate() > fast.rate() ? slow.rate() : fast.rate();
       short_contact = ShortContactMap<Real, columns>(
-          slow, fast, share_, zeta, touch,
-          [&](std::size_t column, const ContactState<Real>& state, auto& x, auto& q, auto& f) {
-            f = forces(column, fast.half_period());
-            derive(state, x, q, f);
-          },
-          [&](std::size_t column, const Real& t, const Real& latest) {
-            return driven_contact(column, t, latest, driven_slow_centre, driven_centre);
-          });
+          slow, fast, share_, zeta,
+          {nu, zeta, system.k, zeta_m, forcing ? forcing.frequency : Real(0), share_, rate}, touch,
+          [&](std::size_t column, const Real& latest) { return driven_bounds(column, latest); });
     }
   }
 
@@ -128,32 +124,12 @@ class ContactModes {
   static SinCos<Real> phase_of(std::size_t column) {
     return column == 3 ? SinCos<Real>{Real(1), Real(0)} : SinCos<Real>{Real(0), Real(1)};
   }
-  // Derivatives of that force at t.
-  Derivatives<Real, ShortContactMap<Real, columns>::terms> forces(std::size_t column, const Real& t) const {
-    if (column < 3) return {};
-    const SinCos<Real> by = sin_cos(forcing.frequency * t);
-    return unit_force(column).template derivatives<ShortContactMap<Real, columns>::terms>(
-        column == 3 ? SinCos<Real>{by.cos, -by.sin} : by);
-  }
-  // A column of the map for such a force: what the slow and the fast mode do from rest until t (M5.10), and
-  // bounds on it until `latest`. slow_centre, fast_centre: by how much one unit of the force changes X and X'
-  // of either part per unit of time, as drive_slow and drive_fast tell for x, v, q and w.
-  DrivenContact<Real> driven_contact(std::size_t column, const Real& t, const Real& latest,
-                                     const Centre<Real>& slow_centre, const Centre<Real>& fast_centre) const {
+  // Bounds until `latest` on what the slow and the fast mode do from rest under such a force.
+  DrivenBounds<Real> driven_bounds(std::size_t column, const Real& latest) const {
     const Force force = unit_force(column);
     const SinCos<Real> phase = phase_of(column);
-    const Real f = forces(column, t)[0];
-    DrivenContact<Real> all{};
-    const auto add = [&](const Oscillator<Real>& mode, const ContactState<Real>& drive,
-                         const Centre<Real>& centre) {
-      const DrivenResponse<Real> by = mode.respond(force, phase, t, mode.propagate(t));
-      // by.d is what the force makes of the mode where it drives the velocity; these two are what it makes
-      // where it drives the displacement, and the derivative of that.
-      const Real on_displacement = by.d1 + 2 * mode.a() * by.d, on_velocity = f - mode.b() * by.d;
-      all.after.q += drive.w * by.d + drive.q * on_displacement;
-      all.after.w += drive.w * by.d1 + drive.q * on_velocity;
-      all.after.change.x += centre.v * by.d + centre.x * on_displacement;
-      all.after.change.v += centre.v * by.d1 + centre.x * on_velocity;
+    DrivenBounds<Real> all{};
+    const auto add = [&](const Oscillator<Real>& mode, const ContactState<Real>& drive) {
       // Such a part p begins with p = 0, p' = displacement f, and obeys
       // p'' + 2 a p' + b p = (velocity + 2 a displacement) f + displacement f'.
       const auto instant = [&](const Real& displacement, const Real& velocity) {
@@ -172,8 +148,8 @@ class ContactModes {
       all.second_of_x += x.bound(2, latest);
       all.third_of_x += x.bound(3, latest);
     };
-    add(slow, drive_slow, slow_centre);
-    add(fast, drive_fast, fast_centre);
+    add(slow, drive_slow);
+    add(fast, drive_fast);
     return all;
   }
 

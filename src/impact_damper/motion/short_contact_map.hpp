@@ -6,7 +6,7 @@
 // The series in s, the time since T, has as many terms as it takes for the first one left out to be below
 // rounding. A rounding error that is the same in every impact adds up. So the table has, in place of x, the
 // change of the centre of both masses, which is small, and in place of w its difference from -E times the w
-// at the touch, E = exp(-a T).
+// at the touch, E = exp(-a T). It is made in short_contact_table.hpp.
 //
 // That q has not been back at zero before is proved by Lemma L2 for exp(a t) q, a the decay rate of the fast
 // mode (docs/mathematics.md, 7.6).
@@ -19,6 +19,7 @@
 #include "impact_damper/events/exclusion.hpp"
 #include "impact_damper/math/power_series.hpp"
 #include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/motion/short_contact_table.hpp"
 
 namespace impact_damper {
 
@@ -38,26 +39,16 @@ struct Centre {
   Real x, v;
 };
 
-// One unit of x, of v or of w at the touch: its slow and its fast mode, and the fast mode's centre.
+// One unit of x, of v or of w at the touch: its slow and its fast mode.
 template <class Real>
 struct Touch {
   ContactState<Real> slow, fast;
-  Centre<Real> fast_centre;
 };
 
-// What one column of the map gives a time T after the touch: q, q' and the change of the centre; in the
-// column of w, q' without its largest part, -E.
+// Bounds until `latest` on what a force of amplitude 1, from rest, adds to x'', to x''' and to
+// (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
 template <class Real>
-struct AfterContact {
-  Real q, w;
-  Centre<Real> change;
-};
-
-// The same of a force of amplitude 1, from rest, and bounds until `latest` on what it adds to x'', to x'''
-// and to (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
-template <class Real>
-struct DrivenContact {
-  AfterContact<Real> after;
+struct DrivenBounds {
   Real fourth_of_q, second_of_x, third_of_x;
 };
 
@@ -71,14 +62,14 @@ class ShortContactMap {
 
   ShortContactMap() = default;
   // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: the parts of one unit of x, of v and of w at
-  // the touch. derive(column, state, x, q, f) computes the derivatives of x, q and the force from the state
-  // (x, v, q, w) a time T after the touch. driven(column, T, latest) gives the last two columns.
-  template <class Derive, class Driven>
+  // the touch. driven(column, latest) bounds the last two columns.
+  template <class Driven>
   ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
-                  const Real& zeta, const std::array<Touch<Real>, 3>& start, Derive&& derive, Driven&& driven)
+                  const Real& zeta, const ShortContactTable<Real, columns == 5>& table,
+                  const std::array<Touch<Real>, 3>& start, Driven&& driven)
       : share_(share), zeta_(zeta) {
     half_period_ = fast.half_period();
-    if (!(half_period_ < std::numeric_limits<Real>::infinity())) return;
+    if (!table.reaches(half_period_)) return;
     decay_factor_ = exponential(Real(-fast.a() * half_period_));
     few_ = reach_of(few, fast);
     more_ = reach_of(more, fast);
@@ -87,15 +78,17 @@ class ShortContactMap {
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
     latest_ = half_period_ + most_.s;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Real x = i == 0 ? 1 : 0, v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
-      tabulate_series(i, {x, v}, after_contact(i, {x, v}, slow, start[i]), derive);
-      tabulate_bounds(i, slow, fast, start[i]);
+    for (std::size_t i = 0; i < columns; ++i) {
+      const auto [q, centre] = table.template column<terms>(i, half_period_, decay_factor_);
+      for (std::size_t n = 0; n < most; ++n) {
+        q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
+        centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
+      }
     }
+    for (std::size_t i = 0; i < 3; ++i) tabulate_bounds(i, slow, fast, start[i]);
     if constexpr (columns == 5) {
       for (std::size_t i = 3; i < 5; ++i) {
-        const DrivenContact<Real> by_force = driven(i, half_period_, latest_);
-        tabulate_series(i, {Real(0), Real(0)}, by_force.after, derive);
+        const DrivenBounds<Real> by_force = driven(i, latest_);
         fast_fourth_[i] = 0;
         slow_fourth_[i] = growth_ * by_force.fourth_of_q;
         second_of_x_[i] = by_force.second_of_x;
@@ -148,41 +141,6 @@ class ShortContactMap {
     return all;
   }
 
-  AfterContact<Real> after_contact(std::size_t i, const Centre<Real>& centre, const Oscillator<Real>& slow,
-                                   const Touch<Real>& touch) const {
-    const Propagator<Real> p = slow.propagate(half_period_);
-    const auto& [s, f, fast_centre] = touch;
-    const Real b = slow.b(), gone = 1 + decay_factor_;
-    const Centre<Real> slow_centre{centre.x - fast_centre.x, centre.v - fast_centre.v};
-    const Real slow_q = p.c * s.q + p.s * s.w, slow_w = p.v * s.w - b * p.s * s.q;
-    return {slow_q - decay_factor_ * f.q,
-            i == 2 ? Real(slow_w + decay_factor_ * s.w) : Real(slow_w - decay_factor_ * f.w),
-            {p.c1 * slow_centre.x + p.s * slow_centre.v - gone * fast_centre.x,
-             (p.c1 - 2 * slow.a() * p.s) * slow_centre.v - b * p.s * slow_centre.x - gone * fast_centre.v}};
-  }
-  // The series of q and of the centre's change about the time T, for one column. `begin`: the centre at the
-  // touch.
-  template <class Derive>
-  void tabulate_series(std::size_t i, const Centre<Real>& begin, const AfterContact<Real>& after,
-                       Derive&& derive) {
-    const Centre<Real>& change = after.change;
-    const Real w = i == 2 ? Real(after.w - decay_factor_) : after.w;
-    std::array<Real, terms> x, q, f, centre;
-    derive(i, {begin.x + change.x - share_ * after.q, begin.v + change.v - share_ * w, after.q, w}, x, q, f);
-    q[1] = after.w;
-    Real factorial{1};
-    for (std::size_t n = 0; n < terms; ++n) {
-      if (n > 1) factorial *= Real(double(n));
-      q[n] /= factorial;
-      centre[n] = n == 0   ? change.x
-                  : n == 1 ? change.v
-                           : Real((1 - share_) * (f[n - 2] - 2 * zeta_ * x[n - 1] - x[n - 2]) / factorial);
-    }
-    for (std::size_t n = 0; n < most; ++n) {
-      q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
-      centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
-    }
-  }
   // What a column contributes to the bounds on the fourth derivative of exp(a t) q, on x'' and on x'''.
   void tabulate_bounds(std::size_t i, const Oscillator<Real>& slow, const Oscillator<Real>& fast,
                        const Touch<Real>& touch) {
