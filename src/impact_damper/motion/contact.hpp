@@ -186,8 +186,8 @@ class Contact {
     }
   }
   // An oscillator's response to the force; p: its propagator until t.
-  DrivenResponse<Real> response(const Oscillator<Real>& oscillator, const Real& t,
-                                const Propagator<Real>& p) const {
+  [[gnu::always_inline]] DrivenResponse<Real> response(const Oscillator<Real>& oscillator, const Real& t,
+                                                       const Propagator<Real>& p) const {
     if constexpr (!forced) {
       return {};
     } else {
