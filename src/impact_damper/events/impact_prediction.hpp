@@ -100,21 +100,15 @@ struct Prediction {
   bool exact;
   Shifted<Real> gained;
 };
+// Halley's method alone, from `start` on. `near`: from the first step on by all terms of the series.
 template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
-[[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
-                                                              const Departure& departure, const Real& most,
-                                                              Enough&& enough, GoOn&& go_on) {
-  SearchCounter<Real>::prediction();
-  const FirstGuess<Real> guess = guess_by_parabola(u, most);
-  const bool across = guess.across;
-  Real t = guess.time;
+[[gnu::always_inline]] inline Prediction<Real> predict_from(const FirstGuess<Real>& start, bool near,
+                                                            const Derivatives<Real, N>& u,
+                                                            const Departure& departure, const Real& most,
+                                                            Enough&& enough, GoOn&& go_on) {
+  const bool across = start.across;
+  Real t = start.time;
   const Real gap = (across ? Real(1) : Real(0)) - u[0];
-  // First by few terms, as a parabola may be far off.
-  const SeriesAt<Real> rough = departure.template at<3>(t);
-  const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
-  const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
-  if (absolute(nearer) < t / 2) t += nearer;
-  bool near = Departure::all <= 5;
   for (int i = 0;; ++i) {
     // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more than five pairs
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
@@ -136,6 +130,21 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
     if (!go_on(t, size)) break;
   }
   return {t < most ? t : most, across, false, {}};
+}
+template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
+[[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
+                                                              const Departure& departure, const Real& most,
+                                                              Enough&& enough, GoOn&& go_on) {
+  SearchCounter<Real>::prediction();
+  FirstGuess<Real> start = guess_by_parabola(u, most);
+  Real& t = start.time;
+  const Real gap = (start.across ? Real(1) : Real(0)) - u[0];
+  // First by few terms, as a parabola may be far off.
+  const SeriesAt<Real> rough = departure.template at<3>(t);
+  const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
+  const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
+  if (absolute(nearer) < t / 2) t += nearer;
+  return predict_from(start, Departure::all <= 5, u, departure, most, enough, go_on);
 }
 
 }  // namespace impact_damper

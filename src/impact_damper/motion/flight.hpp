@@ -223,25 +223,39 @@ class Flight {
     const DrivenSeries<Real>& x = primary_.series();
     const Derivatives<Real, 4> u{u_, away_ * start_.w, -away_ * x.derivative(2), -away_ * x.derivative(3)};
     const Real fourth = primary_.bound(4, reach);
-    const auto none = [&] {
-      const Place end = from_wall(reach);
-      return stays_between_walls(u, Real(0), {end.u, end.u1}, reach, fourth, 2);
-    };
-    const bool late = !(guess_by_parabola(u, reach).time < reach);
-    if (late && none()) return PredictedWall{};
-    const Prediction<Real> predicted = predict_impact(
-        u, x.departure(-away_), reach, [](const Real&, const Real&) { return true; },
-        [](const Real&, const Real&) { return true; });
-    const Real& h = predicted.time;
-    if (predicted.exact && h > 0 && h < reach) {
+    // Whether Lemma L2 proves the wall that is predicted to be the first.
+    const auto first = [&](const Prediction<Real>& predicted) -> std::optional<PredictedWall> {
+      const Real& h = predicted.time;
       const auto& [by_u, by_u1] = predicted.gained;
       const Real level = predicted.across ? 1 : 0, u1 = u[1] + by_u1;
       if (!stays_between_walls(u, Real(0), {level, u1}, h, fourth, 2)) return {};
       SearchCounter<Real>::found(FoundBy::series);
       return PredictedWall{
           met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u), start_.v - away_ * by_u1, u1)};
+    };
+    const auto usable = [&](const Prediction<Real>& predicted) {
+      return predicted.exact && predicted.time > 0 && predicted.time < reach;
+    };
+    const auto enough = [](const Real&, const Real&) { return true; };
+    const auto go_on = enough;
+    const Departure<Real, driven_terms / 2> departure = x.departure(-away_);
+    std::optional<Place> end;
+    const auto none = [&] {
+      if (!end) end = from_wall(reach);
+      return stays_between_walls(u, Real(0), {end->u, end->u1}, reach, fourth, 2);
+    };
+    const bool late = !(guess_by_parabola(u, reach).time < reach);
+    if (late && none()) return PredictedWall{};
+    if (!late || (end->u >= 0 && end->u <= 1)) {
+      const Prediction<Real> predicted = predict_impact(u, departure, reach, enough, go_on);
+      if (usable(predicted)) return first(predicted);
+      if (!late && none()) return PredictedWall{};
     }
-    if (!late && none()) return PredictedWall{};
+    // Where the series ends beyond a wall, back from there.
+    if (end->u >= 0 && end->u <= 1) return {};
+    const Prediction<Real> predicted =
+        predict_from(FirstGuess<Real>{reach, end->u > 1}, true, u, departure, reach, enough, go_on);
+    if (usable(predicted)) return first(predicted);
     return {};
   }
   WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1) const {
