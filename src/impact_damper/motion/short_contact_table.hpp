@@ -2,60 +2,63 @@
 // Taylor coefficients of q and of the centre a time T after the touch.
 //
 // A rounding error of the table is the same in every impact of a run. So the table is made from the equations
-// themselves (M7.9) by Taylor series, in Extended<Real>, and rounded once. T, E = exp(-a T) and the share
-// theta of q in the centre are given, rounded; the table is right for these rounded numbers.
+// themselves (M7.9) by Taylor series. Of the column of w, which is nearly all of an impact, q and q' are
+// Extended<Real> and rounded once; all else is smaller by T^2 or more, and so are its roundings. T,
+// E = exp(-a T) and the share theta of q in the centre are given, rounded; the table is right for these
+// rounded numbers.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "impact_damper/math/double_double.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 
-// The equations (M7.9) of the centre x + theta q and of q, time in units of h.
-template <class Number>
+// The equations (M7.9) of the centre x + theta q and of q, time in units of h. Overlap: of q and q'.
+template <class Real, class Overlap>
 struct CentreAndOverlap {
-  Number share, rest_of_share;  // theta, 1 - theta
-  Number both, remainder;       // 1 + nu, nu - theta (1 + nu)
-  Number stiffness, damping;    // K h^2, c h
-  Number spring, friction;      // h^2, 2 zeta h
-  Number frequency;             // omega_f h
+  Overlap stiffness, damping;  // (1 + nu) K h^2, (1 + nu) c h
+  Real share, rest_of_share;   // theta, 1 - theta
+  Real remainder;              // nu/(1 + nu) - theta
+  Real spring, friction;       // h^2, 2 zeta h
+  Real frequency;              // omega_f h
 
   // Coefficients of one power of time: of the centre, its velocity, q and q', and of the force, f' = omega_f
   // g.
   struct Term {
-    Number x{0}, v{0}, q{0}, w{0}, f{0}, g{0};
+    Real x{0}, v{0};
+    Overlap q{0}, w{0};
+    Real f{0}, g{0};
 
     friend Term operator+(const Term& a, const Term& b) {
       return {a.x + b.x, a.v + b.v, a.q + b.q, a.w + b.w, a.f + b.f, a.g + b.g};
     }
   };
 
-  template <class Rounded>
-  CentreAndOverlap<Rounded> rounded() const {
-    return {Rounded(share),     Rounded(rest_of_share), Rounded(both),
-            Rounded(remainder), Rounded(stiffness),     Rounded(damping),
-            Rounded(spring),    Rounded(friction),      Rounded(frequency)};
+  CentreAndOverlap<Real, Real> rounded() const {
+    return {Real(stiffness), Real(damping), share, rest_of_share, remainder, spring, friction, frequency};
   }
-  CentreAndOverlap in_units_of(const Number& h) const {
-    const Number square = h * h;
-    return {share,       rest_of_share,   both,         remainder,    stiffness * square,
-            damping * h, spring * square, friction * h, frequency * h};
+  CentreAndOverlap in_units_of(const Overlap& h) const {
+    const Real by(h), square = by * by;
+    return {stiffness * (h * h), damping * h,     share,         rest_of_share,
+            remainder,           spring * square, friction * by, frequency * by};
   }
   // The term of the next power, which is 1/part.
   template <bool forced>
-  Term next(const Term& t, const Number& part) const {
-    const Number wall = damping * t.w + stiffness * t.q;
-    Number push = friction * (share * t.w - t.v) + spring * (share * t.q - t.x);
+  Term next(const Term& t, const Overlap& part) const {
+    const Overlap wall = damping * t.w + stiffness * t.q;
+    Real push = friction * (share * Real(t.w) - t.v) + spring * (share * Real(t.q) - t.x);
     if constexpr (forced) push = push + spring * t.f;
-    Term to{part * t.v, part * (remainder * wall + rest_of_share * push), part * t.w,
-            part * (-push - both * wall)};
+    const Real by(part);
+    Term to{by * t.v, by * (remainder * Real(wall) + rest_of_share * push), part * t.w,
+            part * -(wall + Overlap(push))};
     if constexpr (forced) {
-      to.f = part * (frequency * t.g);
-      to.g = part * -(frequency * t.f);
+      to.f = by * (frequency * t.g);
+      to.g = by * -(frequency * t.f);
     }
     return to;
   }
@@ -74,16 +77,15 @@ class ShortContactTable {
   ShortContactTable(const Real& nu, const Real& zeta, const Real& k, const Real& zeta_m,
                     const Real& frequency, const Real& share, const Real& rate)
       : rate_(rate) {
-    const Number one(1), stiffness = Number(k) / Number(nu), both = one + Number(nu), theta(share);
-    motion_ = {theta,
-               one - theta,
-               both,
-               Number(nu) - theta * both,
-               stiffness,
-               Number(Real(2 * zeta_m)) * square_root(stiffness),
-               one,
-               Number(Real(2 * zeta)),
-               Number(frequency)};
+    const Number one(1), stiffness = Number(k) / Number(nu), both = one + Number(nu);
+    motion_ = {both * stiffness,
+               both * (Number(Real(2 * zeta_m)) * square_root(stiffness)),
+               share,
+               Real(one - Number(share)),
+               Real(Number(nu) / both - Number(share)),
+               Real(1),
+               2 * zeta,
+               frequency};
   }
 
   // Whether T takes few steps.
@@ -96,62 +98,62 @@ class ShortContactTable {
   template <std::size_t terms>
   ShortContactColumn<Real, terms> column(std::size_t i, const Real& half_period,
                                          const Real& decay_factor) const {
+    if (i == 2) return column<Number, terms, false>(motion_, i, half_period, decay_factor);
     if constexpr (forced)
-      if (i >= 3) return column<terms, true>(i, half_period, decay_factor);
-    return column<terms, false>(i, half_period, decay_factor);
+      if (i >= 3) return column<Real, terms, true>(motion_.rounded(), i, half_period, decay_factor);
+    return column<Real, terms, false>(motion_.rounded(), i, half_period, decay_factor);
   }
 
  private:
   using Number = typename Extended<Real>::Type;
-  using Motion = CentreAndOverlap<Number>;
-  using Rounded = CentreAndOverlap<Real>;
-  using Term = typename Motion::Term;
   static constexpr double longest_step = 4, most_steps = 16;  // the first in units of 1/rate
 
-  template <std::size_t terms, bool by_force>
-  ShortContactColumn<Real, terms> column(std::size_t i, const Real& half_period,
-                                         const Real& decay_factor) const {
+  template <class Overlap, std::size_t terms, bool by_force>
+  ShortContactColumn<Real, terms> column(const CentreAndOverlap<Real, Overlap>& motion, std::size_t i,
+                                         const Real& half_period, const Real& decay_factor) const {
+    using Term = typename CentreAndOverlap<Real, Overlap>::Term;
     double steps = 1;
     while (half_period * rate_ > Real(steps * longest_step)) ++steps;
-    const Number h = Number(half_period) / Number(steps), zero(0), one(1);
-    const Real rate = rate_ * half_period / Real(steps);
-    const Motion motion = motion_.in_units_of(h);
-    const Rounded rounded = motion.template rounded<Real>();
+    const Overlap h = Overlap(half_period) / Overlap(steps), zero(0);
+    const Real rate = rate_ * half_period / Real(steps), by(h);
+    const CentreAndOverlap<Real, Overlap> in_steps = motion.in_units_of(h);
+    const CentreAndOverlap<Real, Real> rounded = in_steps.rounded();
     // One unit of w gives the centre the velocity theta.
-    const Term begin{i == 0 ? one : zero,
-                     i == 1   ? h
-                     : i == 2 ? h * motion_.share
-                              : zero,
+    const Term begin{Real(i == 0 ? 1 : 0),
+                     i == 1   ? by
+                     : i == 2 ? Real(by * motion.share)
+                              : Real(0),
                      zero,
                      i == 2 ? h : zero,
-                     i == 3 ? one : zero,
-                     i == 4 ? one : zero};
-    Term change{zero, zero, zero, zero, zero, zero};
+                     Real(i == 3 ? 1 : 0),
+                     Real(i == 4 ? 1 : 0)};
+    Term change{};
     for (int step = 0; step < steps; ++step) {
       Term term = begin + change;
       std::size_t n = 1;
       Real size{1};
-      change = change + sum<by_force>(motion, term, n, size, rate, small);
+      if constexpr (!std::is_same_v<Overlap, Real>)
+        change = change + sum<by_force>(in_steps, term, n, size, rate, small);
       auto rest = round(term);
-      change = change + widen(sum<by_force>(rounded, rest, n, size, rate, negligible));
+      change = change + widen<Term>(sum<by_force>(rounded, rest, n, size, rate, negligible));
     }
-    const Term at{begin.x + change.x,       (begin.v + change.v) / h, change.q,
-                  (begin.w + change.w) / h, begin.f + change.f,       begin.g + change.g};
+    const Term at{begin.x + change.x,       (begin.v + change.v) / by, change.q,
+                  (begin.w + change.w) / h, begin.f + change.f,        begin.g + change.g};
     ShortContactColumn<Real, terms> all;
     all.q[0] = Real(at.q);
-    all.q[1] = Real(i == 2 ? at.w + Number(decay_factor) : at.w);
-    all.centre[0] = Real(change.x);
-    all.centre[1] = Real(change.v / h);
-    constexpr std::size_t extended_terms = 6;
+    all.q[1] = Real(i == 2 ? at.w + Overlap(decay_factor) : at.w);
+    all.centre[0] = change.x;
+    all.centre[1] = change.v / by;
+    constexpr std::size_t extended_terms = std::is_same_v<Overlap, Real> ? 2 : 6;
     static_assert(extended_terms < terms);
     Term term = at;
     for (std::size_t n = 1; n < extended_terms; ++n) {
-      term = motion_.template next<by_force>(term, parts<Number>()[n]);
+      term = motion.template next<by_force>(term, parts<Overlap>()[n]);
       if (n == 1) continue;
       all.q[n] = Real(term.q);
-      all.centre[n] = Real(term.x);
+      all.centre[n] = term.x;
     }
-    const Rounded late = motion_.template rounded<Real>();
+    const CentreAndOverlap<Real, Real> late = motion.rounded();
     auto late_term = round(term);
     for (std::size_t n = extended_terms; n < terms; ++n) {
       late_term = late.template next<by_force>(late_term, parts<Real>()[n]);
@@ -161,23 +163,25 @@ class ShortContactTable {
     return all;
   }
   // The sum of the terms of the power n and higher, while (rate h)^n / n!, their size, is above `until`.
-  template <bool by_force, class N>
-  static typename CentreAndOverlap<N>::Term sum(const CentreAndOverlap<N>& motion,
-                                                typename CentreAndOverlap<N>::Term& term, std::size_t& n,
-                                                Real& size, const Real& rate, const Real& until) {
-    typename CentreAndOverlap<N>::Term all{};
-    for (; size > until && n < parts<N>().size(); ++n) {
-      term = motion.template next<by_force>(term, parts<N>()[n]);
+  template <bool by_force, class Overlap>
+  static auto sum(const CentreAndOverlap<Real, Overlap>& motion,
+                  typename CentreAndOverlap<Real, Overlap>::Term& term, std::size_t& n, Real& size,
+                  const Real& rate, const Real& until) {
+    typename CentreAndOverlap<Real, Overlap>::Term all{};
+    for (; size > until && n < parts<Overlap>().size(); ++n) {
+      term = motion.template next<by_force>(term, parts<Overlap>()[n]);
       all = all + term;
-      size *= rate / Real(double(n));
+      size *= rate * parts<Real>()[n];
     }
     return all;
   }
-  static typename Rounded::Term round(const Term& t) {
-    return {Real(t.x), Real(t.v), Real(t.q), Real(t.w), Real(t.f), Real(t.g)};
+  template <class Term>
+  static typename CentreAndOverlap<Real, Real>::Term round(const Term& t) {
+    return {t.x, t.v, Real(t.q), Real(t.w), t.f, t.g};
   }
-  static Term widen(const typename Rounded::Term& t) {
-    return {Number(t.x), Number(t.v), Number(t.q), Number(t.w), Number(t.f), Number(t.g)};
+  template <class Term>
+  static Term widen(const typename CentreAndOverlap<Real, Real>::Term& t) {
+    return {t.x, t.v, decltype(Term::q)(t.q), decltype(Term::w)(t.w), t.f, t.g};
   }
   template <class N>
   static const std::array<N, 64>& parts() {
@@ -192,7 +196,7 @@ class ShortContactTable {
   Real rate_;
   // Terms below the first are summed in Real, those below the second left out.
   Real small = Real(1) / Real(1 << 10), negligible = std::numeric_limits<Real>::epsilon() / Real(1 << 10);
-  Motion motion_;
+  CentreAndOverlap<Real, Number> motion_;
 };
 
 }  // namespace impact_damper
