@@ -280,7 +280,9 @@ std::array<Quad, 10> totals_of(const Answer& answer) {
 Prediction predict(Question question, const Accuracy& accuracy) {
   const double rounding = accuracy.rounding, probe = accuracy.noise, predictable = accuracy.predictable;
 
-  const std::array<Noise, 3> noises{{{1e-24, 1}, {1e-24, 2}, {probe, 3}}};
+  // The second is the first with the opposite sign: where rounding alone decides, as of a wall that is just
+  // touched, one of both decides otherwise.
+  const std::array<Noise, 4> noises{{{1e-24, 1}, {-1e-24, 1}, {1e-24, 2}, {probe, 3}}};
   Prediction result;
   const double end = *question.scene.until_time;
   question.samples = sample_times(end);
@@ -313,7 +315,7 @@ Prediction predict(Question question, const Accuracy& accuracy) {
     question.noise = noise.size;
     question.seed = noise.seed;
     const Answer other = answer_to(question);
-    const Quad per_rounding = Quad(rounding) / noise.size;
+    const Quad size = magnitude(noise.size), per_rounding = Quad(rounding) / size;
     const std::size_t samples = std::min(plain.samples.size(), other.samples.size());
     if (other.stop == Stop::effort) end_at(other.end_time, "the oracle's effort");
     for (std::size_t i = 0; i < samples; ++i) {
@@ -339,7 +341,7 @@ Prediction predict(Question question, const Accuracy& accuracy) {
                                            : magnitude(a.x - b.x) + magnitude(a.y - b.y));
           if (Quad(question.samples[i]) > t) break;
         }
-        return 1000 * (most + Quad(noise.size) * (t + 1));
+        return 1000 * (most + size * (t + 1));
       };
     };
     const Negligible below{grown(x_), grown(w_), grown(x_)};
