@@ -222,6 +222,8 @@ class Flight {
     const Real reach = primary_.reach();
     const DrivenSeries<Real>& x = primary_.series();
     const Derivatives<Real, 4> u{u_, away_ * start_.w, -away_ * x.derivative(2), -away_ * x.derivative(3)};
+    // On a wall and into it: an impact now. A speed of one denormal number is lost in Lemma L2's products.
+    if (u[0] == 0 && u[1] < 0) return {};
     const Real fourth = primary_.bound(4, reach);
     // Whether Lemma L2 proves the wall that is predicted to be the first.
     const auto first = [&](const Prediction<Real>& predicted) -> std::optional<PredictedWall> {
