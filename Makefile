@@ -189,7 +189,7 @@ coverage: sanitize  ## the same; then which lines of the library they ran: at le
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
-same-bits:  ## the same bytes from eight more builds, in strange surroundings (minutes)
+same-bits:  ## the same bytes from five more builds, in strange surroundings (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
