@@ -14,6 +14,7 @@
 
 #include "impact_damper/engine.hpp"
 #include "impact_damper/events/search.hpp"
+#include "impact_damper/math/double_double.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/scene.hpp"
 
@@ -64,6 +65,34 @@ class Counted {
   double value_ = 0;
 };
 
+// What tables are made in that have to be better than double: once per scene, not counted.
+class ExtendedCounted {
+ public:
+  ExtendedCounted() = default;
+  explicit ExtendedCounted(double value) : value_(value) {}
+  explicit ExtendedCounted(const Counted& value) : value_(double(value)) {}
+  explicit operator Counted() const { return double(value_); }
+
+  ExtendedCounted operator-() const { return -value_; }
+  friend ExtendedCounted operator+(const ExtendedCounted& a, const ExtendedCounted& b) {
+    return a.value_ + b.value_;
+  }
+  friend ExtendedCounted operator-(const ExtendedCounted& a, const ExtendedCounted& b) {
+    return a.value_ - b.value_;
+  }
+  friend ExtendedCounted operator*(const ExtendedCounted& a, const ExtendedCounted& b) {
+    return a.value_ * b.value_;
+  }
+  friend ExtendedCounted operator/(const ExtendedCounted& a, const ExtendedCounted& b) {
+    return a.value_ / b.value_;
+  }
+  friend ExtendedCounted sqrt(const ExtendedCounted& a) { return sqrt(a.value_); }
+
+ private:
+  ExtendedCounted(const DoubleDouble& value) : value_(value) {}
+  DoubleDouble value_;
+};
+
 inline SinCos<Counted> sin_cos(const Counted& angle) {
   ++counts.sincos;
   const auto [sin, cos] = impact_damper::sin_cos(double(angle));
@@ -102,6 +131,11 @@ CountedRun count(const Scene& scene, const Restitution& options);
 
 template <>
 struct std::numeric_limits<impact_damper::bench::Counted> : std::numeric_limits<double> {};
+
+template <>
+struct impact_damper::Extended<impact_damper::bench::Counted> {
+  using Type = bench::ExtendedCounted;
+};
 
 template <>
 struct impact_damper::SearchCounter<impact_damper::bench::Counted> {
