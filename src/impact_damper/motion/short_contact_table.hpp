@@ -133,9 +133,9 @@ class ShortContactTable {
       std::size_t n = 1;
       Real size{1};
       if constexpr (!std::is_same_v<Overlap, Real>)
-        change = change + sum<by_force>(in_steps, term, n, size, rate, small);
+        change = change + sum<by_force>(in_steps, term, n, size, rate, small_);
       auto rest = round(term);
-      change = change + widen<Term>(sum<by_force>(rounded, rest, n, size, rate, negligible));
+      change = change + widen<Term>(sum<by_force>(rounded, rest, n, size, rate, negligible_));
     }
     const Term at{begin.x + change.x,       (begin.v + change.v) / by, change.q,
                   (begin.w + change.w) / h, begin.f + change.f,        begin.g + change.g};
@@ -195,7 +195,7 @@ class ShortContactTable {
 
   Real rate_;
   // Terms below the first are summed in Real, those below the second left out.
-  Real small = Real(1) / Real(1 << 10), negligible = std::numeric_limits<Real>::epsilon() / Real(1 << 10);
+  Real small_ = Real(1) / Real(1 << 10), negligible_ = std::numeric_limits<Real>::epsilon() / Real(1 << 10);
   CentreAndOverlap<Real, Number> motion_;
 };
 
