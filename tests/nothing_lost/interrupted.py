@@ -42,8 +42,7 @@ def interrupt(name, command, folder, files, code, wait, check):
     check(not scratch.unfinished_in(folder), f"{name}: unfinished files remain: {scratch.unfinished_in(folder)}")
     if process.returncode in (0, 1):  # done before
         return False
-    # But for its progress, and complaints about counts of lines that another interrupt has cut off.
-    lines = [line for line in error.splitlines() if not line.startswith(("verify: ", "profiling: "))]
+    lines = scratch.complaints(error)
     check(process.returncode == 128 + code, f"{name}: exit code {process.returncode}: {error}")
     check(len(lines) == 1 and lines[0].startswith("impact-damper: interrupted: "), f"{name}: says {error!r}")
     whole = {file for file in files if (folder / file).exists() and before[file] is None}

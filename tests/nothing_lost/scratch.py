@@ -143,6 +143,12 @@ def reap():
     time.sleep(0.001)
 
 
+def complaints(error: str):
+    """The lines on stderr but for progress, which a program tells where it takes longer than two seconds, and for
+    complaints about counts of lines that another interrupt has cut off."""
+    return [line for line in error.splitlines() if not line.startswith(("report: ", "verify: ", "profiling: "))]
+
+
 class Check:
     """Counts what was looked at, and ends the program with what was wrong."""
 

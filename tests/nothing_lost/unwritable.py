@@ -51,7 +51,8 @@ class Programs:
                               **({"stderr": subprocess.PIPE} if "stdout" in more else {}), **more)
         told = " ".join(command[:1] + command[1:])
         self.check(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
-        self.check(done.stderr.count("\n") == 1 and all(word in done.stderr for word in words),
+        lines = scratch.complaints(done.stderr)
+        self.check(len(lines) == 1 and all(word in lines[0] for word in words),
                    f"{told}: says {done.stderr!r} instead of {words}")
 
 
@@ -125,7 +126,8 @@ def small_disk(p, here):
             else:
                 failures += 1
                 p.check(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
-                p.check(done.stderr.count("\n") == 1 and "cannot be written" in done.stderr and FULL in done.stderr,
+                lines = scratch.complaints(done.stderr)
+                p.check(len(lines) == 1 and "cannot be written" in lines[0] and FULL in lines[0],
                         f"{told}: says {done.stderr!r}")
                 for file in new:
                     p.check(left[file] in (old[file], new[file]), f"{told}: {file} is partial")
