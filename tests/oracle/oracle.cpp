@@ -255,13 +255,17 @@ class Integrator {
     return changes_of_sign(divided_by_power(p, first));
   }
 
+  // A relative speed that is rounding of what else moves.
+  Quad rounded_speed() const {
+    return (magnitude(state_.v) + magnitude(state_.x) + magnitude(p_.f0)) * zero_within_rounding;
+  }
+
   // At the wall: to which side will the motion go that begins now as a flight? +1 off the wall, -1 into it, 0
   // if it stays.
   int side_of_departure() {
     if (state_.w != 0) {
       // A speed that is rounding of what goes on: decided by what follows.
-      const Quad speeds = magnitude(state_.v) + magnitude(state_.x) + magnitude(p_.f0);
-      if (magnitude(state_.w) > speeds * zero_within_rounding) return sign_of(state_.w);
+      if (magnitude(state_.w) > rounded_speed()) return sign_of(state_.w);
       state_.w = 0;
     }
     const Regime before = regime_;
@@ -298,6 +302,10 @@ class Integrator {
       if (state_.w < 0) return strike();
       regime_ = Regime::stuck;
       state_.w = 0;
+      // A chattering is complete, too, once its bounces are slower than rounding.
+      if (answer_.impacts.size() > chatter_begin_ &&
+          p_.e * magnitude(answer_.impacts.back().relative_velocity) <= 2 * rounded_speed())
+        close_chattering();
       open_contact();
       return;
     }
@@ -374,10 +382,14 @@ class Integrator {
     }
     state_.w = 0;
     state_.q = 0;
+    close_chattering();
+    decide_at_wall();
+  }
+
+  void close_chattering() {
     for (std::size_t i = chatter_begin_; i < answer_.impacts.size(); ++i)
       answer_.impacts[i].accumulation = state_.t;
     chatter_begin_ = answer_.impacts.size();
-    decide_at_wall();
   }
 
   void perturb() {

@@ -181,6 +181,21 @@ TEST_CASE("a complete chattering ends where the sum of its bounces does") {
   CHECK(double(magnitude(residual(answer))) < 1e-28);
 }
 
+TEST_CASE("a chattering whose bounces become slower than rounding is complete") {
+  // What presses is zero at first: bounces of 1e-25 and less fill 1e-13.
+  Question question;
+  question.walls = Walls::rigid;
+  Scene& scene = question.scene;
+  scene.mass_ratio = 0.1, scene.restitution = 0.3702936918017719, scene.damping_ratio = 0.999999999999;
+  scene.x0 = -2, scene.v0 = 1, scene.y0 = 1, scene.force_amplitude = -0.5;
+  scene.force_frequency = 33.166247903554, scene.until_time = 0.01;
+  const Answer answer = answer_to(question);
+  REQUIRE(answer.contacts.size() == 1);
+  REQUIRE(answer.impacts.size() > 5);
+  for (const Impact& each : answer.impacts)
+    CHECK((each.accumulation && *each.accumulation == answer.contacts[0].begin));
+}
+
 TEST_CASE("the energy balance closes in decays with impacts, contacts, force and damping") {
   for (const Walls walls : {Walls::compliant, Walls::rigid}) {
     for (const double zeta : {0.0, 0.3, 3.0}) {
