@@ -1,5 +1,6 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -59,6 +60,7 @@ struct Peaks {
 };
 Peaks peaks_of(const HalfCycles& rows, std::size_t first, std::size_t last) {
   Peaks peaks;
+  for (auto* column : {&peaks.time, &peaks.amplitude}) column->reserve(last - std::min(first, last));
   for (std::size_t i = first; i < last; ++i) {
     if (!(rows.amplitude[i] > 0)) continue;
     if (!peaks.time.empty() && !(rows.peak_time[i] > peaks.time.back())) continue;
@@ -96,31 +98,31 @@ LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorO
 LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
                              const LogarithmicFit& fit) {
   const auto [time, amplitude] = peaks_of(half_cycles, first, last);
-  std::vector<double> logarithms;
-  logarithms.reserve(amplitude.size());
-  for (const double each : amplitude) logarithms.push_back(logarithm(each));
+  LossFactor loss;
+  if (time.size() < 3) return loss;
+  std::vector<double> logarithms(time.size());
+  for (std::size_t i = 0; i < time.size(); ++i) logarithms[i] = logarithm(amplitude[i]);
   const double widest = logarithm(fit.factor);
   const auto most = static_cast<std::size_t>(fit.most_half_cycles) / 2;
-  LossFactor loss;
+  for (auto* column : {&loss.amplitude, &loss.time, &loss.eta}) column->resize(time.size() - 2);
   for (std::size_t i = 1; i + 1 < time.size(); ++i) {
-    std::size_t reach = 1;
-    while (reach < most && reach < i && i + reach + 1 < time.size() &&
-           std::abs(logarithms[i - reach - 1] - logarithms[i + reach + 1]) <= widest)
+    const std::size_t farthest = std::min({most, i, time.size() - 1 - i});
+    // Times and logarithms are counted from the middle peak's, so that the sums lose nothing.
+    double sum_t = 0, sum_l = 0, sum_tt = 0, sum_tl = 0;
+    std::size_t reach = 0;
+    do {
       ++reach;
-    const double points = static_cast<double>(2 * reach + 1);
-    double mean_time = 0, mean = 0, squares = 0, products = 0;
-    for (std::size_t j = i - reach; j <= i + reach; ++j) {
-      mean_time += (time[j] - time[i]) / points;
-      mean += (logarithms[j] - logarithms[i]) / points;
-    }
-    for (std::size_t j = i - reach; j <= i + reach; ++j) {
-      const double t = time[j] - time[i] - mean_time;
-      squares += t * t;
-      products += t * (logarithms[j] - logarithms[i]);
-    }
-    loss.amplitude.push_back(amplitude[i] * exponential(mean));
-    loss.time.push_back(time[i]);
-    loss.eta.push_back(-2 * products / squares);
+      const double t = time[i + reach] - time[i], l = logarithms[i + reach] - logarithms[i];
+      const double t_before = time[i - reach] - time[i], l_before = logarithms[i - reach] - logarithms[i];
+      sum_t += t + t_before;
+      sum_l += l + l_before;
+      sum_tt += t * t + t_before * t_before;
+      sum_tl += t * l + t_before * l_before;
+    } while (reach < farthest && std::abs(logarithms[i - reach - 1] - logarithms[i + reach + 1]) <= widest);
+    const double points = static_cast<double>(2 * reach + 1), mean_time = sum_t / points;
+    loss.amplitude[i - 1] = amplitude[i] * exponential(sum_l / points);
+    loss.time[i - 1] = time[i];
+    loss.eta[i - 1] = -2 * (sum_tl - mean_time * sum_l) / (sum_tt - mean_time * sum_t);
   }
   return loss;
 }
@@ -128,13 +130,15 @@ LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, s
 LossFactor loss_before_failure(const Run& run) {
   const std::size_t failure = failure_row(run);
   const std::vector<double>& rows = run.half_cycles->amplitude;
-  LossFactor all = local_loss_factor(*run.half_cycles, 1, failure), loss;
-  for (std::size_t i = 0; i < all.eta.size(); ++i) {
-    if (failure < rows.size() && !(all.amplitude[i] > rows[failure])) continue;
-    loss.amplitude.push_back(all.amplitude[i]);
-    loss.time.push_back(all.time[i]);
-    loss.eta.push_back(all.eta[i]);
+  LossFactor loss = local_loss_factor(*run.half_cycles, 1, failure);
+  if (failure == rows.size()) return loss;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < loss.eta.size(); ++i) {
+    if (!(loss.amplitude[i] > rows[failure])) continue;
+    for (auto* column : {&loss.amplitude, &loss.time, &loss.eta}) (*column)[kept] = (*column)[i];
+    ++kept;
   }
+  for (auto* column : {&loss.amplitude, &loss.time, &loss.eta}) column->resize(kept);
   return loss;
 }
 
