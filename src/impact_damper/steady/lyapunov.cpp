@@ -52,7 +52,7 @@ class Frame {
   std::size_t dimensions_ = 4;
 };
 
-constexpr std::int64_t blocks = 10;
+constexpr std::int64_t error_blocks = 10;
 
 // What an exponent's means over blocks say of the error of the mean over all.
 double standard_error(const std::vector<StateVector>& means, std::size_t j) {
@@ -94,7 +94,7 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
 
     // Blocks differ by one period where their number does not divide that of the periods.
     const std::int64_t used = n + 1 - skipped;
-    if (used < 1 || used != periods * (std::ssize(means) + 1) / blocks) continue;
+    if (used < 1 || used != periods * (std::ssize(means) + 1) / error_blocks) continue;
     StateVector mean = frame.logarithms();
     for (std::size_t j = 0; j < 4; ++j)
       mean[j] = (mean[j] - before[j]) / (double(used - begun) * map.duration());
@@ -105,7 +105,7 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   result.periods = periods;
   for (std::size_t j = 0; j < frame.dimensions(); ++j) {
     result.exponents.push_back(frame.logarithms()[j] / (double(periods) * map.duration()));
-    if (periods >= blocks) result.standard_errors.push_back(standard_error(means, j));
+    if (periods >= error_blocks) result.standard_errors.push_back(standard_error(means, j));
   }
   return result;
 }
