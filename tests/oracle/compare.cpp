@@ -21,10 +21,20 @@ using impact_damper::Energy;
 // is still to be linear; and up to which predicted error, relative to its size, a number is compared.
 struct Accuracy {
   double rounding, noise, predictable, operations;
+  bool by_steps = false;
 };
 constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations};
 // Central differences with a hundred steps for each contact or period: (2 pi / 200)^2 / 24 and more.
-constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3};
+constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3, true};
+// The first step is a hundredth of half a contact, as the engine's own default is; it is divided by these where
+// that is not short enough, and each of them by 4 for the order.
+constexpr std::array<double, 3> finer_steps{1, 4, 16};
+double first_step(const Scene& scene) {
+  const double contact = std::sqrt(scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio)));
+  const double shortest =
+      std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
+  return std::numbers::pi / 100 * shortest;
+}
 
 constexpr int samples_of_a_run = 65;
 
@@ -295,6 +305,12 @@ Prediction predict(Question question, const Accuracy& accuracy) {
   if (plain.stop == Stop::effort) {
     end_at(plain.end_time, "the oracle's effort");
     return result;
+  }
+  // The mass may be on a wall and off it again within the finest step.
+  if (accuracy.by_steps) {
+    for (const oracle::Contact& each : plain.contacts)
+      if (each.end - each.begin < first_step(question.scene) / finer_steps.back() / 4 && each.end < end)
+        end_at(each.begin, "a contact shorter than a step");
   }
   result.samples.resize(question.samples.size());
 
@@ -705,18 +721,14 @@ Record everything(double end) {
 // they are shortened twice where that is not so. A column's largest error stands for it.
 void compare_by_order(const Scene& scene, const Question& question, const Prediction& prediction, Cem engine,
                       Comparison& result) {
-  // As the engine's own default.
-  const double contact = std::sqrt(scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio)));
-  const double shortest =
-      std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
-  for (const double finer : {1, 4, 16}) {
+  for (const double finer : finer_steps) {
     // By what the step is divided by, and by column: the error itself, and in units of the predicted one.
     std::map<int, std::map<std::string, std::array<double, 2>>> errors;
     result.differences.clear();
     result.numbers = result.impacts = 0;
     result.worst = 0;
     for (const int by : {1, 4}) {
-      engine.time_step = std::numbers::pi / 100 * shortest / finer / by;
+      engine.time_step = first_step(scene) / finer / by;
       const Run run = simulate(scene, engine, everything(*scene.until_time));
       Judge judge;
       judge.number = [&](const std::string& what, double value, Quad truth, Quad predicted) {
@@ -739,7 +751,7 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
       if (at_quarter[0] <= at_full[0] / 2 || at_quarter[1] <= 1e-2) continue;
       // In flight cem counts y from the left wall: at the right one a step moves it by no less than rounding
       // of 1, so that velocities are multiples of about epsilon / h.
-      const double step = std::numbers::pi / 100 * shortest / finer / 4;
+      const double step = first_step(scene) / finer / 4;
       if (at_quarter[0] <= 4 * std::numeric_limits<double>::epsilon() / step) continue;
       result.differences.push_back(column + " is off by " + text(at_full[0], 3) +
                                    ", with a quarter of the step by " + text(at_quarter[0], 3) + ": " +
