@@ -148,7 +148,7 @@ class ShortContactTable {
     static_assert(extended_terms < terms);
     Term term = at;
     for (std::size_t n = 1; n < extended_terms; ++n) {
-      term = motion.template next<by_force>(term, parts<Overlap>[n]);
+      term = motion.template next<by_force>(term, reciprocal<Overlap>(n));
       if (n == 1) continue;
       all.q[n] = Real(term.q);
       all.centre[n] = term.x;
@@ -156,7 +156,7 @@ class ShortContactTable {
     const CentreAndOverlap<Real, Real> late = motion.rounded();
     auto late_term = round(term);
     for (std::size_t n = extended_terms; n < terms; ++n) {
-      late_term = late.template next<by_force>(late_term, parts<Real>[n]);
+      late_term = late.template next<by_force>(late_term, reciprocal<Real>(n));
       all.q[n] = late_term.q;
       all.centre[n] = late_term.x;
     }
@@ -168,10 +168,10 @@ class ShortContactTable {
                   typename CentreAndOverlap<Real, Overlap>::Term& term, std::size_t& n, Real& size,
                   const Real& rate, const Real& until) {
     typename CentreAndOverlap<Real, Overlap>::Term all{};
-    for (; size > until && n < parts<Overlap>.size(); ++n) {
-      term = motion.template next<by_force>(term, parts<Overlap>[n]);
+    for (; size > until && n < most_terms; ++n) {
+      term = motion.template next<by_force>(term, reciprocal<Overlap>(n));
       all = all + term;
-      size *= rate * parts<Real>[n];
+      size *= rate * reciprocal<Real>(n);
     }
     return all;
   }
@@ -183,13 +183,21 @@ class ShortContactTable {
   static Term widen(const typename CentreAndOverlap<Real, Real>::Term& t) {
     return {t.x, t.v, decltype(Term::q)(t.q), decltype(Term::w)(t.w), t.f, t.g};
   }
-  // 1/n. Made before a run begins: it is no part of what a run costs.
+  static constexpr std::size_t most_terms = 64;
+  // 1/n, n > 0. The table is made before a run begins: it is no part of what a run costs.
   template <class N>
-  static inline const std::array<N, 64> parts = [] {
-    std::array<N, 64> over{};
-    for (std::size_t n = 1; n < over.size(); ++n) over[n] = N(1) / N(double(n));
-    return over;
-  }();
+  static const N& reciprocal(std::size_t n) {
+    const std::array<N, most_terms>& all = reciprocals<N>;
+    return all[n];
+  }
+  template <class N>
+  static std::array<N, most_terms> made_reciprocals() {
+    std::array<N, most_terms> all{};
+    for (std::size_t n = 1; n < all.size(); ++n) all[n] = N(1) / N(double(n));
+    return all;
+  }
+  template <class N>
+  static inline const std::array<N, most_terms> reciprocals = made_reciprocals<N>();
 
   Real rate_;
   // Terms below the first are summed in Real, those below the second left out.
