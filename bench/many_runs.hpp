@@ -17,7 +17,9 @@ struct ManyRuns {
   int repeats = 0;
   Spread engine, one,
       two;          // seconds by the clock on the wall: the engine alone and the rows, on one thread; on two
-  Spread overhead;  // one thread's rows by the engine alone, less 1, of repeats taken in turn
+  // Of repeats taken in turn, as parts of the engine's time: the analysis of the runs that the quantities ask
+  // for, by itself; and what one thread's rows take beside engine and analysis.
+  Spread analysis, overhead;
   Spread ratio;     // one thread's by two threads'
 
   double million_minutes() const { return two.median / double(runs) * 1e6 / 60; }

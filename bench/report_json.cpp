@@ -153,6 +153,7 @@ std::string report_json(const Findings& found) {
                                       {"engine_milliseconds", json_of(many.engine, 1e3)},
                                       {"one_milliseconds", json_of(many.one, 1e3)},
                                       {"two_milliseconds", json_of(many.two, 1e3)},
+                                      {"analysis", json_of(many.analysis)},
                                       {"overhead", json_of(many.overhead)},
                                       {"speedup", json_of(many.ratio)}});
   }

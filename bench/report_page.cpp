@@ -226,12 +226,14 @@ void add_rest(std::string& page, const Findings& found) {
   if (!found.many_runs.empty()) {
     page += "\n## Sweeps\n\nThe rows of a sweep of decays from 6 to 0.03, in milliseconds for each run.\n\n";
     PageTable table(page, {"kept", "engine alone", "one thread", "two threads",
-                           "beside the engine (quartiles)", "two by one (quartiles)"});
+                           "analysis by engine", "the sweep's own by engine (quartiles)",
+                           "two by one (quartiles)"});
     for (const ManyRuns& many : found.many_runs) {
       const auto each = [&](const Spread& spread) {
         return printed("%.3f", spread.median / double(many.runs) * 1e3);
       };
       table.row({many.kept, each(many.engine), each(many.one), each(many.two),
+                 printed("%.1f %%", 100 * many.analysis.median),
                  printed("%.1f %% (%.1f to %.1f)", 100 * many.overhead.median, 100 * many.overhead.lower,
                          100 * many.overhead.upper),
                  printed("%.2f (%.2f to %.2f)", many.ratio.median, many.ratio.lower, many.ratio.upper)});
