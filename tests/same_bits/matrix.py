@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
 
-    matrix.py BUILD [--without-clang] [--only BUILDS]
+    matrix.py BUILD [--without-clang] [--only WORDS]
 
 BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. Five
 more programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O3 -march=native, -O2 with
@@ -11,8 +11,8 @@ What is crossed with what:
 
     all programs        x {at home, without the processor's FMA and AVX2 and in all surroundings at once: time zone,
                            comma locale, folder, ~/.gnuplot}
-    two of them         x each of the four surroundings by itself, and all at once with the processor as it is
-                          (g++ -O2 with link-time optimisation, clang++ -O3 -march=native)
+    one of them         x each of the four surroundings by itself, and all at once with the processor as it is
+                          (clang++ -O3 -march=native)
     the project's own   x processor features {as they are, without FMA and AVX2} x {at home, all surroundings at once}
     pictures            gnuplot is no part of a build, so they are drawn from the tables that by then are the same for
                         all programs, once in each of the four surroundings, once in all at once without FMA and AVX2
@@ -51,7 +51,7 @@ FLAGS = {
     "-O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
     "-O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"],
 }
-EACH_SURROUNDING_BY_ITSELF = ["g++ -O2 with LTO", "clang++ -O3 -march=native"]
+EACH_SURROUNDING_BY_ITSELF = "clang++ -O3 -march=native"
 FEATURES = {"": {}, "without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"}}
 SURROUNDINGS = ["time zone", "comma locale", "folder", "~/.gnuplot"]
 ENGINES = ["exact", "restitution", "cem"]
@@ -225,7 +225,7 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
     for engine in ENGINES:
         (pictures / engine).mkdir(parents=True)
         for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]:
-            name = f"fig{figure['figure']:0>2}" if figure["figure"].isdigit() else f"fig{figure['figure']}"
+            name = Path(figure["script"]).stem
             table = tables / engine / "tables" / f"{name}.dat"
             if not table.exists():
                 if figure["table"] != "drawing":
@@ -258,7 +258,7 @@ def settings_of(programs: dict) -> list:
         chosen = [(usual, at_home), (reduced, all_at_once)]
         if name == OWN:
             chosen += [(usual, all_at_once), (reduced, at_home)]
-        if name in EACH_SURROUNDING_BY_ITSELF:
+        if name == EACH_SURROUNDING_BY_ITSELF:
             chosen += [(usual, all_at_once)] + [(usual, (each,)) for each in SURROUNDINGS]
         cells += [Setting(program, name, *each) for each in chosen]
     return cells
@@ -268,7 +268,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
-    parser.add_argument("--only", metavar="BUILDS", help="only builds whose name has this in it, and say so")
+    parser.add_argument("--only", metavar="WORDS", help="only builds whose name has one of these words, set apart by commas, in it, and say so")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -286,7 +286,7 @@ def main() -> int:
 
     programs = {OWN: own}
     wanted = [(compiler, name) for compiler in compilers for name in COMPILERS[compiler]
-              if not arguments.only or arguments.only in f"{compiler} {name}"]
+              if not arguments.only or any(word in f"{compiler} {name}" for word in arguments.only.split(","))]
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -343,7 +343,7 @@ def main() -> int:
     if "clang++" not in compilers:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
     if arguments.only:
-        print(f"same bits: NOT COVERED: all builds without {arguments.only} in their names, left out by --only")
+        print(f"same bits: NOT COVERED: all builds with none of {arguments.only} in their names, left out by --only")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
