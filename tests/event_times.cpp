@@ -473,3 +473,16 @@ TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
   CHECK(second_reached > 0.5);
   CHECK(third_reached > 0.5);
 }
+
+TEST_CASE("a secondary mass at rest away from the walls turns where it turns again") {
+  // x = -0.1 cos t + sin t, so y' = 1 - cos t - 0.1 sin t: zero at 0 and where tan(t/2) = 0.1.
+  const Scene scene;
+  const System<double, NoForcing<double>> system(scene);
+  Search<double> search{infinite};
+  for (const double side : {1.0, -1.0}) {
+    const Flight<double, NoForcing<double>> flight(system, 0.0, {-0.1 * side, side, 0.5, 0});
+    const auto turn = flight.turn_of_y(-side, 0, 1, search);
+    REQUIRE(turn);
+    CHECK(*turn == doctest::Approx(2 * std::atan(0.1)).epsilon(1e-14));
+  }
+}

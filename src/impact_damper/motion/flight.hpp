@@ -57,7 +57,8 @@ class Flight {
   // The same of a mass that begins at rest on a wall, and leaves it.
   std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
     const Real leap = begin_by_jerk(search.span);
-    // If y'' differs from zero by rounding alone, its sign may be wrong; an exact zero has none.
+    // If y'' differs from zero by rounding alone, its sign may be wrong: then the prediction begins after the
+    // leap, too. From an exact zero guess_by_parabola goes by y'''.
     return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, search);
   }
   // The same by Lemma L1, step by step.
@@ -83,7 +84,7 @@ class Flight {
           std::numeric_limits<Real>::infinity()};
     };
     // A mass that begins at rest on a wall turns there, and by rounding alone a second time.
-    const Real leap = start_.w == 0 ? begin_by_jerk(search.span) : Real(0);
+    const Real leap = start_.w == 0 && u_ == 0 ? begin_by_jerk(search.span) : Real(0);
     return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
   }
   // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one, 1 - y.
@@ -193,7 +194,7 @@ class Flight {
     return near < far ? near : far;
   }
   // Whether the terms that a correction leaves out, of fourth order, are below rounding for x and x', too,
-  // which may be far smaller than the secondary mass's motion.
+  // which may be far smaller than the secondary mass's motion: x'' and x''' stand for the size of x.
   static bool moves_x_by_series(const Derivatives<Real, 6>& u, const Real& shift, const Real& fourth) {
     const Real shift_2 = shift * shift, second = absolute(u[2]), third = absolute(u[3]);
     return fourth * (shift_2 * shift_2) <= 4 * std::numeric_limits<Real>::epsilon() * (second + third);
