@@ -111,7 +111,8 @@ class Contact {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
-    const Real size = (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
+    const Real kept = c.slow.lower_bound_of_decay(from);
+    const Real size = kept * (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
     return c.fast.bound_after(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
   }
   // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
@@ -226,7 +227,7 @@ class Contact {
   //
   // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast mode below a
   // bound that decreases (M3.5): so there is no zero before the time `settling` at which that bound meets the
-  // chord, taken twice. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on u''
+  // chord, found in two steps. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on u''
   // proves that the sum falls from `settling` on, so that it has one zero there, which a Newton step from F
   // finds.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
@@ -303,6 +304,7 @@ class Contact {
       now.fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
       if (!stays_in_wall(before, now, slow_fourth, 4)) return {};
       const Real left = c.fast.bound_after(fast_now.q, fast_now.w, Real(late - now.time));
+      // What does not oscillate, and was negative at touch, has its one zero behind it.
       if (!oscillates && fast_now.q >= 0) return left;
       const Real wait = now.time < early ? Real(early - now.time) : Real(0);
       if (c.fast.bound_after(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
