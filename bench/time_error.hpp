@@ -44,7 +44,7 @@ struct Curve {
 };
 
 struct Limits {
-  double longest_run = 1.2;           // seconds; finer settings than that are left out
+  double longest_run = 1.8;           // seconds; finer settings than that are left out
   double longest_chaotic_run = 0.14;  // the same where an error takes many runs
   double repeated_fully = 0.4;        // seconds; longer runs are repeated `few` times
   int repeats = 7, few = 3;
