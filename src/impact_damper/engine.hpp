@@ -77,7 +77,7 @@ struct Cem {
   std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;  // locate touch and release inside the step
-  // H, > h, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are whole multiples of h,
+  // The large step, > time_step, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are whole multiples of h,
   // at most H (cem_rates.hpp). Absent: all steps are h.
   std::optional<double> large_step;
   // The paper's stuck regime, equation (9): an impact with a relative speed below u, while the wall pushes

@@ -43,7 +43,7 @@ struct SiUnits {
 };
 SiUnits si_units_of(const Scales& scales);
 
-// One of them, and its key in a run file.
+// One field of SiUnits, and its key in a run file.
 struct SiUnit {
   std::string_view name;
   double SiUnits::*member;

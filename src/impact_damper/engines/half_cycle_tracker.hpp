@@ -23,7 +23,7 @@ class HalfCycleTracker {
   std::int64_t complete() const { return complete_; }
 
   void take_side(const Real& side) { side_ = side; }
-  // |x| is `height` where it may be largest.
+  // |x| is `height` at a turn or an end: the largest of the half cycle is kept.
   void peak(const Real& height, const Real& time) {
     if (!(height > amplitude_)) return;
     amplitude_ = height;

@@ -9,8 +9,8 @@
 // limit ignores, nu w^2 / (2a (1+nu)), is below rounding of x, and x has no turn within that time (M6.3).
 // Then the engine takes the limit: the masses join, keep their momentum, and stick from the time (M6.2) later
 // on. With the tolerance tol and |a'| <= m, the rebound speed w is then at most tol a^2 (1-e) / 2m; at the
-// default tolerance that is some 1e-9. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e)))
-// / -ln e impacts until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as
+// default tolerance that is some 1e-9, or where a' is small, as after a release from rest, what (M6.3) allows.
+// Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as
 // bounce_down_loss.
 //
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
@@ -43,8 +43,9 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
   tracker.begin(state, Real(0));
   Real losses{0};
 
-  // What happens to a secondary mass on a wall with w >= 0 away from it: it bounces on, it is stuck after a
-  // time `accumulation` of bouncing too short to follow, or (at rest, not pushed) it is released.
+  // Whether a secondary mass on a wall sticks to it: at rest and pushed, at once; with w > 0 away from it,
+  // after a time `accumulation`, which this sets, of bouncing too short to follow. Else it bounces on, or is
+  // released.
   Wall wall = state.y <= Real(0.5) ? Wall::left : Wall::right;
   Real accumulation{0};
   const auto sticks = [&](const Flight<Real, Force>& flight) {

@@ -1,7 +1,8 @@
 // What both closed-form engines share. A run is a chain of motions; RunTracker reads off each of them the
 // half cycles of x (half_cycle_tracker.hpp), the samples, the work, and where the run ends.
 //
-// Observing never changes the motion: a motion is restarted at its own events only.
+// Observing never changes the motion: a motion is restarted at its own events, and a flight under a force at
+// the ends of its pieces, only.
 #pragma once
 
 #include <optional>
@@ -55,7 +56,7 @@ class RunTracker {
     if (observer_.wants_energy()) observer_.energy_balance().initial = energy_of(system_, start, depth);
   }
 
-  // Lets `duration` of a motion pass, less if the scene ends in it, which `end` is then taken back to.
+  // Lets `duration` of a motion pass, less if the scene ends in it; `end` is then the state at that time.
   // Returns the works in it.
   template <MotionOf<Real> Motion>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,

@@ -8,8 +8,8 @@
 namespace impact_damper {
 
 // Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
-// (Lemma L2). from: u0 and its first three derivatives; slope1: its derivative at the other end; fourth: a
-// bound on its fourth derivative in between.
+// (Lemma L2). from: u0 and its first three derivatives; slope1: its derivative at the other end, where it is
+// u1; fourth: a bound on its fourth derivative in between.
 template <class Real>
 [[gnu::always_inline]] inline bool stays_between(const Derivatives<Real, 4>& from, const Real& u1,
                                                  const Real& slope1, const Real& h, const Real& fourth) {

@@ -30,14 +30,14 @@ template <class Real>
   const Real a = t * (y[2] * over / 2), b = t * t * (y[3] * over * reciprocals<Real>[6]);
   const Real shift = t * (1 - a + (2 * a * a - b)), shift_2 = shift * shift, a_2 = a * a;
   const Real enough = std::numeric_limits<Real>::epsilon() / 64 * h;
-  // The next term of the reversion, 5 a^3 t and what goes with it, and of the series.
+  // The next terms of the reversion, 5 a^3 t and 5 a b t, without their 5, and of the series.
   return {shift, t,
           absolute(a_2 * a * shift) <= enough && absolute(a * b * shift) <= enough &&
               fourth * (shift_2 * shift_2) <= enough * absolute(y[1])};
 }
 
-// u and u' a time t later, to third order, for a correction t that is `close`. d: the derivatives of u from
-// the second on.
+// u and u' a time t later, to third order, for a correction t that is `close`. d: the derivatives of u, of
+// which the first two are not read.
 template <class Real>
 struct Shifted {
   Real u, u1;
@@ -73,7 +73,7 @@ template <class Real, std::size_t N>
   return {t < most ? t : from_rest ? Real(most * Real(0.75)) : most, arrives == rising};
 }
 
-// Whether the terms left out of a series of ten are below rounding at t, where u' is u1: in the time, for
+// Whether the terms left out of a series up to t^9 are below rounding at t, where u' is u1: in the time, for
 // which |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion
 // of x, which may be far smaller. `fourth`: bound on |u''''|; each further derivative is taken to be
 // `rate` times the one before. Near critical damping u^(10) may be a few times that, and is still below
@@ -87,9 +87,9 @@ template <class Real>
   return omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate);
 }
 
-// Predicts when a mass that has left one wall of a gap of 1 meets this wall or the other, and `most` at the
-// latest: by the parabola, then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from
-// the wall it left, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
+// Predicts when a mass in a gap of 1 meets a wall, and `most` at the latest: by the parabola, then by
+// Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall that the flight is
+// measured from, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
 // whether that series has enough terms at t. If so the prediction is `exact`, and `gained` is by how much u
 // and u' then differ from the straight line, with digits that u and u' of a fast mass do not have themselves.
 // go_on(t, step): whether to go on after a step that is still too long.
@@ -108,12 +108,12 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
                                                             Enough&& enough, GoOn&& go_on) {
   const bool across = start.across;
   Real t = start.time;
-  const Real gap = (across ? Real(1) : Real(0)) - u[0];
+  const Real ahead = (across ? Real(1) : Real(0)) - u[0];  // to go, with its sign
   for (int i = 0;; ++i) {
     // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more than five pairs
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
-    const Real newton = (gap - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
+    const Real newton = (ahead - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const bool bends_little = absolute(bend) < Real(0.0625);
     const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
@@ -138,10 +138,10 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
   SearchCounter<Real>::prediction();
   FirstGuess<Real> start = guess_by_parabola(u, most);
   Real& t = start.time;
-  const Real gap = (start.across ? Real(1) : Real(0)) - u[0];
+  const Real ahead = (start.across ? Real(1) : Real(0)) - u[0];
   // First by few terms, as a parabola may be far off.
   const SeriesAt<Real> rough = departure.template at<3>(t);
-  const Real slope = u[1] + rough.u1, off = gap - u[1] * t - rough.u;
+  const Real slope = u[1] + rough.u1, off = ahead - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
   return predict_from(start, Departure::all <= 5, u, departure, most, enough, go_on);

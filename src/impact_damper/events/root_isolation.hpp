@@ -20,14 +20,14 @@ namespace impact_damper {
 template <class Real>
 struct Jet {
   Real g{0}, g1{0}, g2{0};  // a function and its first two derivatives at a point
-  Real third{0};            // bound on |g'''| from there on
+  Real third{0};            // bound on |g'''| for the time that the search is told (Search::span)
 };
 
 template <class Real>
 struct LocalEnclosure {
   Jet<Real> whole;
   Jet<Real> main;  // whole = main + rest
-  Real rest{0};    // bound on |rest| from there on; infinity: no such splitting
+  Real rest{0};    // bound on |rest| for the same time; infinity: no such splitting
 };
 
 // The cubic p(s) = g + g1 s + g2 s^2/2 - third s^3/6, which bounds the function from below.
@@ -44,7 +44,7 @@ struct LowerCubic {
         half_third(third / 2) {}
   Real at(const Real& s) const { return g + s * (g1 + s * (half - s * sixth)); }
   Real slope(const Real& s) const { return g1 + s * (g2 - s * half_third); }
-  // From here on the cubic term is at least three times each other term, and p is negative.
+  // From here on the cubic term is at least three times each other term, and p is not positive.
   Real negative_from() const {
     const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
     Real far = by_g > 1 ? square_root(by_g) : Real(1);
@@ -88,8 +88,8 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
     const Real parabola = (p.g1 + square_root(Real(p.g1 * p.g1 - 2 * p.g2 * p.g))) / -p.g2;
     if (parabola < high) high = parabola;
   }
-  // From zero on quartering is exact, so many at once come to the same number: the root may be 1e300 times
-  // nearer.
+  // The root may be 1e300 times nearer. Quartering from zero is exact, so sixteen of the quarterings below,
+  // taken at once, come to the same number.
   const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
   while (low == 0 && p.at(high * much_nearer) < 0) high *= much_nearer;
   // Wherever p is still positive lies before the root.
@@ -113,7 +113,8 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
 }
 
 // A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
-// or `most` where it has none up to there. Needs jet.g >= 0.
+// or `most` where it has none up to there. Needs p > 0 just after 0 (Lemma L1); if g = 0 and p is not, the
+// step proves nothing.
 template <class Real>
 Real step_without_root(const Jet<Real>& jet, Real most) {
   SearchCounter<Real>::step();
@@ -150,10 +151,10 @@ struct Root {
 
 // The first time in [from, horizon) at which one of several functions reaches zero from above.
 // enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
-// time search.span. `resolution` is a time in which nothing happens: epsilon times it is the accuracy of the
-// root. Nothing also where the search has no steps left.
-// A function that is not positive but rises has just left its zero. Until it has risen by more than rounding
-// steps double: what it does meanwhile is lost in rounding errors. No step depends on the horizon: a search
+// time search.span. `resolution` is the shortest time in which a function changes: epsilon times it is the
+// accuracy of the root. Nothing also where the search has no steps left.
+// A function that is not positive but rises has just left its zero. Until it has risen by more than rounding,
+// steps double. They are not proved: what the function does meanwhile is lost in rounding errors. No step depends on the horizon: a search
 // that ends earlier is the beginning of one that ends later, to the bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,

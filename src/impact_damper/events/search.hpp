@@ -24,7 +24,7 @@ struct Search {
 // How the end of a motion was found (docs/mathematics.md, 7.8).
 enum class FoundBy {
   series,      // a flight, by the series at its beginning
-  correction,  // a flight, by the closed form evaluated near the end
+  correction,  // a flight, by the closed form evaluated near its end
   search,      // a flight, step by step
   short_contact_map,
   slow_mode,       // a sustained contact
@@ -37,7 +37,7 @@ template <class Real>
 struct SearchCounter {
   static void prediction() {}  // of a flight's end, impact_prediction.hpp
   static void correction() {}  // of a predicted time, by one evaluation of the motion
-  static void search() {}      // where a prediction was not validated, root_isolation.hpp
+  static void search() {}      // by Lemma L1, root_isolation.hpp
   static void evaluation() {}  // of the functions that a search watches
   static void step() {}        // of a search, for each function
   static void found(FoundBy) {}
