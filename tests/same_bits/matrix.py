@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
 
-    matrix.py BUILD [--without-clang] [--only WORDS]
+    matrix.py BUILD [--without-clang] [--only NAMES]
 
 BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. Five
 more programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O3 -march=native, -O2 with
@@ -268,7 +268,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
-    parser.add_argument("--only", metavar="WORDS", help="only builds whose name has one of these words, set apart by commas, in it, and say so")
+    parser.add_argument("--only", metavar="NAMES", help="only builds whose name begins with one of these, set apart by commas, and say so")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -286,7 +286,7 @@ def main() -> int:
 
     programs = {OWN: own}
     wanted = [(compiler, name) for compiler in compilers for name in COMPILERS[compiler]
-              if not arguments.only or any(word in f"{compiler} {name}" for word in arguments.only.split(","))]
+              if not arguments.only or f"{compiler} {name}".startswith(tuple(arguments.only.split(",")))]
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -343,7 +343,7 @@ def main() -> int:
     if "clang++" not in compilers:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
     if arguments.only:
-        print(f"same bits: NOT COVERED: all builds with none of {arguments.only} in their names, left out by --only")
+        print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
