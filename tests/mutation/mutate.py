@@ -136,23 +136,14 @@ class Tree:
         return run([str(self.build / self.binaries[test]), "--abort-after=1", "--no-colors"], self.build / "tests",
                    timeout)
 
-    def objects(self, test, file):
-        """The test's own objects that a file of the library is compiled into."""
+    def includes(self, test, file):
+        """Whether the test's own source includes a file of the library, so that it takes compiling."""
         if not self.compiled_from:
             _, out = run(["ninja", "-t", "deps"], self.build)
             for block in out.split("\n\n"):
-                if found := re.match(r"(tests/(?:\w+/)?CMakeFiles/test_(\w+)\.dir/\S+\.o): ", block):
-                    self.compiled_from.setdefault(found[2], {})[found[1]] = block + "\n"
-        return [each for each, block in self.compiled_from.get(test, {}).items() if f"{LIBRARY}/{file}\n" in block]
-
-    def make_alone(self, test, file, times):
-        """With the fault in the test's own objects only: the library, which takes ten times as long, stays sound."""
-        os.utime(self.sources / LIBRARY / file, ns=times)
-        for each in self.objects(test, file):
-            (self.build / each).unlink()
-        made = self.make(test)
-        os.utime(self.sources / LIBRARY / file)
-        return made
+                if found := re.match(r"tests/(?:\w+/)?CMakeFiles/test_(\w+)\.dir/", block):
+                    self.compiled_from[found[1]] = block
+        return f"{LIBRARY}/{file}\n" in self.compiled_from.get(test, "") + "\n"
 
     def keep(self):
         half = self.sound.with_suffix(".tmp")
@@ -205,20 +196,18 @@ def check_sound(tree, state, memory):
     tree.keep()
 
 
-def examine(tree, fault, sound, before, times):
-    """Who catches the fault: (verdict, by whom). A header's: first whoever can without the library compiled anew."""
+def examine(tree, fault, sound, before):
+    """Who catches the fault: (verdict, by whom)."""
     stem = Path(fault.file).stem
     caught = (before or {}).get("by", "").split(": ")[0]
 
     def cost(test):
-        seconds = sound[test]["run"] + 1 + 5 * len(tree.objects(test, fault.file))  # linking, compiling
+        seconds = sound[test]["run"] + 1 + 5 * tree.includes(test, fault.file)  # linking, compiling
         return seconds / 10 if test.startswith(stem) or stem.startswith(test) else seconds
 
     order = sorted(tree.binaries, key=lambda test: (test != caught, test == "cli", cost(test)))
-    alone = [test for test in order if tree.objects(test, fault.file)]
-    for test, make in [(test, lambda test: tree.make_alone(test, fault.file, times)) for test in alone] + [
-            (test, tree.make) for test in order]:
-        code, out = make(test)
+    for test in order:
+        code, out = tree.make(test)
         if code is None:
             return "caught", "compiling takes for ever"
         if code != 0:
@@ -297,7 +286,7 @@ def main():
             begin = time.monotonic()
             try:
                 file.write_text(text.replace(fault.fragment, fault.replacement))
-                verdict, by = examine(tree, fault, state["sound"], before, times)
+                verdict, by = examine(tree, fault, state["sound"], before)
             finally:
                 tree.restore(file, text, times)
             before = known[key] = {"verdict": verdict, "by": by, "seconds": round(time.monotonic() - begin, 1)}
