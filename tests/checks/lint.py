@@ -37,13 +37,11 @@ def compiled(build):
     database = build / "compile_commands.json"
     if not database.exists():
         missing(f"{database} is missing: make build")
-    seen = set()
     for entry in json.loads(database.read_text()):
         file = Path(entry["file"])
         sources = re.findall('#include "(.*[.]cpp)"', file.read_text()) if "Unity" in file.parts else [str(file)]
-        if seen.issuperset(sources) or any(SOURCE / "src" not in Path(source).parents for source in sources):
-            continue  # a second library of them; generated
-        seen.update(sources)
+        if any(SOURCE / "src" not in Path(source).parents for source in sources):
+            continue  # generated, or of the tests
         # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
         yield file.stem, sources, file, [
             word for word in shlex.split(entry["command"])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
