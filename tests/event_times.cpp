@@ -474,7 +474,7 @@ TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
   CHECK(third_reached > 0.5);
 }
 
-TEST_CASE("a secondary mass at rest away from the walls turns where it turns again") {
+TEST_CASE("the next turn of a secondary mass at rest away from the walls is found") {
   // x = -0.1 cos t + sin t, so y' = 1 - cos t - 0.1 sin t: zero at 0 and where tan(t/2) = 0.1.
   const Scene scene;
   const System<double, NoForcing<double>> system(scene);
