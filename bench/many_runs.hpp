@@ -15,12 +15,12 @@ struct ManyRuns {
   double bound = 0;       // minutes that a million decays may take on two threads
   std::int64_t runs = 0;  // of a repeat
   int repeats = 0;
-  Spread engine, one,
-      two;          // seconds by the clock on the wall: the engine alone and the rows, on one thread; on two
+  // Seconds by the clock on the wall: the engine alone and the rows, on one thread; the rows on two.
+  Spread engine, one, two;
   // Of repeats taken in turn, as parts of the engine's time: the analysis of the runs that the quantities ask
   // for, by itself; and what one thread's rows take beside engine and analysis.
   Spread analysis, overhead;
-  Spread ratio;     // one thread's by two threads'
+  Spread ratio;  // one thread's by two threads'
 
   double million_minutes() const { return two.median / double(runs) * 1e6 / 60; }
 };

@@ -225,9 +225,8 @@ void add_rest(std::string& page, const Findings& found) {
   }
   if (!found.many_runs.empty()) {
     page += "\n## Sweeps\n\nThe rows of a sweep of decays from 6 to 0.03, in milliseconds for each run.\n\n";
-    PageTable table(page, {"kept", "engine alone", "one thread", "two threads",
-                           "analysis by engine", "the sweep's own by engine (quartiles)",
-                           "two by one (quartiles)"});
+    PageTable table(page, {"kept", "engine alone", "one thread", "two threads", "analysis by engine",
+                           "the sweep's own by engine (quartiles)", "two by one (quartiles)"});
     for (const ManyRuns& many : found.many_runs) {
       const auto each = [&](const Spread& spread) {
         return printed("%.3f", spread.median / double(many.runs) * 1e3);

@@ -77,8 +77,8 @@ struct Cem {
   std::optional<double> time_step;
   Damper damper = Damper::centred;
   bool locate = false;  // locate touch and release inside the step
-  // The large step, > time_step, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are whole multiples of h,
-  // at most H (cem_rates.hpp). Absent: all steps are h.
+  // The large step, > time_step, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are
+  // whole multiples of time_step, at most this long (cem_rates.hpp). Absent: all steps are time_step.
   std::optional<double> large_step;
   // The paper's stuck regime, equation (9): an impact with a relative speed below u, while the wall pushes
   // the secondary mass, joins both masses until x'' changes its sign. u > 0 and finite, divided by epsilon

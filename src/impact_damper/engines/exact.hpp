@@ -4,8 +4,8 @@
 // contact where the secondary mass is back at the wall's position (a displacement criterion: near the end of
 // a contact the wall's damper pulls). Both ends are predicted and validated (impact_prediction.hpp,
 // short_contact_map.hpp, and contact.hpp for sustained contacts) or, where the validation fails, searched for
-// with proved steps (root_isolation.hpp): none larger than rounding is missed (docs/mathematics.md, 7.8). There
-// is no time step, and no error but rounding.
+// with proved steps (root_isolation.hpp): none larger than rounding is missed (docs/mathematics.md, 7.8).
+// There is no time step, and no error but rounding.
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"

@@ -9,9 +9,9 @@
 // limit ignores, nu w^2 / (2a (1+nu)), is below rounding of x, and x has no turn within that time (M6.3).
 // Then the engine takes the limit: the masses join, keep their momentum, and stick from the time (M6.2) later
 // on. With the tolerance tol and |a'| <= m, the rebound speed w is then at most tol a^2 (1-e) / 2m; at the
-// default tolerance that is some 1e-9, or where a' is small, as after a release from rest, what (M6.3) allows.
-// Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as
-// bounce_down_loss.
+// default tolerance that is some 1e-9, or where a' is small, as after a release from rest, what (M6.3)
+// allows. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts until then;
+// the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
 //
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once

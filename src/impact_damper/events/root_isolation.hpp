@@ -154,8 +154,9 @@ struct Root {
 // time search.span. `resolution` is the shortest time in which a function changes: epsilon times it is the
 // accuracy of the root. Nothing also where the search has no steps left.
 // A function that is not positive but rises has just left its zero. Until it has risen by more than rounding,
-// steps double. They are not proved: what the function does meanwhile is lost in rounding errors. No step depends on the horizon: a search
-// that ends earlier is the beginning of one that ends later, to the bit.
+// steps double. They are not proved: what the function does meanwhile is lost in rounding errors.
+// No step depends on the horizon: a search that ends earlier is the beginning of one that ends later, to the
+// bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,
                                      Search<Real>& search, const Real& resolution) {

@@ -227,9 +227,9 @@ class Contact {
   //
   // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast mode below a
   // bound that decreases (M3.5): so there is no zero before the time `settling` at which that bound meets the
-  // chord, found in two steps. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on u''
-  // proves that the sum falls from `settling` on, so that it has one zero there, which a Newton step from F
-  // finds.
+  // chord, found in two steps. (b) If the bound is then below rounding, F is the zero. (c) Else a bound on
+  // u'' proves that the sum falls from `settling` on, so that it has one zero there, which a Newton step from
+  // F finds.
   std::optional<Real> fall_of_slow_x(std::size_t order, const Real& sign, const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
     if (c.forcing || order > 1 || !c.slow.rings()) return {};
