@@ -6,7 +6,7 @@ do for [block in "exact-impacts exact-stiffness exact-restitution restitution-im
 eval canvas(1080, 640)
 set output output
 set multiplot layout 2,3 title "What an impact costs, everything included\n{/*0.82 ".parameters."}" font ",15" \
-  offset 0,-0.2 margins 0.075,0.985,0.11,0.89 spacing 0.05,0.06
+  offset 0,-0.2 margins 0.095,0.985,0.11,0.89 spacing 0.05,0.06
 set grid lc rgb pale lt 1
 set logscale y
 set mxtics 1
