@@ -1,6 +1,6 @@
-// The first fall of a function through zero, found by a Taylor lower bound (Lemma L1, M7.3): none is missed,
-// however grazing. Each step leads to the first root of the bound's cubic, which no root of the function
-// precedes; the steps converge with third order where the slope is not zero.
+// The first fall of a function through zero, found by a Taylor lower bound (docs/mathematics.md, 7.3: Lemma
+// L1, M7.3): none is missed, however grazing, unless it is lost in rounding errors. Each step leads to the
+// first root of the bound's cubic, to six digits and from below, which no root of the function precedes.
 //
 // Where g = main + rest with a bound on |rest| (a slow motion with a fast ringing on top; a straight flight
 // with an oscillation on top), main - bound > 0 is a second proof, which steps over many periods of the rest.
@@ -20,7 +20,7 @@ namespace impact_damper {
 template <class Real>
 struct Jet {
   Real g{0}, g1{0}, g2{0};  // a function and its first two derivatives at a point
-  Real third{0};            // bound on |g'''| for the time that the search is told (Search::span)
+  Real third{0};            // bound on |g'''| for a time Search::span from there on
 };
 
 template <class Real>
@@ -44,7 +44,7 @@ struct LowerCubic {
         half_third(third / 2) {}
   Real at(const Real& s) const { return g + s * (g1 + s * (half - s * sixth)); }
   Real slope(const Real& s) const { return g1 + s * (g2 - s * half_third); }
-  // From here on the cubic term is at least three times each other term, and p is not positive.
+  // From here on the cubic term is at least three times each positive other term, and p is not positive.
   Real negative_from() const {
     const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
     Real far = by_g > 1 ? square_root(by_g) : Real(1);
@@ -55,7 +55,8 @@ struct LowerCubic {
 };
 
 // Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
-// rising ground there is none. `done`: `from` is the root from below; else p has none before `from`.
+// rising ground there is none up to the inflection. `done`: `from` is a root of p, or a little before it;
+// else p has none before the inflection.
 template <class Real>
 struct ConvexPart {
   Real from;
@@ -76,8 +77,8 @@ ConvexPart<Real> step_through_convex_part(const LowerCubic<Real>& p, const Real&
   return {low, false};
 }
 
-// The root of p in [low, most], where p is concave, positive at `low` and negative at `most`, from below:
-// chords come from below, Newton's steps from above.
+// The root of p in [low, most], where p is concave, positive at `low` and negative at `most`, or a little
+// before it: chords come from below, Newton's steps from above.
 template <class Real>
 Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most) {
   Real high = most;
@@ -88,8 +89,8 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
     const Real parabola = (p.g1 + square_root(Real(p.g1 * p.g1 - 2 * p.g2 * p.g))) / -p.g2;
     if (parabola < high) high = parabola;
   }
-  // The root may be 1e300 times nearer. Quartering from zero is exact, so sixteen of the quarterings below,
-  // taken at once, come to the same number.
+  // The root may be 1e300 times nearer than `high`. Quartering from zero is exact, so sixteen of the
+  // quarterings below, taken at once, come to the same number.
   const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
   while (low == 0 && p.at(high * much_nearer) < 0) high *= much_nearer;
   // Wherever p is still positive lies before the root.
@@ -112,9 +113,9 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
   return low;
 }
 
-// A step s in (0, most] with p > 0 on (0, s): the first positive root of p, from below, to about six digits,
-// or `most` where it has none up to there. Needs p > 0 just after 0 (Lemma L1); if g = 0 and p is not, the
-// step proves nothing.
+// A step s in [0, most] with p > 0 on (0, s): the first positive root of p, from below, most often to six
+// digits, or `most` where it has none up to there. Needs p > 0 just after 0 (Lemma L1); if g = 0 and p is
+// not, the step is 0 or proves nothing.
 template <class Real>
 Real step_without_root(const Jet<Real>& jet, Real most) {
   SearchCounter<Real>::step();
@@ -129,17 +130,17 @@ Real step_without_root(const Jet<Real>& jet, Real most) {
   return root_of_concave_part(p, low, most);
 }
 
-// The root of the parabola, if it is the function's own but for a rounding error of `time` plus root: the
-// parabola falls there with at least half its slope here, the third derivative is too small to move the root
-// further, and no root can lie before it, as there is none up to `proven`.
+// The root of the parabola, if it is the function's own within 2 epsilon (time + root): the parabola falls
+// there with at least half its slope here, the third derivative is too small to move the root further, and no
+// root can lie before it: there is none up to `proven`, and from there on the function falls.
 template <class Real>
 std::optional<Real> root_of_parabola(const Jet<Real>& jet, const Real& proven, const Real& time) {
   const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
   if (!(jet.g1 < 0 && 4 * slope_2 > jet.g1 * jet.g1)) return {};
   const Real root = 2 * jet.g / (square_root(slope_2) - jet.g1);
-  const bool nothing_between = root <= proven + proven / 1024;
+  const bool is_next = root <= proven + proven / 1024;
   const Real rounding = 2 * std::numeric_limits<Real>::epsilon() * (time + root);
-  if (nothing_between && jet.third * root * root * root < -jet.g1 * rounding) return root;
+  if (is_next && jet.third * root * root * root < -jet.g1 * rounding) return root;
   return {};
 }
 
@@ -149,26 +150,26 @@ struct Root {
   std::size_t which;  // of the functions that were watched
 };
 
-// The first time in [from, horizon) at which one of several functions reaches zero from above.
+// The first time in [from, horizon) at which one of several functions falls through zero; `from` if one is
+// not positive and falls there. No two may be near zero at once: the gaps to both walls never are.
 // enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
-// time search.span. `resolution` is the shortest time in which a function changes: epsilon times it is the
-// accuracy of the root. Nothing also where the search has no steps left.
-// A function that is not positive but rises has just left its zero. Until it has risen by more than rounding,
-// steps double. They are not proved: what the function does meanwhile is lost in rounding errors.
-// No step depends on the horizon: a search that ends earlier is the beginning of one that ends later, to the
-// bit.
+// time search.span. `resolution` is the shortest time in which a function changes: a time t is told within 2
+// epsilon (t + resolution). Nothing also where the search has no steps left. A function that is neither
+// positive nor falls has just left its zero, and is taken for zero. Until a longer step than that
+// accuracy is proved, steps double. They are not proved: what the function does meanwhile is lost in rounding
+// errors. No step depends on the horizon: a search that ends earlier is the beginning of one that ends later,
+// to the bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,
                                      Search<Real>& search, const Real& resolution) {
   SearchCounter<Real>::search();
-  const Real later_than_any_run = 1e13,
-             most = search.span < later_than_any_run ? search.span : later_than_any_run;
+  const Real longest_run = 1e13, most = search.span < longest_run ? search.span : longest_run;
   Real time = from, wait{0};
   while (time < horizon) {
     if (!search.take_step()) return std::nullopt;
     SearchCounter<Real>::evaluation();
     const auto functions = enclose(time);
-    const Real rest_of_horizon = horizon - time;
+    const Real remaining = horizon - time;
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
     Real step = most;
     bool waits = false;
@@ -183,8 +184,8 @@ std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Re
       if (proven < most && function.main.g > function.rest) {
         Jet<Real> main = function.main;
         main.g -= function.rest;
-        const Real proven_without_rest = step_without_root(main, most);
-        if (proven_without_rest > proven) proven = proven_without_rest;
+        const Real proven_by_main = step_without_root(main, most);
+        if (proven_by_main > proven) proven = proven_by_main;
       }
       if (departed && proven < wait) proven = wait;
       waits = waits || (departed && !(proven > least && proven > wait));
@@ -193,7 +194,7 @@ std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Re
       near.reset();
       if (const auto root = root_of_parabola(jet, proven, time)) near = Root<Real>{time + *root, i};
     }
-    if (step >= rest_of_horizon) return std::nullopt;
+    if (step >= remaining) return std::nullopt;
     if (near) return near->time < horizon ? near : std::nullopt;
     if (!(step > least)) step = least;
     time += step;
@@ -211,8 +212,9 @@ std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const
   return root ? std::optional(root->time) : std::nullopt;
 }
 
-// Where to begin a search if a function begins with its third derivative alone (M7.4): before that the sign
-// of a u'' that is zero to rounding would decide. At most `span`, for which the bound `fourth` holds.
+// How long after its beginning to begin the search for a fall of u, if u, u' and u'' are zero but for
+// rounding (M7.4): until then u has the sign of u''' there, `third`. At most `span`, for which `fourth`, a
+// bound on |u''''|, holds.
 template <class Real>
 Real begin_by_third(const Real& third, const Real& fourth, const Real& span) {
   const Real leap = 2 * absolute(third) / fourth;
