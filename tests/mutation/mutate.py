@@ -9,8 +9,9 @@ The fast tests are the doctest binaries, in the order of what they cost, those n
 the one that has caught the fault before first; at last the command lines and files of tests/cli and tests/corpus. Not
 among them are the comparisons with data/reference/, which would notice any change at all, right or wrong.
 
-The pass goes on where it was stopped: what was caught, or has its excuse, is not done again while its line in the
-sources stays as it is, unless with --afresh.
+The pass takes hours, and goes on where it was stopped, on another machine, too: found.json keeps what was found of each
+fault. What was caught, or has its excuse, is not done again while its line in the sources stays as it is, unless with
+--afresh.
 """
 
 import argparse
@@ -222,6 +223,12 @@ def examine(tree, fault, sound, before):
     return "survived", ""
 
 
+def keep(file, known):
+    half = file.with_suffix(".tmp")
+    half.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n")
+    half.rename(file)
+
+
 def page(faults, results):
     """The table as Markdown, and whether all is well."""
     caught = [fault for fault, result in results if result["verdict"] == "caught"]
@@ -271,7 +278,8 @@ def main():
     state = json.loads(memory.read_text()) if memory.exists() else {}
     check_sound(tree, state, memory)
 
-    known = state.setdefault("results", {})
+    found = HERE / "found.json"
+    known = json.loads(found.read_text()) if found.exists() else {}
     results = []
     for number, fault in enumerate(faults, 1):
         file = tree.sources / LIBRARY / fault.file
@@ -289,14 +297,15 @@ def main():
                 verdict, by = examine(tree, fault, state["sound"], before)
             finally:
                 tree.restore(file, text, times)
-            before = known[key] = {"verdict": verdict, "by": by, "seconds": round(time.monotonic() - begin, 1)}
-            memory.write_text(json.dumps(state, indent=1))
-            print(f"- {verdict}, {before['seconds']:.0f} s: {by[:2000]}", file=sys.stderr)
+            before = known[key] = {"verdict": verdict, "by": by}
+            keep(found, known)
+            print(f"- {verdict}, {time.monotonic() - begin:.0f} s: {by[:2000]}", file=sys.stderr)
         if before:
-            results.append((fault, before))
+            results.append((fault, key, before))
     if not results:
         sys.exit("no fault matches")
-    text, well = page(faults, results)
+    keep(found, {key: result for _, key, result in results})  # without those of faults that are no more
+    text, well = page(faults, [(fault, result) for fault, _, result in results])
     (HERE / "results.md").write_text(text)
     print("\n".join(text.splitlines()[2:3]))
     sys.exit(0 if well else 1)
