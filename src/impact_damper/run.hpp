@@ -1,7 +1,7 @@
 // A run: what an engine made of a scene, as columns. Written to and read from JSON by io/run_file.hpp.
 // Dimensionless throughout: times in units of 1/Omega_n, lengths of epsilon, velocities of epsilon Omega_n,
-// energies of K epsilon^2. x and v = x' belong to the primary mass; y is the distance of the secondary mass
-// from the left wall, w = y' its velocity relative to the cavity.
+// energies of K epsilon^2. x and v = x' belong to the primary mass; y is the distance of a secondary mass
+// from its left wall, w = y' its velocity relative to the cavity.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,8 @@ struct HalfCycles {
   std::vector<double> peak_time;      // when the amplitude is reached
   std::vector<double> amplitude;      // largest |x| in the row, divided by epsilon
   std::vector<std::int64_t> impacts;  // impacts in the row; a sustained contact counts as one
+  // The same of each of several dampers, by its number in the scene; empty where the scene has one.
+  std::vector<std::vector<std::int64_t>> impacts_by_damper;
 };
 
 struct Impacts {
@@ -44,6 +46,9 @@ struct Impacts {
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // of that half cycle; absent only in the unfinished one
   std::vector<double> displacement;              // x at the impact, divided by epsilon
+  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts of
+  // one instant are in this order.
+  std::vector<std::int32_t> damper;
 };
 
 // Compliant walls: every contact, from the wall position to the return to it. Restitution: the
@@ -52,11 +57,17 @@ struct Impacts {
 struct Contacts {
   std::vector<double> begin, end;
   std::vector<Wall> wall;
+  std::vector<std::int32_t> damper;  // as that of Impacts
 };
 
 // The motion at the sample times of a Record.
 struct History {
-  std::vector<double> time, x, v, y, w;
+  std::vector<double> time, x, v;
+  std::vector<double> y, w;  // of a scene's one damper
+  struct Damper {
+    std::vector<double> y, w;
+  };
+  std::vector<Damper> dampers;  // of several, and then the two above are empty
 };
 
 // Energies divided by K epsilon^2, at one instant.
@@ -66,6 +77,14 @@ struct Energy {
   double wall = 0;     // k q^2 / 2 in contact with a compliant wall that is displaced by q
   double paper = 0;    // the paper's own total: (v^2 + nu (v^2 + w^2) + x^2) / 2
   double total() const { return kinetic + spring + wall; }
+};
+
+// What one of several dampers has to do with an EnergyBalance, divided by K epsilon^2.
+struct DamperEnergy {
+  double initial_kinetic = 0, final_kinetic = 0;  // nu (v + w)^2 / 2
+  double impact_loss = 0;                         // of all its impacts
+  std::int64_t bounce_downs = 0;                  // accumulation points jumped to
+  double bounce_down_loss = 0;                    // in the impacts jumped over
 };
 
 // initial.total() + forcing_work
@@ -85,6 +104,7 @@ struct EnergyBalance {
   // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it tells the
   // fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
   double reactive_work = 0;
+  std::vector<DamperEnergy> dampers;  // of several, by number in the scene; empty where the scene has one
 };
 
 // Largest allowed number of rows that budgets may give a recorded section, and of samples of a history in

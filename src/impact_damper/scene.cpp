@@ -25,12 +25,36 @@ const std::array<SceneField, 10> scene_fields{{
     {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, "forcing frequency omega_f"},
 }};
 
-std::vector<Problem> problems_of(const Scene& scene) {
+const std::array<SceneDamperField, 6> scene_damper_fields{{
+    {"mass_ratio", &SceneDamper::mass_ratio, 1e-9, 1e6, "secondary to primary mass, nu"},
+    {"restitution", &SceneDamper::restitution, 0.0, 1.0, "coefficient of restitution, e"},
+    {"clearance", &SceneDamper::clearance, 1e-6, 1e6, "free travel of the secondary mass"},
+    {"wall_stiffness", &SceneDamper::wall_stiffness, 1e-6, 1e15, "wall to primary spring stiffness, k"},
+    {"y0", &SceneDamper::y0, -largest, largest, "initial distance of the secondary mass from the left wall"},
+    {"w0", &SceneDamper::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
+}};
+
+std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range) {
     if (range.allows(value)) return;
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
+  if (dampers == DamperList::rejected && !scene.dampers.empty()) {
+    problems.push_back({"dampers", "several dampers are for run and the restitution engine only"});
+    return problems;
+  }
+  if (scene.dampers.size() > most_dampers) {
+    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers) + ", got " +
+                                       std::to_string(scene.dampers.size())});
+    return problems;
+  }
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    for (const SceneDamperField& field : scene_damper_fields) {
+      check("dampers[" + std::to_string(i) + "]." + std::string(field.name), scene.dampers[i].*field.member,
+            {field.least, field.most});
+    }
+  }
   for (const SceneField& field : scene_fields) {
     check(field.name, scene.*field.member, {field.least, field.most});
   }

@@ -1,13 +1,15 @@
 // A scene: the one system that is simulated, and when to stop looking at it.
 //
 // A primary mass on a spring (and, if zeta > 0, a viscous damper) carries a cavity in which a
-// secondary mass travels freely between two walls. Everything is dimensionless: lengths are divided by the
-// free travel (clearance) epsilon = D - d, times by 1/Omega_n = sqrt(M/K), velocities by epsilon Omega_n,
-// forces by K epsilon. Small letters and capitals are the paper's: m secondary, M primary mass; K spring, C
-// damper of the primary mass, C_c its critical damping; K_M stiffness of a wall.
+// secondary mass travels freely between two walls; or several such cavities, each with a secondary mass of
+// its own. Everything is dimensionless: lengths are divided by the free travel (clearance) epsilon = D - d,
+// with several dampers by one reference length for all, times by 1/Omega_n = sqrt(M/K), velocities by epsilon
+// Omega_n, forces by K epsilon. Small letters and capitals are the paper's: m secondary, M primary mass; K
+// spring, C damper of the primary mass, C_c its critical damping; K_M stiffness of a wall.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,20 @@
 #include "impact_damper/base/errors.hpp"
 
 namespace impact_damper {
+
+// One of several impact dampers on the same primary mass.
+struct SceneDamper {
+  double mass_ratio = 0.02;     // nu = m/M, 1e-9 to 1e6
+  double restitution = 0.6;     // e, 0 (plastic) to 1 (lossless)
+  double clearance = 1.0;       // free travel, divided by the scene's epsilon, 1e-6 to 1e6
+  double wall_stiffness = 1e4;  // k = K_M/K, 1e-6 to 1e15; the restitution engine's walls are rigid
+  double y0 =
+      0.0;  // initial distance from the left wall, divided by epsilon; the right wall is at `clearance`
+  double w0 = 0.0;  // initial velocity y' relative to the cavity, divided by epsilon Omega_n
+
+  bool operator==(const SceneDamper&) const = default;
+};
+inline constexpr std::size_t most_dampers = 1000;
 
 struct Scene {
   double mass_ratio = 0.02;     // nu = m/M, 1e-9 to 1e6
@@ -26,7 +42,11 @@ struct Scene {
   // Initial distance of the secondary mass from the left wall, divided by epsilon: 0 at the left, 1 at the
   // right wall. Outside them it begins by pressing a wall together, which needs compliant walls.
   double y0 = 0.0;
-  double w0 = 0.0;               // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  // Several dampers in place of the one above, whose numbers (mass_ratio, restitution, wall_stiffness, y0,
+  // w0) then mean nothing. Their order changes no number of a run. At most most_dampers; empty: the one
+  // above.
+  std::vector<SceneDamper> dampers;
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
   // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12. (The
@@ -48,10 +68,23 @@ struct SceneField {
 };
 extern const std::array<SceneField, 10> scene_fields;
 
+// The same for one of several dampers.
+struct SceneDamperField {
+  std::string_view name;
+  double SceneDamper::*member;
+  double least, most;
+  std::string_view meaning;
+};
+extern const std::array<SceneDamperField, 6> scene_damper_fields;
+
+// Whether who asks can treat a scene with several dampers.
+enum class DamperList { rejected, allowed };
+
 // What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
-// A NaN is always an offence. Empty means that the exact engine may run it. simulate() checks what the
-// others ask for besides: the restitution engine 0 <= y0 <= 1, the component element method a time step
-// within its stability limit.
-std::vector<Problem> problems_of(const Scene& scene);
+// A NaN is always an offence. A damper's field is named as "dampers[2].clearance", counted from 0. Empty
+// means that the exact engine may run it, if it has no list of dampers. simulate() checks what the others ask
+// for besides: the restitution engine 0 <= y0 <= clearance, the component element method a time step within
+// its stability limit.
+std::vector<Problem> problems_of(const Scene& scene, DamperList dampers = DamperList::rejected);
 
 }  // namespace impact_damper
