@@ -26,6 +26,7 @@ struct Options {
   std::int64_t first = 1, count = 100;
   std::optional<Scene> scene;
   std::int64_t most_failures = 1;
+  bool verbose = false;
   Tolerances tolerances;
 };
 
@@ -48,6 +49,9 @@ int compare_all(const Options& options) {
       const auto seed = std::uint64_t(options.first + i);
       const Scene scene = kind == "random" ? random_scene(seed) : round_scene(seed);
       const Comparison result = compare(scene, options.tolerances);
+      if (options.verbose && !result.ended_by.empty())
+        std::cout << kind << " seed " << seed << ": compared until " << oracle::text(result.until, 8)
+                  << " of " << oracle::text(result.asked, 8) << ", " << result.ended_by << '\n';
       ++scenes;
       whole += result.until == result.asked;
       share += result.until / result.asked;
@@ -115,6 +119,8 @@ int run(const std::vector<std::string>& words) {
       options.tolerances.begin = *number;
     else if (word == "--growth" && number && *number > 0)
       options.tolerances.growth = *number;
+    else if (word == "--verbose" && whole)
+      options.verbose = *whole != 0;
     else if (word == "--scene")
       options.scene = read_scene(value);
     else

@@ -24,8 +24,9 @@ constexpr double step_by_rate = 4;
 const Quad zero_within_rounding = Quad(1e-29L);
 // Events nearer to each other than this, times 1 + t, are one instant.
 const Quad one_instant = Quad(1e-28L);
-// A rebound slower than this part of the motion's speeds is none.
-const Quad no_rebound = Quad(1e-22L);
+// After a rebound slower than this part of the motion's speeds the rest of a complete chattering is taken at
+// once: what it moves, and the loss, is of the order of this number squared.
+const Quad no_rebound = Quad(1e-13L);
 
 struct Damper {
   Quad nu, e, clearance;
@@ -51,6 +52,7 @@ void clear_leading(Polynomial& p) {
 std::vector<Root> roots_after_start(const Polynomial& p) {
   int first = 0;
   while (first < p.degree && p.at[first] == 0) ++first;
+  if (2 * magnitude(p.at[first]) > p.sum_of_magnitudes() * (1 + zero_within_rounding)) return {};
   return changes_of_sign(first == 0 ? p : divided_by_power(p, first));
 }
 
@@ -122,6 +124,9 @@ class Integrator {
     return question_.fault == Fault::own_mass_only ? 1 + most : mass;
   }
 
+  // On all that moves together with the primary mass.
+  Quad force() const { return (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_; }
+
   // x = x(s), t = t + h s, by Taylor's coefficients up to the order that leaves nothing.
   void expand(Quad h) {
     h_ = h;
@@ -159,8 +164,13 @@ class Integrator {
   void decide() {
     const auto rests = [](const Damper& each) { return each.d == 0 && each.s == 0; };
     if (std::none_of(dampers_.begin(), dampers_.end(), rests)) return;
-    expand(step_by_rate / rate_);
-    const int first = leading(pa_), push = first < 0 ? 0 : sign_of(pa_.at[first]);
+    const Quad now = force();
+    int push = sign_of(now);
+    if (magnitude(now) <= Quad(1e-15L) * (magnitude(x_) + magnitude(v_) + magnitude(f0_))) {
+      expand(step_by_rate / rate_);
+      const int first = leading(pa_);
+      push = first < 0 ? 0 : sign_of(pa_.at[first]);
+    }
     for (Damper& each : dampers_) {
       if (!rests(each)) continue;
       const bool sticks = push == each.side;
@@ -179,18 +189,24 @@ class Integrator {
   }
 
   void advance() {
-    if (std::int64_t(answer_.impacts.size()) > question_.most_impacts || ++steps_ > 100'000) {
+    if (std::int64_t(answer_.impacts.size()) > question_.most_impacts ||
+        ++steps_ > 4 * question_.most_impacts) {
       answer_.complete = false;
       return;
     }
     if (!released_) decide();
     released_ = false;
     Quad h = step_by_rate / rate_;
-    const Quad force = (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_;
-    const Quad acceleration = force / joined_mass();
-    for (const Damper& each : dampers_) {  // a rebound that will be short needs no long step
-      const Quad push = each.side * acceleration;
-      if (!each.stuck && each.d == 0 && each.s > 0 && push > 0) h = std::min(h, 8 * each.s / push);
+    const Quad acceleration = force() / joined_mass();
+    for (const Damper& each : dampers_) {  // what will soon be at a wall needs no long step
+      if (each.stuck) continue;
+      const double push = double(each.side * acceleration), speed = double(each.s);
+      const double way = double(push > 0 ? each.d : each.clearance - each.d),
+                   towards = push > 0 ? -speed : speed;
+      const double time =
+          (std::sqrt(towards * towards + 2 * std::fabs(push) * std::max(way, 0.0)) - towards) /
+          std::fabs(push);
+      if (time > 0) h = std::min(h, Quad(2 * time));
     }
     const bool last = h >= until_ - t_;
     if (last) h = until_ - t_;
@@ -256,13 +272,14 @@ class Integrator {
     const auto event = std::uint64_t(++events_) << 8;
     x_ = noisy(x_, event + 11);
     v_ = noisy(v_, event + 12);
+    const Quad shift = noisy(1, event + 16) - 1;
     for (Damper& each : dampers_) {
       if (each.stuck) continue;
       each.s = noisy(each.s, event + 13);
-      if (each.s < 0)
-        each.d = noisy(each.d, event + 14 + (each.side > 0));
-      else if (each.d > 0)
-        each.d = each.clearance - noisy(each.clearance - each.d, event + 16 + (each.side > 0));
+      // All in one direction, too, so that those as far from the same wall remain so; not in a chattering,
+      // where distances are small.
+      if (each.s < 0) each.d = noisy(each.d, event + 14 + (each.side > 0));
+      if (magnitude(each.d) > Quad(1e-3L)) each.d += each.side * shift;
     }
   }
 
@@ -315,7 +332,7 @@ class Integrator {
     // What is not at a wall sees the jump, too: its velocity relative to the cavity.
     for (Damper& each : dampers_)
       if (std::find(all.begin(), all.end(), &each) == all.end() && !each.stuck) each.s -= each.side * jump;
-    const Quad force = (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_;
+    const Quad now = force();
     const Quad speeds = magnitude(v_) + magnitude(x_) + magnitude(f0_);
     for (Damper* each : all) {
       const Quad before = each->s, e = e_of(*each);
@@ -328,13 +345,31 @@ class Integrator {
         answer_.impacts.push_back({t_, number, each->wall(), each->side * before, x_, loss, active});
         answer_.damper_loss[number] += loss;
       }
-      // The rest of a complete chattering, once it changes nothing.
-      const Quad push = each->side * force / joined_mass();
+      const Quad joined = joined_mass();
       const Quad least = question_.fault == Fault::chattering_cut_short ? Quad(1e-4L) : no_rebound * speeds;
-      if (each->s > 0 && each->s <= least && push > 0 && e < 1 && 2 * each->s <= push * (1 - e) * Quad(1e-4L))
-        each->s = 0;
+      if (each->s > 0 && each->s <= least && e < 1 &&
+          2 * each->s * joined <= each->side * now * (1 - e) * Quad(1e-4L))
+        join(*each);
       if (each->s > 0) leave(*each);
     }
+  }
+
+  // The rest of its chattering: it gives its momentum to the primary mass and what rests on the same wall.
+  void join(Damper& each) {
+    Quad mass = 1 + each.nu;
+    const auto rests = [&](const Damper& other) {
+      return &other != &each && other.side == each.side && other.d == 0 && other.s == 0;
+    };
+    for (const Damper& other : dampers_)
+      if (rests(other)) mass += other.nu;
+    const Quad jump = each.side * each.nu * each.s / mass;
+    answer_.damper_loss[&each - dampers_.data()] += each.nu * (mass - each.nu) / mass * each.s * each.s / 2;
+    if (question_.fault != Fault::chattering_cut_short) {
+      v_ += jump;
+      for (Damper& other : dampers_)
+        if (&other != &each && !rests(other)) other.s -= other.side * jump;
+    }
+    each.s = 0;
   }
 
   void work(Quad end) {

@@ -42,7 +42,7 @@ struct Question {
   // Equal numbers are changed equally: what coincides by them still does.
   double noise = 0;
   std::uint64_t seed = 0;
-  std::int64_t most_impacts = 6000;
+  std::int64_t most_impacts = 8000;
   Fault fault = Fault::none;
 };
 

@@ -26,8 +26,8 @@ Scene random_scene(std::uint64_t seed) {
   const int count = 1 + int(random.bits() % 6);
   for (int i = 0; i < count; ++i) {
     SceneDamper damper;
-    // Some are as the one before, or at least begin so.
-    if (i > 0 && random.chance(0.15)) damper = scene.dampers.back();
+    // Some begin as the one before.
+    if (i > 0) damper = scene.dampers.back();
     if (i == 0 || random.chance(0.7)) {
       damper.clearance = random.log_uniform(0.1, 10);
       const int start = int(random.bits() % 4);
