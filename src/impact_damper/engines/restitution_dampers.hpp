@@ -168,8 +168,9 @@ class RestitutionOfDampers {
       const auto met = masses_.rests(i) ? flight.released_meets_wall(until, tracker_.search())
                                         : flight.next_wall(until, tracker_.search());
       if (!met) continue;
-      const Real way = masses_.clearance[i] + absolute(masses_.u1[i]) * met->time,
-                 speed = absolute(met->state.w);
+      // What rounding leaves of its distance from that wall.
+      const Real from = met->wall == masses_.wall(i) ? masses_.u[i] : masses_.clearance[i];
+      const Real way = absolute(from) + absolute(masses_.u1[i]) * met->time, speed = absolute(met->state.w);
       meeting_.push_back({i, met->time, met->wall, 4 * std::numeric_limits<Real>::epsilon() * way / speed});
       if (met->time < earliest) earliest = met->time;
     }
