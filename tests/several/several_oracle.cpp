@@ -345,10 +345,12 @@ class Integrator {
         answer_.impacts.push_back({t_, number, each->wall(), each->side * before, x_, loss, active});
         answer_.damper_loss[number] += loss;
       }
+    }
+    for (Damper* each : all) {
       const Quad joined = joined_mass();
       const Quad least = question_.fault == Fault::chattering_cut_short ? Quad(1e-4L) : no_rebound * speeds;
-      if (each->s > 0 && each->s <= least && e < 1 &&
-          2 * each->s * joined <= each->side * now * (1 - e) * Quad(1e-4L))
+      if (each->s > 0 && each->s <= least && each->e < 1 &&
+          2 * each->s * joined <= each->side * now * (1 - each->e) * Quad(1e-4L))
         join(*each);
       if (each->s > 0) leave(*each);
     }
