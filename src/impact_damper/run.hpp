@@ -4,6 +4,7 @@
 // from its left wall, w = y' its velocity relative to the cavity.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -86,6 +87,17 @@ struct DamperEnergy {
   std::int64_t bounce_downs = 0;                  // accumulation points jumped to
   double bounce_down_loss = 0;                    // in the impacts jumped over
 };
+
+// Those that are energies, by their names in a run file.
+struct DamperEnergyField {
+  std::string_view name;
+  double DamperEnergy::*member;
+};
+inline constexpr std::array<DamperEnergyField, 4> damper_energy_fields{
+    {{"initial_kinetic", &DamperEnergy::initial_kinetic},
+     {"final_kinetic", &DamperEnergy::final_kinetic},
+     {"impact_loss", &DamperEnergy::impact_loss},
+     {"bounce_down_loss", &DamperEnergy::bounce_down_loss}}};
 
 // initial.total() + forcing_work
 //     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work
