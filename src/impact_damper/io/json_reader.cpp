@@ -384,8 +384,8 @@ std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, s
   }
   if (too_long(key, most, *value)) return objects;
   if (value->size() < least) {
-    reject(key,
-           "must have at least " + std::to_string(least) + " elements, got " + std::to_string(value->size()));
+    reject(key, "must have at least " + std::to_string(least) +
+                    (least == 1 ? " element, got " : " elements, got ") + std::to_string(value->size()));
     return objects;
   }
   for (std::size_t i = 0; i < value->size(); ++i) {
