@@ -15,7 +15,8 @@ Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
 }
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
-  return run_restitution<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_restitution<double>(scene, options, recorder)
+                               : run_restitution_dampers<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
@@ -24,7 +25,7 @@ Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {
-  std::vector<Problem> problems = problems_of(scene);
+  std::vector<Problem> problems = problems_of(scene, DamperList::allowed);
   const auto add_all = [&](const std::vector<Problem>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
@@ -35,15 +36,18 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
 
   // What would not fit into memory is not begun.
-  const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what) {
-    if (rows <= most_rows) return;
-    problems.push_back({field, "must be <= " + std::to_string(most_rows) + " where " + what +
-                                   " recorded, got " + std::to_string(rows)});
+  const std::int64_t dampers = std::max<std::int64_t>(1, std::int64_t(scene.dampers.size()));
+  const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what,
+                           std::int64_t most = most_rows) {
+    if (rows <= most) return;
+    problems.push_back({field, "must be <= " + std::to_string(most) + " where " + what + " recorded, got " +
+                                   std::to_string(rows)});
   };
   if (record.impacts || record.contacts || record.energy) {
     bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
   }
-  if (record.half_cycles) bounded("max_half_cycles", budget.max_half_cycles, "half cycles are");
+  if (record.half_cycles)
+    bounded("max_half_cycles", budget.max_half_cycles, "half cycles are", most_rows / dampers);
   std::int64_t samples = 0;
   const auto add = [&](const auto& windows) {
     for (const auto& window : windows) {
@@ -52,9 +56,10 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const
   };
   add(record.history);
   add(record.history_below);
-  if (samples > most_samples) {
-    problems.push_back({record.history.empty() ? "history_below" : "history",
-                        "must ask for at most " + std::to_string(most_samples) + " samples in all"});
+  if (samples > most_samples / dampers) {
+    problems.push_back(
+        {record.history.empty() ? "history_below" : "history",
+         "must ask for at most " + std::to_string(most_samples / dampers) + " samples in all"});
   }
 
   if (!record.history.empty() && !record.history_below.empty()) {
@@ -91,7 +96,7 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   Run result;
   result.scene = scene;
   result.engine = engine;
-  Recorder recorder(record);
+  Recorder recorder(record, scene.dampers.size());
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
+#include <span>
 
 #include "impact_damper/run.hpp"
 
@@ -34,6 +36,22 @@ concept RunObserver = requires(T observer, const T asked, double number, Wall wa
   observer.sample(number, number, number, number, number);
   // Where the engine writes the energies. Called only if wants_energy().
   { observer.energy_balance() } -> std::same_as<EnergyBalance&>;
+};
+
+// Where one of several dampers' secondary masses is: y and y', divided as in run.hpp.
+struct PlaceInCavity {
+  double y, w;
+};
+// What the engine of several dampers (restitution_dampers.hpp) asks and reports besides: which damper, by its
+// number in the scene, from 0. Impacts of one instant come in the order of these numbers.
+template <class T>
+concept DampersObserver = RunObserver<T> &&
+    requires(T observer, double number, Wall wall, std::int32_t damper,
+             std::span<const PlaceInCavity> places) {
+  observer.impact(number, wall, number, number, damper);
+  observer.contact(number, number, wall, damper);
+  // Time, x, x', and y and y' of each damper.
+  observer.sample(number, number, number, places);
 };
 
 }  // namespace impact_damper

@@ -6,6 +6,7 @@
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_dampers.hpp"
 
 namespace impact_damper {
 
@@ -16,6 +17,7 @@ extern template Outcome run_exact(const FreeSystem&, const Scene&, const Exact&,
 extern template Outcome run_exact(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
+extern template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_cem<double>(const Scene&, const Cem&, Recorder&);
 
 }  // namespace impact_damper

@@ -5,10 +5,13 @@
 
 namespace impact_damper {
 
-Recorder::Recorder(const Record& record)
+Recorder::Recorder(const Record& record, std::size_t dampers)
     : wants_(record),
       wants_half_cycles_(record.half_cycles || record.impacts || !record.history_below.empty()),
+      impacts_in_row_of_(dampers),
       windows_(record.history) {
+  half_cycles_.impacts_by_damper.resize(dampers);
+  history_.dampers.resize(dampers);
   advance_window();
 }
 
@@ -18,6 +21,8 @@ void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, 
     half_cycles_.peak_time.push_back(peak_time);
     half_cycles_.amplitude.push_back(amplitude);
     half_cycles_.impacts.push_back(impacts_in_row_);
+    for (std::size_t i = 0; i < impacts_in_row_of_.size(); ++i)
+      half_cycles_.impacts_by_damper[i].push_back(std::exchange(impacts_in_row_of_[i], 0));
   }
   for (std::size_t i = first_impact_in_row_; i < impacts_.time.size(); ++i) {
     if (row_ > 0) impacts_.phase_deg[i] = 180 * ((impacts_.time[i] - begin) / (zero_crossing - begin));
@@ -54,12 +59,36 @@ void Recorder::contact(double begin, double end, Wall wall) {
   contacts_.wall.push_back(wall);
 }
 
+void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement,
+                      std::int32_t damper) {
+  impact(time, wall, relative_velocity, displacement);
+  ++impacts_in_row_of_[damper];
+  if (wants_.impacts) impacts_.damper.push_back(damper);
+}
+
+void Recorder::contact(double begin, double end, Wall wall, std::int32_t damper) {
+  contact(begin, end, wall);
+  contacts_.damper.push_back(damper);
+}
+
 void Recorder::sample(double time, double x, double v, double y, double w) {
+  history_.y.push_back(y);
+  history_.w.push_back(w);
+  sample(time, x, v);
+}
+
+void Recorder::sample(double time, double x, double v, std::span<const PlaceInCavity> places) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    history_.dampers[i].y.push_back(places[i].y);
+    history_.dampers[i].w.push_back(places[i].w);
+  }
+  sample(time, x, v);
+}
+
+void Recorder::sample(double time, double x, double v) {
   history_.time.push_back(time);
   history_.x.push_back(x);
   history_.v.push_back(v);
-  history_.y.push_back(y);
-  history_.w.push_back(w);
   ++sample_in_window_;
   advance_window();
 }

@@ -4,15 +4,18 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "impact_damper/engines/observer.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
 
 class Recorder {
  public:
-  explicit Recorder(const Record& record);
+  // dampers: how many there are, if the scene has a list of them, else 0.
+  explicit Recorder(const Record& record, std::size_t dampers = 0);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
   bool wants_contacts() const { return wants_.contacts; }
@@ -23,11 +26,14 @@ class Recorder {
   // An impact on `wall` with y' = relative_velocity just before, while x = displacement.
   void impact(double time, Wall wall, double relative_velocity, double displacement);
   void contact(double begin, double end, Wall wall);
+  void impact(double time, Wall wall, double relative_velocity, double displacement, std::int32_t damper);
+  void contact(double begin, double end, Wall wall, std::int32_t damper);
 
   // When the next history sample is wanted; infinity where none is known of yet. A half cycle may open a
   // window that begins at its own zero crossing, so ask again after each.
   double next_sample() const { return next_sample_; }
   void sample(double time, double x, double v, double y, double w);
+  void sample(double time, double x, double v, std::span<const PlaceInCavity> places);
 
   EnergyBalance& energy_balance() { return energy_balance_; }
 
@@ -35,6 +41,7 @@ class Recorder {
   void finish(Run& run);
 
  private:
+  void sample(double time, double x, double v);
   void advance_window();
 
   Record wants_;
@@ -46,6 +53,7 @@ class Recorder {
   EnergyBalance energy_balance_;
   std::int64_t row_ = 0;
   std::int64_t impacts_in_row_ = 0;
+  std::vector<std::int64_t> impacts_in_row_of_;  // each of several dampers
   std::size_t first_impact_in_row_ = 0;
   std::vector<HistoryWindow> windows_;  // known of and not yet sampled to the end, ascending
   std::size_t window_ = 0;

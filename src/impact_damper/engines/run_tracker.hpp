@@ -53,8 +53,9 @@ class RunTracker {
   Search<Real>& search() { return search_; }
 
   void begin(const State<Real>& start, const Real& depth) {
-    if (observer_.wants_energy()) observer_.energy_balance().initial = energy_of(system_, start, depth);
+    if (observer_.wants_energy()) begin(energy_of(system_, start, depth));
   }
+  void begin(const Energy& energy) { observer_.energy_balance().initial = energy; }
 
   // Lets `duration` of a motion pass, less if the scene ends in it; `end` is then the state at that time.
   // Returns the works in it.
@@ -97,19 +98,26 @@ class RunTracker {
   // An impact that is about to happen, in state `s`. False: it was one too many, and the scene ends before
   // it.
   bool impact(Wall wall, const State<Real>& s) {
-    if (impacts_ >= budget_.max_impacts) {
+    if (!has_room_for(1)) return false;
+    observer_.impact(double(now()), wall, double(s.w), double(s.x));
+    return true;
+  }
+  // The same of several at one instant, of which none is told.
+  bool has_room_for(std::int64_t impacts) {
+    if (impacts > budget_.max_impacts - impacts_) {
       stopped_ = StopReason::impact_budget;
       return false;
     }
-    ++impacts_;
-    observer_.impact(double(now()), wall, double(s.w), double(s.x));
+    impacts_ += impacts;
     return true;
   }
 
   void finish(const State<Real>& last, const Real& depth, const Real& losses) {
-    if (!observer_.wants_energy()) return;
+    if (observer_.wants_energy()) finish(energy_of(system_, last, depth), losses);
+  }
+  void finish(const Energy& energy, const Real& losses) {
     EnergyBalance& balance = observer_.energy_balance();
-    balance.final = energy_of(system_, last, depth);
+    balance.final = energy;
     balance.viscous_work = double(viscous_);
     balance.forcing_work = double(forcing_);
     balance.reactive_work = double(reactive_);
@@ -126,8 +134,13 @@ class RunTracker {
     while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
       if (t < 0) t = 0;
-      const State<Real> s = motion.at(t < duration ? t : duration);
-      observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
+      if (!(t < duration)) t = duration;
+      if constexpr (requires { motion.tell_sample(observer_, t); }) {
+        motion.tell_sample(observer_, t);
+      } else {
+        const State<Real> s = motion.at(t);
+        observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
+      }
     }
   }
   template <MotionOf<Real> Motion>

@@ -7,19 +7,20 @@
 
 namespace impact_damper {
 
-// Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and 1
-// (Lemma L2). from: u0 and its first three derivatives; slope1: its derivative at the other end, where it is
-// u1; fourth: a bound on its fourth derivative in between.
+// Whether a distance, u0 at one end and u1 at the other, a time h apart, is proved to stay between 0 and
+// `gap` (Lemma L2). from: u0 and its first three derivatives; slope1: its derivative at the other end, where
+// it is u1; fourth: a bound on its fourth derivative in between.
 template <class Real>
 [[gnu::always_inline]] inline bool stays_between(const Derivatives<Real, 4>& from, const Real& u1,
-                                                 const Real& slope1, const Real& h, const Real& fourth) {
+                                                 const Real& slope1, const Real& h, const Real& fourth,
+                                                 const Real& gap = Real(1)) {
   const Real& u0 = from[0];
   const Real& slope0 = from[1];
   const Real quarter = h / 4, off = fourth * (h * h) * (h * h) * (Real(1) / 144);
   const Real after = u0 + quarter * slope0, before = u1 - quarter * slope1;
   const auto& over = reciprocals<Real>;
   const Real middle = (u0 + u1) / 2 + h * (slope0 - slope1) * over[6];
-  if (!(u0 >= 0 && u1 >= 0 && u0 <= 1 && u1 <= 1 && after <= 1 && before <= 1 && middle < 1 - off))
+  if (!(u0 >= 0 && u1 >= 0 && u0 <= gap && u1 <= gap && after <= gap && before <= gap && middle < gap - off))
     return false;
   if (after >= 0 && before >= 0 && middle > off) return true;
   // Else it stays above 0 if neither slope nor second derivative pulls it back and its third derivative

@@ -60,16 +60,17 @@ struct FirstGuess {
 };
 template <class Real, std::size_t N>
 [[gnu::always_inline]] inline FirstGuess<Real> guess_by_parabola(const Derivatives<Real, N>& u,
-                                                                 const Real& most) {
+                                                                 const Real& most,
+                                                                 const Real& gap = Real(1)) {
   const bool from_rest = u[1] == 0 && u[2] == 0;
   const bool rising = u[1] > 0 || (u[1] == 0 && u[2] > 0) || (from_rest && u[3] > 0);
-  const Real ahead = rising ? Real(1 - u[0]) : u[0];
+  const Real ahead = rising ? Real(gap - u[0]) : u[0];
   const Real speed = absolute(u[1]), push = rising ? u[2] : Real(-u[2]);
   const Real reach = speed * speed + 2 * push * ahead;
   const bool arrives = reach >= 0;
   const Real t = arrives     ? Real(2 * ahead / (speed + square_root(reach)))
                  : u[0] == 0 ? Real(2 * speed / -push)
-                             : Real((speed + square_root(Real(reach - 2 * push))) / -push);
+                             : Real((speed + square_root(Real(reach - 2 * push * gap))) / -push);
   return {t < most ? t : from_rest ? Real(most * Real(0.75)) : most, arrives == rising};
 }
 
@@ -87,9 +88,9 @@ template <class Real>
   return omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate);
 }
 
-// Predicts when a mass in a gap of 1 meets a wall, and `most` at the latest: by the parabola, then by
-// Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall that the flight is
-// measured from, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
+// Predicts when a mass in a gap, of 1 unless told, meets a wall, and `most` at the latest: by the parabola,
+// then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall that the flight
+// is measured from, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
 // whether that series has enough terms at t. If so the prediction is `exact`, and `gained` is by how much u
 // and u' then differ from the straight line, with digits that u and u' of a fast mass do not have themselves.
 // go_on(t, step): whether to go on after a step that is still too long.
@@ -105,10 +106,11 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 [[gnu::always_inline]] inline Prediction<Real> predict_from(const FirstGuess<Real>& start, bool near,
                                                             const Derivatives<Real, N>& u,
                                                             const Departure& departure, const Real& most,
-                                                            Enough&& enough, GoOn&& go_on) {
+                                                            Enough&& enough, GoOn&& go_on,
+                                                            const Real& gap = Real(1)) {
   const bool across = start.across;
   Real t = start.time;
-  const Real ahead = (across ? Real(1) : Real(0)) - u[0];  // to go, with its sign
+  const Real ahead = (across ? gap : Real(0)) - u[0];  // to go, with its sign
   for (int i = 0;; ++i) {
     // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more than five pairs
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
@@ -134,17 +136,18 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 [[gnu::always_inline]] inline Prediction<Real> predict_impact(const Derivatives<Real, N>& u,
                                                               const Departure& departure, const Real& most,
-                                                              Enough&& enough, GoOn&& go_on) {
+                                                              Enough&& enough, GoOn&& go_on,
+                                                              const Real& gap = Real(1)) {
   SearchCounter<Real>::prediction();
-  FirstGuess<Real> start = guess_by_parabola(u, most);
+  FirstGuess<Real> start = guess_by_parabola(u, most, gap);
   Real& t = start.time;
-  const Real ahead = (start.across ? Real(1) : Real(0)) - u[0];
+  const Real ahead = (start.across ? gap : Real(0)) - u[0];
   // First by few terms, as a parabola may be far off.
   const SeriesAt<Real> rough = departure.template at<3>(t);
   const Real slope = u[1] + rough.u1, off = ahead - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
-  return predict_from(start, Departure::all <= 5, u, departure, most, enough, go_on);
+  return predict_from(start, Departure::all <= 5, u, departure, most, enough, go_on, gap);
 }
 
 }  // namespace impact_damper

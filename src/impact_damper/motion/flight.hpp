@@ -1,4 +1,5 @@
-// Flight, 0 < y < 1: (M2.1). The secondary mass flies straight, z = x + y = z0 + z'0 t.
+// Flight, 0 < y < 1: (M2.1). The secondary mass flies straight, z = x + y = z0 + z'0 t. Several dampers share
+// the motion of their primary mass, and each has a clearance of its own (engines/restitution_dampers.hpp).
 #pragma once
 
 #include "impact_damper/events/impact_prediction.hpp"
@@ -6,6 +7,17 @@
 #include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
+
+// The clearance that lengths are divided by, and that of one of several dampers.
+template <class Real>
+struct UnitClearance {
+  static constexpr Real gap() { return Real(1); }
+};
+template <class Real>
+struct OwnClearance {
+  Real clearance;
+  const Real& gap() const { return clearance; }
+};
 
 // A state in flight, with its distance u from the wall nearest to where the flight began: a small bounce
 // keeps its relative accuracy, and a mirrored flight is the same to the bit.
@@ -20,18 +32,28 @@ struct FlightStart {
   FlightStart(const State<Real>& now, const Real& which, const Real& direction, const Real& distance)
       : state(now), wall(which), away(direction), u(distance), goes_on(true) {}
   State<Real> state;
-  Real wall, away;  // where the wall is, 0 or 1, and which way leads away from it, 1 or -1
+  Real wall, away;  // where the wall is, 0 or at the clearance, and which way leads away from it, 1 or -1
   Real u;
   bool goes_on = false;  // a piece of a flight that began before
 };
 
-template <class Real, class Force = Forcing<Real>>
+// Primary: the primary mass's motion, or a reference to it.
+template <class Real, class Force = Forcing<Real>, class Clearance = UnitClearance<Real>,
+          class Primary = ForcedMotion<Real, Force>>
 class Flight {
  public:
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : Flight(system, begin, FlightStart<Real>(start)) {}
   Flight(const System<Real, Force>& system, const Real& begin, const FlightStart<Real>& start)
       : primary_(system.free, system.forcing, begin, start.state.x, start.state.v),
+        start_(start.state),
+        wall_(start.wall),
+        away_(start.away),
+        u_(start.u),
+        goes_on_(start.goes_on) {}
+  Flight(const ForcedMotion<Real, Force>& primary, const Clearance& clearance, const FlightStart<Real>& start)
+      : clearance_(clearance),
+        primary_(primary),
         start_(start.state),
         wall_(start.wall),
         away_(start.away),
@@ -69,7 +91,7 @@ class Flight {
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
     State<Real> state = at(met->time);
-    state.y = wall == Wall::left ? 0 : 1;
+    state.y = wall == Wall::left ? Real(0) : gap();
     return WallEvent<Real>{met->time, wall, state};
   }
   // The first time in [from, until) at which sign times y' falls through zero.
@@ -87,11 +109,11 @@ class Flight {
     const Real leap = start_.w == 0 && u_ == 0 ? begin_by_jerk(search.span) : Real(0);
     return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
   }
-  // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one, 1 - y.
+  // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one.
   std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
     const Place now = from_wall(t);
-    const Real near = now.u, far = 1 - now.u, y1 = away_ * now.u1;
-    const Real left = wall_ == 0 ? near : far, right = wall_ == 0 ? far : near;
+    const Real near = now.u, far = gap() - now.u, y1 = away_ * now.u1;
+    const Real left = away_ > 0 ? near : far, right = away_ > 0 ? far : near;
     const auto x = primary_.template instant<5>(now.x, now.v, t);
     const Real third = x.bound(3, span), amplitude = x.bound(0, span), z1 = y1 + now.v;
     return {
@@ -138,6 +160,7 @@ class Flight {
   Real resolution() const { return 1; }
 
  private:
+  Real gap() const { return clearance_.gap(); }
   // The place of the secondary mass as its distance u from the wall.
   struct Place {
     Real x, v, u, u1;
@@ -190,7 +213,7 @@ class Flight {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
     if (!(jerk > 0 && acceleration < jerk * Real(1e-6))) return 0;
-    const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk));
+    const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk / gap()));
     return near < far ? near : far;
   }
   // Whether the terms that a correction leaves out, of fourth order, are below rounding for x and x', too,
@@ -205,7 +228,8 @@ class Flight {
   bool stays_between_walls(const Derivatives<Real, N>& from, const Real& begin,
                            const Derivatives<Real, 2>& to, const Real& h, const Real& fourth,
                            int halvings) const {
-    if (stays_between<Real>({from[0], from[1], from[2], from[3]}, to[0], to[1], h, fourth)) return true;
+    if (stays_between<Real>({from[0], from[1], from[2], from[3]}, to[0], to[1], h, fourth, gap()))
+      return true;
     if (halvings == 0) return false;
     const Real half = h / 2;
     const Place middle = from_wall(begin + half);
@@ -230,7 +254,7 @@ class Flight {
     const auto first = [&](const Prediction<Real>& predicted) -> std::optional<PredictedWall> {
       const Real& h = predicted.time;
       const auto& [by_u, by_u1] = predicted.gained;
-      const Real level = predicted.across ? 1 : 0, u1 = u[1] + by_u1;
+      const Real level = predicted.across ? gap() : Real(0), u1 = u[1] + by_u1;
       if (!stays_between_walls(u, Real(0), {level, u1}, h, fourth, 2)) return {};
       SearchCounter<Real>::found(FoundBy::series);
       return PredictedWall{
@@ -247,23 +271,23 @@ class Flight {
       if (!end) end = from_wall(reach);
       return stays_between_walls(u, Real(0), {end->u, end->u1}, reach, fourth, 2);
     };
-    const bool late = !(guess_by_parabola(u, reach).time < reach);
+    const bool late = !(guess_by_parabola(u, reach, gap()).time < reach);
     if (late && none()) return PredictedWall{};
-    if (!late || (end->u >= 0 && end->u <= 1)) {
-      const Prediction<Real> predicted = predict_impact(u, departure, reach, enough, go_on);
+    if (!late || (end->u >= 0 && end->u <= gap())) {
+      const Prediction<Real> predicted = predict_impact(u, departure, reach, enough, go_on, gap());
       if (usable(predicted)) return first(predicted);
       if (!late && none()) return PredictedWall{};
     }
     // Where the series ends beyond a wall, back from there.
-    if (end->u >= 0 && end->u <= 1) return {};
-    const Prediction<Real> predicted =
-        predict_from(FirstGuess<Real>{reach, end->u > 1}, true, u, departure, reach, enough, go_on);
+    if (end->u >= 0 && end->u <= gap()) return {};
+    const Prediction<Real> predicted = predict_from(FirstGuess<Real>{reach, end->u > gap()}, true, u,
+                                                    departure, reach, enough, go_on, gap());
     if (usable(predicted)) return first(predicted);
     return {};
   }
   WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1) const {
-    const bool left = across == (wall_ == 1);
-    return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : Real(1), away_ * u1}};
+    const bool left = across == (away_ < 0);
+    return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : gap(), away_ * u1}};
   }
   // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
   // not succeed.
@@ -276,7 +300,7 @@ class Flight {
       const Real fourth = primary_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1, const Real& u1,
                                FoundBy way) -> std::optional<WallEvent<Real>> {
-        const Real level = across ? 1 : 0;
+        const Real level = across ? gap() : Real(0);
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         SearchCounter<Real>::found(way);
@@ -286,7 +310,7 @@ class Flight {
       const Prediction<Real> predicted = predict_impact(
           u, Departure<Real, 5>{departure_of(u)}, most,
           [&](const Real& u1, const Real& t) { return omits_nothing(u1, fourth, rate, t); },
-          [&](const Real& t, const Real& size) { return !(rate * t > Real(0.05) && size * 32 < t); });
+          [&](const Real& t, const Real& size) { return !(rate * t > Real(0.05) && size * 32 < t); }, gap());
       Real h = predicted.time;
       if (!(h > 0)) return {};
       if (predicted.exact) {
@@ -299,14 +323,14 @@ class Flight {
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
         const auto u_there = derivatives_of_u<6>(there, begin + h);
-        const bool across = there.u > Real(0.5);
-        const auto [shift, newton, close] = time_to_level(across ? Real(1) : Real(0), u_there, h, fourth);
+        const bool across = there.u > gap() / 2;
+        const auto [shift, newton, close] = time_to_level(across ? gap() : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4 && moves_x_by_series(u_there, shift, fourth)) {
           const auto [x1, v1] = shifted<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
           return reached(across, h + shift, -away_ * x1, -away_ * v1,
                          shifted(there.u, there.u1, u_there, shift).u1, FoundBy::correction);
         }
-        const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= 1);
+        const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= gap());
         if (correction == 5 || !(near || beyond)) break;
         // A place far beyond a wall: the wall was met before. Back, by half of h at most.
         h += near ? shift : newton < 0 && newton > -h / 2 ? newton : Real(-h / 2);
@@ -318,7 +342,8 @@ class Flight {
     return {};
   }
 
-  ForcedMotion<Real, Force> primary_;
+  [[no_unique_address]] Clearance clearance_;
+  Primary primary_;
   State<Real> start_;
   Real wall_, away_, u_;
   bool goes_on_;

@@ -1,5 +1,5 @@
 // Sticking: both masses move as one, the secondary at rest on a wall (M2.3); y'' = 0 in place of the paper's
-// (10).
+// (10). Several dampers' secondary masses may stick at once (M17.1).
 #pragma once
 
 #include "impact_damper/motion/forced_motion.hpp"
@@ -7,26 +7,17 @@
 
 namespace impact_damper {
 
+// The primary mass and all that sticks to it. push: the way in which the walls push what sticks, 1 where that
+// is on left walls, -1 on right ones; 0 if nothing sticks.
 template <class Real, class Force = Forcing<Real>>
-class Stuck {
+class JoinedMasses {
  public:
-  Stuck(const System<Real, Force>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
-      : primary_(system.stuck, {system.forcing.amplitude / (1 + system.nu), system.forcing.frequency}, begin,
-                 x, v),
-        start_{x, v, wall == Wall::left ? Real(0) : Real(1), Real(0)},
-        push_(wall == Wall::left ? 1 : -1) {}
+  // oscillator, force: of all these masses together.
+  JoinedMasses(const Driven<Real, Force>& oscillator, const Force& force, const Real& begin, const Real& x,
+               const Real& v, const Real& push)
+      : primary_(oscillator, force, begin, x, v), push_(push) {}
 
-  State<Real> at(const Real& t) const {
-    if (t == 0) return start_;
-    const auto now = primary_.at(t);
-    return {now.x, now.v, start_.y, Real(0)};
-  }
-  // The state when it vanishes, release(): x' has its turn there, and x'' = 0 tells x, to the last bit.
-  State<Real> released(const Real& t) const {
-    if (t == 0) return start_;
-    const auto v = primary_.speed_at_turn(t);
-    return v ? State<Real>{-push_ * *v * primary_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
-  }
+  const ForcedMotion<Real, Force>& primary() const { return primary_; }
   // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
   std::optional<Real> release(const Real& from, const Real& horizon, Search<Real>& search) {
     // The push with which the mass was held is that of the flight before: a rounding error may leave none. To
@@ -63,11 +54,39 @@ class Stuck {
   Real panel(const Real& t) const { return primary_.panel(t); }
   Real resolution() const { return 1; }
 
- private:
+ protected:
   ForcedMotion<Real, Force> primary_;
-  State<Real> start_;
   Real push_;
+
+ private:
   std::optional<Real> turn_;  // of x before the release, once that is known
+};
+
+template <class Real, class Force = Forcing<Real>>
+class Stuck : public JoinedMasses<Real, Force> {
+ public:
+  Stuck(const System<Real, Force>& system, const Real& begin, const Real& x, const Real& v, Wall wall)
+      : JoinedMasses<Real, Force>(system.stuck,
+                                  {system.forcing.amplitude / (1 + system.nu), system.forcing.frequency},
+                                  begin, x, v, wall == Wall::left ? Real(1) : Real(-1)),
+        start_{x, v, wall == Wall::left ? Real(0) : Real(1), Real(0)} {}
+
+  State<Real> at(const Real& t) const {
+    if (t == 0) return start_;
+    const auto now = primary_.at(t);
+    return {now.x, now.v, start_.y, Real(0)};
+  }
+  // The state when it vanishes, release(): x' has its turn there, and x'' = 0 tells x, to the last bit.
+  State<Real> released(const Real& t) const {
+    if (t == 0) return start_;
+    const auto v = primary_.speed_at_turn(t);
+    return v ? State<Real>{-push_ * *v * primary_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
+  }
+
+ private:
+  using JoinedMasses<Real, Force>::primary_;
+  using JoinedMasses<Real, Force>::push_;
+  State<Real> start_;
 };
 
 }  // namespace impact_damper

@@ -1,0 +1,469 @@
+// The restitution engine for several dampers on one primary mass (docs/mathematics.md, chapter 17): rigid
+// walls, impacts that take no time, simultaneous ones by Moreau's law (motion/impact_law.hpp).
+//
+// Between two events the primary mass and what sticks to it are one oscillator (M17.1), and each other
+// secondary mass flies straight. Each is kept as its distance u from the wall that it left last, and u'. An
+// event moves all of them by the departure of x from its straight line, the same for all: that costs little.
+// Where the walls are met is searched for one by one, as for one damper (flight.hpp), but only for those
+// masses that may be the first: a bound on x'' excludes the others (M17.8).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/observer.hpp"
+#include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/impact_law.hpp"
+#include "impact_damper/motion/sticking.hpp"
+
+namespace impact_damper {
+
+// The secondary masses: number by number in arrays, which the processor moves two at a time. They are in an
+// order of their own (sorted), so that renumbering a scene's dampers changes no bit of any sum.
+template <class Real>
+struct SecondaryMasses {
+  explicit SecondaryMasses(std::span<const SceneDamper> dampers) : number(dampers.size()) {
+    std::iota(number.begin(), number.end(), 0);
+    std::sort(number.begin(), number.end(), [&](std::int32_t one, std::int32_t other) {
+      const auto key = [&](std::int32_t i) {
+        const SceneDamper& d = dampers[i];
+        return std::tuple(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, i);
+      };
+      return key(one) < key(other);
+    });
+    for (const std::int32_t i : number) {
+      const SceneDamper& d = dampers[i];
+      const bool right = Real(d.y0) > Real(d.clearance) / 2;
+      nu.push_back(Real(d.mass_ratio));
+      e.push_back(Real(d.restitution));
+      clearance.push_back(Real(d.clearance));
+      away.push_back(right ? Real(-1) : Real(1));
+      u.push_back(right ? Real(Real(d.clearance) - Real(d.y0)) : Real(d.y0));
+      u1.push_back(away.back() * Real(d.w0));
+    }
+    sticks.resize(size());
+    sticks_since.resize(size());
+  }
+  std::size_t size() const { return number.size(); }
+
+  bool rests(std::size_t i) const { return u[i] == 0 && u1[i] == 0; }
+  Wall wall(std::size_t i) const { return away[i] > 0 ? Wall::left : Wall::right; }
+  Real w(std::size_t i) const { return away[i] * u1[i]; }
+
+  std::vector<std::int32_t> number;  // in the scene
+  std::vector<Real> nu, e, clearance;
+  std::vector<Real> away;   // 1 if the wall that was left last is the left one, -1 if it is the right one
+  std::vector<Real> u, u1;  // distance from that wall, and its derivative
+  std::vector<char> sticks;
+  std::vector<double> sticks_since;
+};
+
+template <class Real, class Force, class Observer>
+class RestitutionOfDampers {
+ public:
+  RestitutionOfDampers(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
+                       Observer& observer)
+      : system_(system),
+        options_(options),
+        observer_(observer),
+        tracker_(scene, system, options.budget, options.max_steps, observer),
+        masses_(scene.dampers),
+        x_(scene.x0),
+        v_(scene.v0),
+        energy_(scene.dampers.size()),
+        places_(scene.dampers.size()) {}
+
+  Outcome run() {
+    if (observer_.wants_energy()) {
+      tracker_.begin(energy_now());
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        energy_[masses_.number[i]].initial_kinetic = kinetic(i);
+    }
+    settle();
+    while (!tracker_.stopped()) {
+      Motion motion(*this);
+      const Event event = next_event(motion);
+      pass(motion, event.time);
+      if (tracker_.stopped()) break;
+      if (!event.meeting.empty()) {
+        if (!impacts(event.meeting)) break;
+        settle();
+      } else if (event.released) {
+        for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
+        not_followed_ = 0;
+      }
+    }
+    for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
+    if (observer_.wants_energy()) {
+      for (std::size_t i = 0; i < masses_.size(); ++i) energy_[masses_.number[i]].final_kinetic = kinetic(i);
+      tracker_.finish(energy_now(), losses_);
+      observer_.energy_balance().dampers = std::move(energy_);
+    }
+    return {*tracker_.stopped(), tracker_.end_time()};
+  }
+
+ private:
+  // The primary mass with what sticks, from now on until the next event.
+  class Motion : public JoinedMasses<Real, Force> {
+   public:
+    explicit Motion(const RestitutionOfDampers& engine)
+        : JoinedMasses<Real, Force>(engine.oscillator(), engine.force(), engine.tracker_.now(), engine.x_,
+                                    engine.v_, engine.push_),
+          engine_(engine) {}
+    // y and y' are another's: of each mass by itself.
+    State<Real> at(const Real& t) const {
+      const auto now = this->primary().at(t);
+      return {now.x, now.v, Real(0), Real(0)};
+    }
+    void tell_sample(Observer& observer, const Real& t) const { engine_.tell_sample(observer, *this, t); }
+
+   private:
+    const RestitutionOfDampers& engine_;
+  };
+  struct Meeting {
+    std::size_t index;
+    Real time;
+    Wall wall;
+    Real slack;  // how much later than another it may seem to be and still be at the same time
+  };
+  struct Event {
+    Real time;
+    bool released;
+    std::span<const Meeting> meeting;
+  };
+
+  const Driven<Real, Force>& oscillator() const { return joined_ ? *joined_ : system_.free; }
+  Force force() const { return {system_.forcing.amplitude / mass_, system_.forcing.frequency}; }
+
+  // The next event and, if secondary masses meet their walls, which. Lower bounds on the times (M17.8) tell
+  // whom to search first, and when none of the others can be earlier.
+  Event next_event(Motion& motion) {
+    const Real remaining = tracker_.remaining(), length = motion.primary().length();
+    Event event{length < remaining ? length : remaining, false, {}};
+    if (push_ != 0) {
+      const auto release = motion.release(not_followed_, event.time, tracker_.search());
+      if (release) event = {*release, true, {}};
+    }
+    const Real span = event.time < tracker_.search().span ? event.time : tracker_.search().span;
+    find_lower_bounds(motion.primary().bound(2, span), span);
+    meeting_.clear();
+    Real earliest = event.time;
+    for (;;) {
+      const auto next = std::min_element(bounds_.begin(), bounds_.end());
+      const std::size_t i = next - bounds_.begin();
+      const Real late = 16 * std::numeric_limits<Real>::epsilon() * (earliest + 1);
+      if (!(*next <= earliest + late)) break;
+      *next = std::numeric_limits<Real>::infinity();
+      const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
+          motion.primary(), {masses_.clearance[i]}, start_of_flight(i));
+      const Real until = earliest + late < event.time ? Real(earliest + late) : event.time;
+      const auto met = masses_.rests(i) ? flight.released_meets_wall(until, tracker_.search())
+                                        : flight.next_wall(until, tracker_.search());
+      if (!met) continue;
+      const Real way = masses_.clearance[i] + absolute(masses_.u1[i]) * met->time,
+                 speed = absolute(met->state.w);
+      meeting_.push_back({i, met->time, met->wall, 4 * std::numeric_limits<Real>::epsilon() * way / speed});
+      if (met->time < earliest) earliest = met->time;
+    }
+    if (meeting_.empty()) return event;
+    // At one instant: what rounding cannot tell apart.
+    std::erase_if(meeting_, [&](const Meeting& each) { return each.time - earliest > each.slack; });
+    std::sort(meeting_.begin(), meeting_.end(),
+              [](const Meeting& one, const Meeting& other) { return one.index < other.index; });
+    return {earliest, false, meeting_};
+  }
+  FlightStart<Real> start_of_flight(std::size_t i) const {
+    const Real& away = masses_.away[i];
+    const Real wall = away > 0 ? Real(0) : masses_.clearance[i];
+    return {{x_, v_, wall + away * masses_.u[i], masses_.w(i)}, wall, away, masses_.u[i]};
+  }
+  // Sets bounds_: before these times no wall is met if |x''| <= most (M17.8), which holds for a time `span`.
+  void find_lower_bounds(const Real& most, const Real& span) {
+    bounds_.resize(masses_.size());
+    for (std::size_t i = 0; i < bounds_.size(); ++i) {
+      const Real &u = masses_.u[i], &u1 = masses_.u1[i], far = masses_.clearance[i] - u;
+      // The roots of u + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
+      const Real near_root = square_root(Real(u1 * u1 + 2 * most * u)),
+                 far_root = square_root(Real(u1 * u1 + 2 * most * far));
+      const Real home = u1 > 0 ? Real((u1 + near_root) / most) : Real(2 * u / (near_root - u1));
+      const Real across = u1 < 0 ? Real((far_root - u1) / most) : Real(2 * far / (far_root + u1));
+      const Real first = home < across ? home : across;
+      // NaN where nothing moves; what lies after the span is not excluded.
+      const Real bound = first < span ? first : span;
+      bounds_[i] = masses_.sticks[i] ? std::numeric_limits<Real>::infinity()
+                   : first == first  ? bound
+                                     : Real(0);
+    }
+  }
+
+  // Lets a time pass in which nothing happens but in the primary mass's half cycles.
+  void pass(const Motion& motion, const Real& until) {
+    State<Real> end = motion.at(until);
+    tracker_.pass(motion, until, end, Real(0));
+    const Real t = tracker_.passed();
+    if (t == 0) return;
+    const auto now = motion.primary().at(t);
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (masses_.sticks[i]) continue;
+      masses_.u[i] += masses_.u1[i] * t - masses_.away[i] * now.dx;
+      masses_.u1[i] -= masses_.away[i] * now.dv;
+    }
+    x_ = now.x;
+    v_ = now.v;
+    not_followed_ = 0;
+  }
+  void tell_sample(Observer& observer, const Motion& motion, const Real& t) const {
+    const auto now = motion.primary().at(t);
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Real &away = masses_.away[i], wall = away > 0 ? Real(0) : masses_.clearance[i];
+      const bool sticks = masses_.sticks[i];
+      const Real u = sticks ? Real(0) : Real(masses_.u[i] + (masses_.u1[i] * t - away * now.dx));
+      const Real u1 = sticks ? Real(0) : Real(masses_.u1[i] - away * now.dv);
+      places_[masses_.number[i]] = {double(Real(wall + away * u)), double(Real(away * u1))};
+    }
+    observer.sample(observer.next_sample(), double(now.x), double(now.v), places_);
+  }
+
+  // The masses that are `meeting` walls do so, and those that rest on one feel it. False: that were too many.
+  bool impacts(std::span<const Meeting> meeting) {
+    if (!tracker_.has_room_for(std::int64_t(meeting.size()))) return false;
+    at_walls_.clear();
+    for (const Meeting& each : meeting) {
+      const std::size_t i = each.index;
+      if (each.wall != masses_.wall(i)) {
+        masses_.away[i] = -masses_.away[i];
+        masses_.u1[i] = -masses_.u1[i];
+      }
+      if (masses_.u1[i] > 0) masses_.u1[i] = 0;  // grazed, by rounding
+      masses_.u[i] = 0;
+      at_walls_.push_back(mass_at_wall(i));
+    }
+    told_.assign(at_walls_.begin(), at_walls_.end());
+    std::sort(told_.begin(), told_.end(), [&](const auto& one, const auto& other) {
+      return masses_.number[one.index] < masses_.number[other.index];
+    });
+    for (const MassAtWall<Real>& each : told_) {
+      observer_.impact(double(tracker_.now()), masses_.wall(each.index), double(masses_.w(each.index)),
+                       double(x_), masses_.number[each.index]);
+    }
+    if (some_rest_) {
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        if (masses_.sticks[i]) at_walls_.push_back(mass_at_wall(i));
+      std::sort(at_walls_.begin(), at_walls_.end(),
+                [](const auto& one, const auto& other) { return one.index < other.index; });
+    }
+    const Real jump = jump_of_velocity<Real>(at_walls_);
+    // First all others, then those that meet walls.
+    for (std::size_t i = 0; i < masses_.size(); ++i) masses_.u1[i] -= masses_.away[i] * jump;
+    for (const MassAtWall<Real>& each : at_walls_) {
+      masses_.u1[each.index] = speed_after(each, jump);
+      if (masses_.sticks[each.index] && masses_.u1[each.index] > 0) let_go(each.index);
+    }
+    v_ += jump;
+    if (observer_.wants_energy()) {
+      for (const MassAtWall<Real>& each : told_) {
+        const Real after = masses_.u1[each.index];
+        const Real impulse = each.nu * (after - (each.speed - each.away * jump));
+        const Real loss = -impulse * (each.speed + after) / 2;  // (M17.4)
+        losses_ += loss;
+        energy_[masses_.number[each.index]].impact_loss += double(loss);
+        observer_.energy_balance().impact_loss.push_back(double(loss));
+      }
+    }
+    return true;
+  }
+  MassAtWall<Real> mass_at_wall(std::size_t i) const {
+    return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
+  }
+
+  // What sticks from now on: of the masses that rest on a wall those which x'' presses against it, and those
+  // whose chattering is over so soon that its limit is taken.
+  void settle() {
+    const Acceleration now = acceleration();
+    if (now.side != 0) take_limit_of_chattering(now);
+    some_rest_ = false;
+    Real sticking{0};
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (masses_.rests(i) && masses_.away[i] == now.side) {
+        if (!masses_.sticks[i]) stick(i, Real(0));
+        sticking += masses_.nu[i];
+        some_rest_ = true;
+      } else {
+        let_go(i);
+      }
+    }
+    push_ = some_rest_ ? now.side : Real(0);
+    if (1 + sticking == mass_) return;
+    mass_ = 1 + sticking;
+    joined_.reset();
+    if (some_rest_) joined_.emplace(system_.zeta / mass_, 1 / mass_, system_.forcing);
+  }
+  // x'' times the joined mass, and which way it leads: where that is zero to rounding, by the next
+  // derivative.
+  struct Acceleration {
+    Real force, side;
+  };
+  Acceleration acceleration() const {
+    const auto f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()));
+    const Real force = f[0] - 2 * system_.zeta * v_ - x_;
+    const Real rounding =
+        4 * std::numeric_limits<Real>::epsilon() *
+        (absolute(x_) + 2 * system_.zeta * absolute(v_) + absolute(system_.forcing.amplitude));
+    const Real tells = absolute(force) > rounding ? force : Real(f[1] - v_ - 2 * system_.zeta * force);
+    return {force, tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0)};
+  }
+  void stick(std::size_t i, const Real& later) {
+    masses_.sticks[i] = true;
+    masses_.sticks_since[i] = double(tracker_.now() + later);
+    masses_.u[i] = masses_.u1[i] = 0;
+  }
+  void let_go(std::size_t i) {
+    if (!masses_.sticks[i]) return;
+    masses_.sticks[i] = false;
+    const double begin = masses_.sticks_since[i],
+                 end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
+    if (observer_.wants_contacts() && begin <= end)
+      observer_.contact(begin, end, masses_.wall(i), masses_.number[i]);
+  }
+
+  // Where the chattering of one or several masses on the side that x'' leads to is over before anything else
+  // can happen, and moves x by less than rounding (M17.5): they join the primary mass now.
+  void take_limit_of_chattering(const Acceleration& now) {
+    const Real a = absolute(now.force) / mass_;
+    const Real span = tracker_.search().span;
+    if (!(a > 0)) return;
+    // Rarely so: only after a slow rebound (M17.6).
+    chattering_.clear();
+    Real m3{0}, m4{0};
+    bool has_bounds = false;
+    const Real epsilon = std::numeric_limits<Real>::epsilon(), tolerance = options_.accumulation_tolerance;
+    const auto ends_soon = [&](const Real& duration) {
+      if (!has_bounds) {
+        const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
+        m3 = absolute(motion.beginning()[3]);
+        m4 = motion.bound(4, span);
+        has_bounds = true;
+      }
+      return duration < span &&
+             (m3 + m4 * duration + 2 * system_.zeta * a / mass_) * duration <= tolerance * a;
+    };
+    Real ignored{0}, momentum{0}, joining{0}, kick{0}, duration{0};
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (masses_.sticks[i] || masses_.away[i] != now.side || masses_.e[i] == 1) continue;
+      const Real &u = masses_.u[i], &u1 = masses_.u1[i], &nu = masses_.nu[i];
+      // The speed at which it comes back, and how long it bounces on (M6.1).
+      const Real square = u1 * u1 + 2 * a * u, moves = nu * square / (2 * a * mass_);
+      if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_)))) continue;
+      const Real speed = square_root(square);
+      const Real lasts = (u1 + speed + 2 * masses_.e[i] * speed / (1 - masses_.e[i])) / a;
+      if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_) * lasts)) || !ends_soon(lasts)) continue;
+      chattering_.push_back({i, lasts});
+      ignored += moves;
+      momentum += nu * masses_.w(i);
+      joining += nu;
+      kick += nu * (1 + masses_.e[i]) * speed;
+      duration += lasts;
+    }
+    bool bounces = false;
+    for (const Chattering& each : chattering_) bounces = bounces || !masses_.rests(each.index);
+    if (!bounces) return;
+    const Real joined = mass_ + joining, joined_speed = v_ + momentum / joined;
+    if (!(8 * ignored <= epsilon * (absolute(x_) + absolute(joined_speed) * duration)) ||
+        !ends_soon(duration))
+      return;
+    const bool may_turn = absolute(joined_speed) <= kick / mass_ + a * duration;
+    if (may_turn && !(2 * duration <= epsilon * tracker_.now())) return;
+    if (!others_fly_on(2 * duration)) return;
+
+    const bool alone = chattering_.size() == 1 && !some_rest_;
+    for (Chattering& each : chattering_) {
+      const std::size_t i = each.index;
+      if (alone) {  // (M6.2)
+        const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
+        const Real change = now.side * motion.beginning()[3];
+        each.lasts -= each.lasts * each.lasts *
+                      (change / (3 * a) + system_.zeta * masses_.e[i] * masses_.nu[i] / (1 + masses_.nu[i]));
+      }
+      if (observer_.wants_energy() && !masses_.rests(i)) {
+        const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - momentum / joined) / 2;  // (M17.7)
+        losses_ += loss;
+        DamperEnergy& energy = energy_[masses_.number[i]];
+        energy.bounce_down_loss += double(loss);
+        ++energy.bounce_downs;
+        observer_.energy_balance().bounce_down_loss += double(loss);
+        ++observer_.energy_balance().bounce_downs;
+      }
+      if (not_followed_ < each.lasts) not_followed_ = each.lasts;
+    }
+    const Real gained = momentum / joined;
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (!masses_.sticks[i]) masses_.u1[i] -= masses_.away[i] * gained;
+    v_ += gained;
+    for (const Chattering& each : chattering_) stick(each.index, each.lasts);
+  }
+  struct Chattering {
+    std::size_t index;
+    Real lasts;
+  };
+  // Whether none of the masses that do not chatter can meet a wall within that time (M17.8).
+  bool others_fly_on(const Real& duration) {
+    const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
+    find_lower_bounds(motion.bound(2, duration), duration);
+    for (const Chattering& each : chattering_) bounds_[each.index] = std::numeric_limits<Real>::infinity();
+    return std::all_of(bounds_.begin(), bounds_.end(), [&](const Real& bound) { return bound >= duration; });
+  }
+
+  double kinetic(std::size_t i) const {
+    const Real z1 = v_ + masses_.w(i);
+    return double(Real(masses_.nu[i] * z1 * z1 / 2));
+  }
+  Energy energy_now() const {
+    Real kinetic = v_ * v_, paper = v_ * v_;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Real w = masses_.w(i), z1 = v_ + w;
+      kinetic += masses_.nu[i] * z1 * z1;
+      paper += masses_.nu[i] * (v_ * v_ + w * w);
+    }
+    return {double(Real(kinetic / 2)), double(Real(x_ * x_ / 2)), 0, double(Real((paper + x_ * x_) / 2))};
+  }
+
+  const System<Real, Force>& system_;
+  const Restitution& options_;
+  Observer& observer_;
+  RunTracker<Real, Force, Observer> tracker_;
+  SecondaryMasses<Real> masses_;
+  Real x_, v_;
+  Real mass_{1};                               // of the primary mass and what sticks to it
+  std::optional<Driven<Real, Force>> joined_;  // their oscillator, if anything sticks
+  Real push_{0};
+  bool some_rest_ = false;
+  Real not_followed_{0};  // how long the chattering whose limit has been taken lasts
+  Real losses_{0};
+  std::vector<DamperEnergy> energy_;  // by number in the scene
+  mutable std::vector<PlaceInCavity> places_;
+  std::vector<Real> bounds_;
+  std::vector<Meeting> meeting_;
+  std::vector<MassAtWall<Real>> at_walls_, told_;
+  std::vector<Chattering> chattering_;
+};
+
+// Runs a scene with a list of dampers that problems_of finds nothing wrong with and in which each secondary
+// mass begins between its walls, 0 <= y0 <= clearance.
+template <Scalar Real, DampersObserver Observer>
+Outcome run_restitution_dampers(const Scene& scene, const Restitution& options, Observer& observer) {
+  require_arithmetic();
+  return with_system<Real>(scene, [&]<class Force>(const System<Real, Force>& system) {
+    return RestitutionOfDampers<Real, Force, Observer>(system, scene, options, observer).run();
+  });
+}
+
+}  // namespace impact_damper
