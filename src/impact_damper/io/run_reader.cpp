@@ -49,8 +49,9 @@ class Columns {
     return is_read;
   }
 
-  bool read_times(std::string_view name, std::vector<double>& column) {
+  bool read_times(std::string_view name, std::vector<double>& column, bool ascending = true) {
     if (!read(name, column, at_least(0))) return false;
+    if (!ascending) return true;
     const auto drop = std::is_sorted_until(column.begin(), column.end());
     if (drop == column.end()) return true;
     object_.reject(
@@ -145,8 +146,9 @@ Impacts read_impacts(ObjectReader object, std::size_t dampers) {
 Contacts read_contacts(ObjectReader object, std::size_t dampers) {
   Contacts contacts;
   Columns columns(object);
-  const bool begun = columns.read_times("begin", contacts.begin);
-  const bool ended = columns.read_times("end", contacts.end);
+  const bool ascending = dampers == 0;  // of several only those of each, which analysis/consistency checks
+  const bool begun = columns.read_times("begin", contacts.begin, ascending);
+  const bool ended = columns.read_times("end", contacts.end, ascending);
   columns.read("wall", contacts.wall);
   columns.read_damper(contacts.damper, dampers);
   for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
