@@ -115,7 +115,12 @@ std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
 
 // The objects of a section for each damper of a scene with several.
 std::vector<ObjectReader> read_dampers(ObjectReader& object, std::size_t dampers) {
-  return dampers > 0 ? object.required_objects("dampers", dampers, dampers) : std::vector<ObjectReader>{};
+  if (dampers == 0) return {};
+  std::vector<ObjectReader> objects = object.required_objects("dampers", most_dampers);
+  if (object.has("dampers") && objects.size() != dampers)
+    object.reject("dampers", "must be as many as in the scene, " + std::to_string(dampers) + ", got " +
+                                 std::to_string(objects.size()));
+  return objects;
 }
 
 HalfCycles read_half_cycles(ObjectReader object, std::size_t dampers) {
