@@ -98,8 +98,7 @@ class RestitutionOfDampers {
         if (!impacts(event.meeting)) break;
         settle();
       } else if (event.released) {
-        for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
-        not_followed_ = 0;
+        keep_sticking(Real(0));  // nothing: what has been let go is not looked at again before the next event
       }
     }
     for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
@@ -169,8 +168,9 @@ class RestitutionOfDampers {
       const auto met = masses_.rests(i) ? flight.released_meets_wall(until, tracker_.search())
                                         : flight.next_wall(until, tracker_.search());
       if (!met) continue;
-      const Real way = masses_.clearance[i] + absolute(masses_.u1[i]) * met->time,
-                 speed = absolute(met->state.w);
+      // What rounding leaves of its distance from that wall.
+      const Real from = met->wall == masses_.wall(i) ? masses_.u[i] : masses_.clearance[i];
+      const Real way = absolute(from) + absolute(masses_.u1[i]) * met->time, speed = absolute(met->state.w);
       meeting_.push_back({i, met->time, met->wall, 4 * std::numeric_limits<Real>::epsilon() * way / speed});
       if (met->time < earliest) earliest = met->time;
     }
@@ -190,7 +190,9 @@ class RestitutionOfDampers {
   void find_lower_bounds(const Real& most, const Real& span) {
     bounds_.resize(masses_.size());
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      const Real &u = masses_.u[i], &u1 = masses_.u1[i], far = masses_.clearance[i] - u;
+      // Rounding may leave a mass a little beyond a wall that it has just left.
+      const Real &u1 = masses_.u1[i], u = masses_.u[i] > 0 ? masses_.u[i] : Real(0),
+                 beyond = masses_.clearance[i] - u, far = beyond > 0 ? beyond : Real(0);
       // The roots of u + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
       const Real near_root = square_root(Real(u1 * u1 + 2 * most * u)),
                  far_root = square_root(Real(u1 * u1 + 2 * most * far));
@@ -285,15 +287,23 @@ class RestitutionOfDampers {
     return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
   }
 
+  // x'' times the joined mass, and which way it leads: where that is zero to rounding, by the next
+  // derivative.
+  struct Acceleration {
+    Real force, side;
+  };
   // What sticks from now on: of the masses that rest on a wall those which x'' presses against it, and those
   // whose chattering is over so soon that its limit is taken.
   void settle() {
     const Acceleration now = acceleration();
-    if (now.side != 0) take_limit_of_chattering(now);
+    keep_sticking(now.side);
+    if (now.side != 0 && take_limit_of_chattering(now)) keep_sticking(now.side);
+  }
+  void keep_sticking(const Real& side) {
     some_rest_ = false;
     Real sticking{0};
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.rests(i) && masses_.away[i] == now.side) {
+      if (masses_.rests(i) && masses_.away[i] == side) {
         if (!masses_.sticks[i]) stick(i, Real(0));
         sticking += masses_.nu[i];
         some_rest_ = true;
@@ -301,17 +311,12 @@ class RestitutionOfDampers {
         let_go(i);
       }
     }
-    push_ = some_rest_ ? now.side : Real(0);
+    push_ = some_rest_ ? side : Real(0);
     if (1 + sticking == mass_) return;
     mass_ = 1 + sticking;
     joined_.reset();
     if (some_rest_) joined_.emplace(system_.zeta / mass_, 1 / mass_, system_.forcing);
   }
-  // x'' times the joined mass, and which way it leads: where that is zero to rounding, by the next
-  // derivative.
-  struct Acceleration {
-    Real force, side;
-  };
   Acceleration acceleration() const {
     const auto f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()));
     const Real force = f[0] - 2 * system_.zeta * v_ - x_;
@@ -337,11 +342,10 @@ class RestitutionOfDampers {
 
   // Where the chattering of one or several masses on the side that x'' leads to is over before anything else
   // can happen, and moves x by less than rounding (M17.5): they join the primary mass now.
-  void take_limit_of_chattering(const Acceleration& now) {
+  bool take_limit_of_chattering(const Acceleration& now) {
     const Real a = absolute(now.force) / mass_;
     const Real span = tracker_.search().span;
-    if (!(a > 0)) return;
-    // Rarely so: only after a slow rebound (M17.6).
+    if (!(a > 0)) return false;
     chattering_.clear();
     Real m3{0}, m4{0};
     bool has_bounds = false;
@@ -356,33 +360,42 @@ class RestitutionOfDampers {
       return duration < span &&
              (m3 + m4 * duration + 2 * system_.zeta * a / mass_) * duration <= tolerance * a;
     };
-    Real ignored{0}, momentum{0}, joining{0}, kick{0}, duration{0};
+    // Who may join: all that go no farther from their walls than moves x by rounding. All of them lose energy
+    // each time that one kicks the others off their walls.
+    Real all_lose{0};
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.sticks[i] || masses_.away[i] != now.side || masses_.e[i] == 1) continue;
-      const Real &u = masses_.u[i], &u1 = masses_.u1[i], &nu = masses_.nu[i];
-      // The speed at which it comes back, and how long it bounces on (M6.1).
-      const Real square = u1 * u1 + 2 * a * u, moves = nu * square / (2 * a * mass_);
+      if (masses_.away[i] != now.side) continue;
+      const Real& u1 = masses_.u1[i];
+      const Real square =
+          masses_.sticks[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
+      const Real moves = masses_.nu[i] * square / (2 * a * mass_);
       if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_)))) continue;
-      const Real speed = square_root(square);
-      const Real lasts = (u1 + speed + 2 * masses_.e[i] * speed / (1 - masses_.e[i])) / a;
-      if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_) * lasts)) || !ends_soon(lasts)) continue;
-      chattering_.push_back({i, lasts});
-      ignored += moves;
-      momentum += nu * masses_.w(i);
-      joining += nu;
-      kick += nu * (1 + masses_.e[i]) * speed;
-      duration += lasts;
+      all_lose += loses(i);
+      if (masses_.sticks[i]) continue;
+      chattering_.push_back({i, square_root(square), moves, Real(0)});
     }
-    bool bounces = false;
-    for (const Chattering& each : chattering_) bounces = bounces || !masses_.rests(each.index);
-    if (!bounces) return;
-    const Real joined = mass_ + joining, joined_speed = v_ + momentum / joined;
-    if (!(8 * ignored <= epsilon * (absolute(x_) + absolute(joined_speed) * duration)) ||
-        !ends_soon(duration))
-      return;
-    const bool may_turn = absolute(joined_speed) <= kick / mass_ + a * duration;
-    if (may_turn && !(2 * duration <= epsilon * tracker_.now())) return;
-    if (!others_fly_on(2 * duration)) return;
+    // The duration (M17.6), and what ends too late for it.
+    std::erase_if(chattering_, [&](Chattering& each) {
+      const std::size_t i = each.index;
+      const Real share = masses_.nu[i] / (mass_ + masses_.nu[i]);
+      const Real lost = (1 - masses_.e[i]) + 2 * share * (all_lose - loses(i)) / mass_;
+      const Real more = lost < 1 ? Real(2 * (1 - lost) / lost) : Real(0);
+      each.lasts = (masses_.u1[i] + each.speed + more * each.speed) / a;
+      return !(8 * each.moves <= epsilon * (absolute(x_) + absolute(v_) * each.lasts)) ||
+             !ends_soon(each.lasts);
+    });
+    // As many as can, those that are over first: what bounces longer, or meets its wall meanwhile, bounces
+    // on.
+    std::sort(chattering_.begin(), chattering_.end(), [](const Chattering& one, const Chattering& other) {
+      return one.lasts < other.lasts || (one.lasts == other.lasts && one.index < other.index);
+    });
+    Joining joining = joining_now();
+    while (joining.bounces && !limit_holds(joining, a, ends_soon)) {
+      chattering_.resize(chattering_.size() - (1 + chattering_.size() / 8));
+      joining = joining_now();
+    }
+    if (!joining.bounces) return false;
+    const Real gained = joining.momentum / (mass_ + joining.mass);
 
     const bool alone = chattering_.size() == 1 && !some_rest_;
     for (Chattering& each : chattering_) {
@@ -394,7 +407,7 @@ class RestitutionOfDampers {
                       (change / (3 * a) + system_.zeta * masses_.e[i] * masses_.nu[i] / (1 + masses_.nu[i]));
       }
       if (observer_.wants_energy() && !masses_.rests(i)) {
-        const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - momentum / joined) / 2;  // (M17.7)
+        const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - gained) / 2;  // (M17.7)
         losses_ += loss;
         DamperEnergy& energy = energy_[masses_.number[i]];
         energy.bounce_down_loss += double(loss);
@@ -404,16 +417,48 @@ class RestitutionOfDampers {
       }
       if (not_followed_ < each.lasts) not_followed_ = each.lasts;
     }
-    const Real gained = momentum / joined;
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!masses_.sticks[i]) masses_.u1[i] -= masses_.away[i] * gained;
     v_ += gained;
     for (const Chattering& each : chattering_) stick(each.index, each.lasts);
+    return true;
   }
   struct Chattering {
     std::size_t index;
+    Real speed;  // with which it comes back to its wall
+    Real moves;  // by how much x at most
     Real lasts;
   };
+  // What all of chattering_ amount to.
+  struct Joining {
+    bool bounces = false;  // not all rest
+    Real mass{0}, momentum{0}, kick{0}, moves{0}, duration{0};
+  };
+  Joining joining_now() const {
+    Joining all;
+    for (const Chattering& each : chattering_) {
+      const std::size_t i = each.index;
+      all.bounces = all.bounces || !masses_.rests(i);
+      all.mass += masses_.nu[i];
+      all.momentum += masses_.nu[i] * masses_.w(i);
+      all.kick += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
+      all.moves += each.moves;
+      all.duration += each.lasts;
+    }
+    return all;
+  }
+  // (M17.5)
+  template <class EndsSoon>
+  bool limit_holds(const Joining& all, const Real& a, EndsSoon&& ends_soon) {
+    const Real epsilon = std::numeric_limits<Real>::epsilon();
+    const Real speed = absolute(v_ + all.momentum / (mass_ + all.mass));
+    if (!(8 * all.moves <= epsilon * (absolute(x_) + speed * all.duration)) || !ends_soon(all.duration))
+      return false;
+    const bool may_turn = speed <= all.kick / mass_ + a * all.duration;
+    if (may_turn && !(2 * all.duration <= epsilon * tracker_.now())) return false;
+    return others_fly_on(2 * all.duration);
+  }
+  Real loses(std::size_t i) const { return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]); }
   // Whether none of the masses that do not chatter can meet a wall within that time (M17.8).
   bool others_fly_on(const Real& duration) {
     const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);

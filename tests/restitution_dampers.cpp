@@ -1,0 +1,279 @@
+// Several dampers by the restitution engine: what must hold whatever their numbers. (Against an independent
+// simulation: several/.)
+#include "impact_damper/engines/restitution_dampers.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "impact_damper/simulate.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+Record everything() {
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  return record;
+}
+
+// 1 to 6 dampers with clearances from 0.1 to 10; forced in a third of the scenes, damped in a half.
+Scene random_scene(std::uint64_t seed) {
+  reference::Random random(seed);
+  Scene scene;
+  scene.damping_ratio = random.chance(0.5) ? 0 : random.log_uniform(1e-3, 2);
+  scene.x0 = random.uniform(-10, 10);
+  scene.v0 = random.chance(0.5) ? 0 : random.uniform(-10, 10);
+  if (random.chance(0.33)) {
+    scene.force_amplitude = random.log_uniform(0.1, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
+  }
+  const int count = 1 + int(random.uniform(0, 6));
+  for (int i = 0; i < count; ++i) {
+    SceneDamper damper;
+    damper.mass_ratio = random.log_uniform(1e-3, random.chance(0.2) ? 10 : 0.5);
+    damper.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+    damper.clearance = random.log_uniform(0.1, 10);
+    const bool flies = random.chance(0.4);
+    damper.y0 = damper.clearance * (flies ? random.uniform(0, 1) : double(random.chance(0.5)));
+    damper.w0 = flies ? random.uniform(-3, 3) : 0;
+    scene.dampers.push_back(damper);
+  }
+  scene.until_time = 40;
+  return scene;
+}
+
+Run run_of(const Scene& scene) {
+  return simulate(scene, Restitution{.budget = {.max_impacts = 100'000}}, everything());
+}
+
+// How far two runs' impacts agree: the first time at which they do not, to within `off` times (1 + time).
+double agree_until(const Impacts& one, const Impacts& other, double off, double end) {
+  for (std::size_t i = 0; i < std::min(one.time.size(), other.time.size()); ++i) {
+    const double t = one.time[i], allowed = off * (1 + t);
+    if (std::abs(t - other.time[i]) > allowed || one.wall[i] != other.wall[i] ||
+        std::abs(one.relative_velocity[i] - other.relative_velocity[i]) > allowed)
+      return t;
+  }
+  return one.time.size() == other.time.size() ? end : 0;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "several dampers keep the energy balance, each impact loses by Newton's law, nobody leaves a cavity") {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    CAPTURE(seed);
+    const Scene scene = random_scene(seed);
+    const Run run = run_of(scene);
+    const EnergyBalance& energy = *run.energy;
+    CHECK(std::abs(energy.residual) <= 1e-12);
+    const auto [low, high] = std::minmax_element(energy.impact_loss.begin(), energy.impact_loss.end());
+    if (low != energy.impact_loss.end()) CHECK(*low >= -1e-15 * energy.initial.total());
+    double kinetic = 0, losses = 0, in_all = energy.bounce_down_loss;
+    for (const DamperEnergy& damper : energy.dampers) {
+      kinetic += damper.final_kinetic;
+      losses += damper.impact_loss + damper.bounce_down_loss;
+    }
+    for (const double loss : energy.impact_loss) in_all += loss;
+    CHECK(losses == doctest::Approx(in_all).epsilon(1e-12));
+    CHECK(kinetic <= energy.final.kinetic * (1 + 1e-12));
+    CHECK(run.impacts->damper.size() == run.impacts->time.size());
+    for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
+      const double into = run.impacts->wall[i] == Wall::left ? -1 : 1;
+      CHECK(into * run.impacts->relative_velocity[i] >= 0);
+    }
+  }
+}
+
+TEST_CASE("a list of one damper is the scene with that damper") {
+  double compared = 0, in_all = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    CAPTURE(seed);
+    Scene list = random_scene(seed);
+    list.dampers.resize(1);
+    // In units of another length: the scene's epsilon is the clearance.
+    const SceneDamper& damper = list.dampers.front();
+    const double c = damper.clearance;
+    Scene one = list;
+    one.dampers.clear();
+    one.mass_ratio = damper.mass_ratio;
+    one.restitution = damper.restitution;
+    one.x0 = list.x0 / c;
+    one.v0 = list.v0 / c;
+    one.y0 = damper.y0 == c ? 1 : damper.y0 / c;
+    one.w0 = damper.w0 / c;
+    one.force_amplitude = list.force_amplitude / c;
+    const Run by_list = run_of(list);
+    Run by_one = run_of(one);
+    for (double& w : by_one.impacts->relative_velocity) w *= c;
+    compared += agree_until(*by_list.impacts, *by_one.impacts, 1e-7, 40);
+    in_all += 40;
+    // Up to here no perturbation has grown from rounding to this.
+    const double early = agree_until(*by_list.impacts, *by_one.impacts, 1e-7 * c, 40);
+    CHECK((early > 1 || by_list.impacts->time.empty()));
+  }
+  CHECK(compared >= 0.7 * in_all);
+}
+
+TEST_CASE("the order of the dampers changes no bit") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    CAPTURE(seed);
+    const Scene scene = random_scene(seed);
+    Scene turned = scene;
+    std::rotate(turned.dampers.begin(), turned.dampers.begin() + 1, turned.dampers.end());
+    const int count = int(scene.dampers.size());
+    const Run one = run_of(scene), other = run_of(turned);
+    CHECK(one.half_cycles->zero_crossing == other.half_cycles->zero_crossing);
+    CHECK(one.half_cycles->amplitude == other.half_cycles->amplitude);
+    CHECK(one.impacts->time == other.impacts->time);
+    CHECK(one.energy->final.total() == other.energy->final.total());
+    CHECK(one.energy->residual == other.energy->residual);
+    // Of each damper by itself, as the impacts of one instant are in the order of numbers.
+    for (int i = 0; i < count; ++i) {
+      const auto speeds_of = [](const Run& run, int damper) {
+        std::vector<double> speeds;
+        for (std::size_t k = 0; k < run.impacts->time.size(); ++k)
+          if (run.impacts->damper[k] == damper) speeds.push_back(run.impacts->relative_velocity[k]);
+        return speeds;
+      };
+      CHECK(speeds_of(one, i) == speeds_of(other, (i + count - 1) % count));
+      CHECK(one.energy->dampers[i].impact_loss == other.energy->dampers[(i + count - 1) % count].impact_loss);
+    }
+  }
+}
+
+TEST_CASE("halves of a damper that are released alike are that damper, and one of hardly any mass is none") {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    CAPTURE(seed);
+    const Scene scene = random_scene(seed);
+    Scene halves = scene, more = scene;
+    halves.dampers.front().mass_ratio /= 2;
+    halves.dampers.push_back(halves.dampers.front());
+    more.dampers.push_back({.mass_ratio = 1e-9, .restitution = 0.5, .clearance = 0.7});
+    const Run whole = run_of(scene), split = run_of(halves), added = run_of(more);
+    const int half = int(scene.dampers.size());  // number of the second half
+    Impacts first_only;
+    for (std::size_t i = 0; i < split.impacts->time.size(); ++i) {
+      if (split.impacts->damper[i] == half) continue;
+      first_only.time.push_back(split.impacts->time[i]);
+      first_only.wall.push_back(split.impacts->wall[i]);
+      first_only.relative_velocity.push_back(split.impacts->relative_velocity[i]);
+    }
+    const double together = agree_until(*whole.impacts, first_only, 1e-6, 40);
+    CHECK((together > 5 || together > 0.8 * whole.end_time));
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, whole.half_cycles->amplitude.size()); ++i) {
+      if (whole.half_cycles->zero_crossing[i] > 5) break;
+      CHECK(added.half_cycles->amplitude[i] ==
+            doctest::Approx(whole.half_cycles->amplitude[i]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("masses that meet walls at one instant, by the law's own conditions") {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    CAPTURE(seed);
+    reference::Random random(seed);
+    std::vector<MassAtWall<double>> masses(1 + std::size_t(random.uniform(0, 6)));
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      const double speed = random.chance(0.3) ? 0 : -random.log_uniform(1e-6, 10);
+      masses[i] = {i, random.log_uniform(1e-3, 1e3), random.chance(0.2) ? 0 : random.uniform(0, 1),
+                   random.sign(), speed};
+    }
+    const std::vector<MassAtWall<double>> as_given = masses;
+    const double jump = jump_of_velocity<double>(masses);
+    double momentum = jump, largest = std::abs(jump);
+    for (const MassAtWall<double>& mass : as_given) {
+      const double after = speed_after(mass, jump);
+      const double impulse = mass.nu * (after - (mass.speed - mass.away * jump));
+      CHECK(impulse >= 0);
+      CHECK(after >= mass.e * -mass.speed);
+      CHECK((impulse == 0 || after == mass.e * -mass.speed));
+      momentum += mass.away * impulse;
+      largest += impulse;
+    }
+    CHECK(std::abs(momentum) <= 1e-14 * largest);
+  }
+}
+
+TEST_CASE("ten dampers that rest on their left walls leave them and meet them together") {
+  Scene scene;
+  scene.x0 = 6;
+  scene.until_time = 30;
+  for (int i = 0; i < 10; ++i)
+    scene.dampers.push_back({.mass_ratio = 0.002, .restitution = 0.6, .clearance = 1});
+  Scene one = scene;
+  one.dampers = {{.mass_ratio = 0.02, .restitution = 0.6, .clearance = 1}};
+  const Run by_ten = run_of(scene), by_one = run_of(one);
+  REQUIRE(by_ten.impacts->time.size() == 10 * by_one.impacts->time.size());
+  for (std::size_t i = 0; i < by_ten.impacts->time.size(); ++i) {
+    CHECK(by_ten.impacts->damper[i] == int(i % 10));
+    CHECK(by_ten.impacts->time[i] == by_ten.impacts->time[i - i % 10]);
+  }
+  CHECK(agree_until(*by_one.impacts, *by_one.impacts, 0, 30) == 30);
+  for (std::size_t i = 0; i < std::min<std::size_t>(40, by_one.impacts->time.size()); ++i)
+    CHECK(by_ten.impacts->time[10 * i] == doctest::Approx(by_one.impacts->time[i]).epsilon(1e-9));
+}
+
+TEST_CASE("equal distances to the right walls of different cavities are met together") {
+  Scene scene;
+  scene.x0 = -6;
+  scene.until_time = 1;
+  // At rest at a distance of 0.3 from their right walls, and carried along by nothing.
+  scene.dampers = {{.mass_ratio = 0.01, .clearance = 1, .y0 = 0.7},
+                   {.mass_ratio = 0.01, .clearance = 1.5, .y0 = 1.2},
+                   {.mass_ratio = 0.01, .clearance = 10, .y0 = 9.7}};
+  const Run run = run_of(scene);
+  REQUIRE(run.impacts->time.size() >= 3);
+  CHECK(run.impacts->time[0] == run.impacts->time[2]);
+  CHECK(run.impacts->damper[2] == 2);
+}
+
+TEST_CASE("sticking masses count to the primary mass, and leave together") {
+  // Plastic dampers: both come to rest on the same wall, and are let go when x'' changes its sign.
+  Scene scene;
+  scene.x0 = 1;
+  scene.until_time = 20;
+  scene.dampers = {{.mass_ratio = 0.3, .restitution = 0, .clearance = 0.5},
+                   {.mass_ratio = 0.2, .restitution = 0, .clearance = 0.8}};
+  const Run run = run_of(scene);
+  const Contacts& contacts = *run.contacts;
+  int together = 0;
+  for (std::size_t i = 0; i + 1 < contacts.end.size(); ++i) {
+    if (contacts.end[i] != contacts.end[i + 1] || contacts.end[i] >= 20) continue;
+    ++together;
+    CHECK(contacts.wall[i] == contacts.wall[i + 1]);
+    CHECK(contacts.damper[i] != contacts.damper[i + 1]);
+  }
+  CHECK(together >= 2);
+  // While both stick the frequency is 1/sqrt(1 + 0.5): from the release of the first scene's equal on.
+  CHECK(std::abs(run.energy->residual) < 1e-14);
+}
+
+TEST_CASE("what is not allowed of a list is said by its field") {
+  Scene scene;
+  scene.until_time = 1;
+  scene.dampers = {{}, {.clearance = 2, .y0 = 3}};
+  const auto field_of = [&](const Engine& engine) -> std::string {
+    try {
+      simulate(scene, engine, Record{});
+    } catch (const InvalidArguments& error) {
+      return error.problems().front().field;
+    }
+    return {};
+  };
+  CHECK(field_of(Restitution{}) == "dampers[1].y0");
+  scene.dampers[1].y0 = 2;
+  CHECK(field_of(Restitution{}).empty());
+  CHECK(field_of(Exact{}) == "dampers");
+  CHECK(field_of(Cem{}) == "dampers");
+  scene.dampers[0].clearance = 0;
+  CHECK(field_of(Restitution{}) == "dampers[0].clearance");
+  scene.dampers.assign(1001, {});
+  CHECK(field_of(Restitution{}) == "dampers");
+}
