@@ -238,11 +238,6 @@ const std::vector<Alteration> of_several_dampers{
      [](Run& run) {
        run.impacts->damper[impact_of_one(run)] = 1 - run.impacts->damper[impact_of_one(run)] % 2;
      }},
-    {"/impacts/damper/", "impacts at the same time in the other order",
-     [](Run& run) {
-       const std::size_t i = impact_of_two(run);
-       std::swap(run.impacts->damper[i], run.impacts->damper[i + 1]);
-     }},
     {"/impacts/relative_velocity/", "an impact that goes away from its wall",
      [](Run& run) { run.impacts->relative_velocity[3] *= -1; }},
     {"/contacts/begin/1", "a damper that sticks twice at a time",

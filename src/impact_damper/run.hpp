@@ -47,8 +47,8 @@ struct Impacts {
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // of that half cycle; absent only in the unfinished one
   std::vector<double> displacement;              // x at the impact, divided by epsilon
-  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts of
-  // one instant are in this order.
+  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts that
+  // coincide are in this order; those that follow from them at the same time come after them.
   std::vector<std::int32_t> damper;
 };
 

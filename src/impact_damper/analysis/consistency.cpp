@@ -37,7 +37,6 @@ class Examination {
     if (run_.half_cycles && several_) examine_counts(*run_.half_cycles);
     if (run_.impacts) {
       examine_impacts(*run_.impacts);
-      if (several_) examine_order(*run_.impacts);
       if (run_.half_cycles)
         examine_rows(*run_.half_cycles, *run_.impacts);
       else
@@ -208,17 +207,6 @@ class Examination {
       if (!require(sum == rows.impacts[row], "/half_cycles/impacts", row,
                    "must be the sum over all dampers, " + std::to_string(sum) + ", got " +
                        std::to_string(rows.impacts[row])))
-        break;
-    }
-  }
-
-  void examine_order(const Impacts& impacts) {
-    for (std::size_t i = 1; i < impacts.time.size(); ++i) {
-      if (!require(impacts.time[i] != impacts.time[i - 1] || impacts.damper[i] >= impacts.damper[i - 1],
-                   "/impacts/damper", i,
-                   "must be in ascending order where impacts are at the same time, got " +
-                       std::to_string(impacts.damper[i] + 1) + " after " +
-                       std::to_string(impacts.damper[i - 1] + 1)))
         break;
     }
   }

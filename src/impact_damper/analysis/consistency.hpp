@@ -24,7 +24,7 @@ namespace impact_damper {
 //     does not exceed the amplitude of its half cycle;
 //   energy: the energies at the release and at the end are those of the states there; an impact on a rigid
 //     wall loses what its speed implies; the recorded residual is that of the recorded terms;
-//   several dampers: impacts at the same time are in their order; counts, losses and bounce-downs are the
+//   several dampers: counts, losses and bounce-downs are the
 //   sums
 //     over all dampers, and those of a damper the sums over its impacts; each secondary mass lies between its
 //     walls, and its kinetic energy is that of its state.
