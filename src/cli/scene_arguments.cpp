@@ -1,6 +1,7 @@
 #include "scene_arguments.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <sstream>
 
@@ -145,9 +146,9 @@ std::string help_of(const OfferedOption& offered, std::size_t engines) {
 
 }  // namespace
 
-SceneFile scene_of(Arguments& arguments, Stops stops) {
+SceneFile scene_of(Arguments& arguments, Stops stops, DamperList dampers) {
   const std::optional<std::string> name = arguments.file("--scene");
-  SceneFile file = name ? read_scene_file(*name) : SceneFile{};
+  SceneFile file = name ? read_scene_file(*name, dampers) : SceneFile{};
   Scene& scene = file.scene;
   bool all_read = true;
   const auto override_with = [&](std::string_view field, auto& target) {
@@ -155,7 +156,12 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
     if (value) target = *value;
     if (!value && arguments.given(option_of(field))) all_read = false;
   };
-  for (const SceneField& field : scene_fields) override_with(field.name, scene.*field.member);
+  for (const SceneField& field : scene_fields) {
+    override_with(field.name, scene.*field.member);
+    if (!scene.dampers.empty() && is_of_one_damper(field) && arguments.given(option_of(field.name)))
+      arguments.reject(option_of(field.name),
+                       "is for one damper: " + *name + " has a list, which sets their numbers");
+  }
   if (stops == Stops::ignored) {
     scene.until_time = 1;  // a scene needs one
     scene.until_amplitude.reset();
@@ -169,7 +175,7 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
                        "it, --until-amplitude or both must be given: when is the run to stop?");
     return file;
   }
-  for (const Problem& problem : problems_of(scene))
+  for (const Problem& problem : problems_of(scene, dampers))
     arguments.reject(option_of(problem.field), problem.message);
   return file;
 }
@@ -233,7 +239,13 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
        "--max-steps");
 }
 
-void reject_as_options(std::vector<Problem> problems) {
+void reject_as_options(std::vector<Problem> problems, const std::string& scene_file) {
+  const auto in_list = [](const Problem& problem) { return problem.field.starts_with("dampers"); };
+  if (std::ranges::any_of(problems, in_list)) {
+    std::erase_if(problems, std::not_fn(in_list));
+    for (Problem& problem : problems) problem.field = pointer_of(problem.field);
+    throw InputError(scene_file, problems);
+  }
   for (Problem& problem : problems) problem.field = option_of(problem.field);
   throw UsageError(std::move(problems));
 }

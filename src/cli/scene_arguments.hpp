@@ -11,9 +11,11 @@ namespace impact_damper::cli {
 
 // The scene of --scene and the options beside it, which win; what is not valid is noted in `arguments`.
 // Throws InputError and IoError about the file.
+// Options for the numbers of one damper are rejected beside a list of several.
 // A command for which a scene's stops mean nothing neither offers them nor reads those of the file.
 enum class Stops { needed, ignored };
-SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
+SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed,
+                   DamperList dampers = DamperList::rejected);
 // For commands that change a scene in units by its own numbers: the options beside --scene are rejected.
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());
@@ -28,14 +30,15 @@ void warn_of_cautions(const std::string& command, const Scene& scene, const std:
 // where the run got to, and the option that raises it.
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
-// What simulate() rejects, naming fields, as a UsageError that names the options.
-[[noreturn]] void reject_as_options(std::vector<Problem> problems);
+// What simulate() rejects, naming fields, as a UsageError that names the options; as an InputError where it
+// is about a list of dampers, which only a scene file has.
+[[noreturn]] void reject_as_options(std::vector<Problem> problems, const std::string& scene_file);
 template <class Simulate>
-auto saying_options(Simulate&& simulate_something) {
+auto saying_options(Simulate&& simulate_something, const std::string& scene_file = {}) {
   try {
     return simulate_something();
   } catch (const InvalidArguments& error) {
-    reject_as_options(error.problems());
+    reject_as_options(error.problems(), scene_file);
   }
 }
 

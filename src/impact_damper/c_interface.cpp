@@ -30,6 +30,7 @@ struct Column {
 };
 
 double as_double(std::int64_t value) { return static_cast<double>(value); }
+double as_double(std::int32_t damper) { return damper + 1; }  // numbered from 1
 double as_double(Wall wall) { return wall == Wall::left ? 0 : 1; }
 double as_double(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -90,6 +91,10 @@ class Columns {
     add("half_cycles/peak_time", half_cycles.peak_time);
     add("half_cycles/amplitude", half_cycles.amplitude);
     add("half_cycles/impacts", half_cycles.impacts);
+    for_each_damper("half_cycles", half_cycles.impacts_by_damper,
+                    [&](const std::string& name, const std::vector<std::int64_t>& impacts) {
+                      add(name + "/impacts", impacts);
+                    });
   }
   void add(const Impacts& impacts) {
     add("impacts/time", impacts.time);
@@ -98,11 +103,13 @@ class Columns {
     add("impacts/phase_deg", impacts.phase_deg);
     add("impacts/amplitude", impacts.amplitude);
     add("impacts/displacement", impacts.displacement);
+    if (several()) add("impacts/damper", impacts.damper);
   }
   void add(const Contacts& contacts) {
     add("contacts/begin", contacts.begin);
     add("contacts/end", contacts.end);
     add("contacts/wall", contacts.wall);
+    if (several()) add("contacts/damper", contacts.damper);
   }
   void add(const std::string& name, const Energy& energy) {
     add(name + "/kinetic", energy.kinetic);
@@ -123,13 +130,33 @@ class Columns {
     add("energy/viscous_work", energy.viscous_work);
     add("energy/forcing_work", energy.forcing_work);
     add("energy/residual", energy.residual);
+    for_each_damper("energy", energy.dampers, [&](const std::string& name, const DamperEnergy& its) {
+      for (const DamperEnergyField& field : damper_energy_fields)
+        add(name + '/' + std::string(field.name), its.*field.member);
+      add(name + "/bounce_downs", as_double(its.bounce_downs));
+    });
   }
   void add(const History& history) {
     add("history/time", history.time);
     add("history/x", history.x);
     add("history/v", history.v);
-    add("history/y", history.y);
-    add("history/w", history.w);
+    if (!several()) {
+      add("history/y", history.y);
+      add("history/w", history.w);
+    }
+    for_each_damper("history", history.dampers, [&](const std::string& name, const History::Damper& its) {
+      add(name + "/y", its.y);
+      add(name + "/w", its.w);
+    });
+  }
+
+  bool several() const { return !all_.run.scene.dampers.empty(); }
+  // Calls add_columns(the first part of their names, each).
+  template <class Of, class Add>
+  static void for_each_damper(const std::string& section, const std::vector<Of>& dampers,
+                              const Add& add_columns) {
+    for (std::size_t i = 0; i < dampers.size(); ++i)
+      add_columns(section + "/dampers/" + std::to_string(i + 1), dampers[i]);
   }
 
   impact_damper_run& all_;
@@ -152,7 +179,7 @@ std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
     const auto count = std::min<std::size_t>(history->count, most_samples + 1);  // more are rejected, too
     record.history = {{history->begin, history->end, static_cast<std::int64_t>(count)}};
   }
-  const SceneFile file = parse_scene_file("scene", scene);
+  const SceneFile file = parse_scene_file("scene", scene, DamperList::allowed);
   auto result = std::make_unique<impact_damper_run>();
   result->run = simulate(file.scene, engine_of(engine), record);
   result->scales = file.scales;

@@ -43,9 +43,10 @@ impact_damper_status impact_damper_simulate(const char* scene, const char* engin
 /* A column by its names in a run file, "half_cycles/amplitude", "history/x", and its number of rows. A number
  * that stands alone is a column of one row: "end_time", "energy/residual". All numbers are dimensionless,
  * also of a scene in units, except "units/length_m" and the others that say what a unit is in SI. An absent
- * number is NaN; a wall is 0 (left) or 1 (right). The result is NULL, with 0 rows, if the run has no column
- * of that name; it is not NULL for an existing column of 0 rows. It points into the run and is valid until
- * impact_damper_free(). */
+ * number is NaN; a wall is 0 (left) or 1 (right). Several dampers are numbered from 1, in "impacts/damper" as
+ * in the names of their own columns: "history/dampers/1/y". The result is NULL, with 0 rows, if the run has
+ * no column of that name; it is not NULL for an existing column of 0 rows. It points into the run and is
+ * valid until impact_damper_free(). */
 const double* impact_damper_column(const impact_damper_run* run, const char* name, size_t* rows);
 
 /* The name of each column, in the order of a run file: `index` counts from 0; the result is NULL for an index

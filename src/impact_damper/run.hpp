@@ -4,6 +4,7 @@
 // from its left wall, w = y' its velocity relative to the cavity.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -46,8 +47,8 @@ struct Impacts {
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // of that half cycle; absent only in the unfinished one
   std::vector<double> displacement;              // x at the impact, divided by epsilon
-  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts of
-  // one instant are in this order.
+  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts that
+  // coincide are in this order; those that follow from them at the same time come after them.
   std::vector<std::int32_t> damper;
 };
 
@@ -86,6 +87,17 @@ struct DamperEnergy {
   std::int64_t bounce_downs = 0;                  // accumulation points jumped to
   double bounce_down_loss = 0;                    // in the impacts jumped over
 };
+
+// Those that are energies, by their names in a run file.
+struct DamperEnergyField {
+  std::string_view name;
+  double DamperEnergy::*member;
+};
+inline constexpr std::array<DamperEnergyField, 4> damper_energy_fields{
+    {{"initial_kinetic", &DamperEnergy::initial_kinetic},
+     {"final_kinetic", &DamperEnergy::final_kinetic},
+     {"impact_loss", &DamperEnergy::impact_loss},
+     {"bounce_down_loss", &DamperEnergy::bounce_down_loss}}};
 
 // initial.total() + forcing_work
 //     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work

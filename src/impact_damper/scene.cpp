@@ -1,5 +1,7 @@
 #include "impact_damper/scene.hpp"
 
+#include <algorithm>
+
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 
@@ -34,6 +36,15 @@ const std::array<SceneDamperField, 6> scene_damper_fields{{
     {"w0", &SceneDamper::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
 }};
 
+bool is_of_one_damper(const SceneField& field) {
+  return std::ranges::find(scene_damper_fields, field.name, &SceneDamperField::name) !=
+         scene_damper_fields.end();
+}
+
+std::string damper_field(std::size_t damper, std::string_view name) {
+  return "dampers[" + std::to_string(damper) + "]." + std::string(name);
+}
+
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range) {
@@ -41,7 +52,8 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
-    problems.push_back({"dampers", "several dampers are for run and the restitution engine only"});
+    problems.push_back(
+        {"dampers", "a list is for run with the restitution engine only: give one damper without a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {
@@ -51,8 +63,7 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   }
   for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
     for (const SceneDamperField& field : scene_damper_fields) {
-      check("dampers[" + std::to_string(i) + "]." + std::string(field.name), scene.dampers[i].*field.member,
-            {field.least, field.most});
+      check(damper_field(i, field.name), scene.dampers[i].*field.member, {field.least, field.most});
     }
   }
   for (const SceneField& field : scene_fields) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -77,14 +78,18 @@ struct SceneDamperField {
 };
 extern const std::array<SceneDamperField, 6> scene_damper_fields;
 
+// Whether the scene's field is that of its one damper, which each of several has for itself.
+bool is_of_one_damper(const SceneField& field);
+// How a damper's field is named in a Problem: "dampers[2].clearance", counted from 0.
+std::string damper_field(std::size_t damper, std::string_view name);
+
 // Whether who asks can treat a scene with several dampers.
 enum class DamperList { rejected, allowed };
 
 // What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
-// A NaN is always an offence. A damper's field is named as "dampers[2].clearance", counted from 0. Empty
-// means that the exact engine may run it, if it has no list of dampers. simulate() checks what the others ask
-// for besides: the restitution engine 0 <= y0 <= clearance, the component element method a time step within
-// its stability limit.
+// A NaN is always an offence. Empty means that the exact engine may run it, if it has no list of dampers.
+// simulate() checks what the others ask for besides: the restitution engine 0 <= y0 <= clearance, the
+// component element method a time step within its stability limit.
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers = DamperList::rejected);
 
 }  // namespace impact_damper

@@ -1,5 +1,6 @@
 #include "impact_damper/units.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -13,11 +14,35 @@ namespace {
 constexpr double small = 1e-15, large = 1e15;
 constexpr double metres = 1e-3;  // per millimetre
 
-const UnitField* maker_of(const SceneInUnits& scene, std::string_view field) {
-  const UnitField* maker = nullptr;
+// The field that `field` of the dimensionless scene was made of.
+std::string maker_of(const SceneInUnits& scene, std::string_view field) {
+  if (const std::size_t point = field.find('.'); point != std::string_view::npos) {  // "dampers[2].clearance"
+    const auto* const maker =
+        std::ranges::find(damper_unit_fields, field.substr(point + 1), &DamperUnitField::becomes);
+    return std::string(field.substr(0, point + 1)) + std::string(maker->name);
+  }
+  std::string_view maker = field;  // of "dampers" itself
   for (const UnitField& each : unit_fields)
-    if (each.becomes == field && (!maker || scene.*each.member)) maker = &each;
-  return maker;
+    if (each.becomes == field && (maker == field || scene.*each.member)) maker = each.name;
+  return std::string(maker);
+}
+
+// Notes that it is missing, if it is needed, or what is wrong with its value.
+void check(std::vector<Problem>& problems, const std::string& name, const UnitField& field,
+           const std::optional<double>& value, bool needed) {
+  const NumberRange range{field.least, field.most, field.least_is_allowed};
+  if (!value && needed)
+    problems.push_back({name, "missing, a value must be given in " + std::string(field.unit)});
+  if (value && !range.allows(*value))
+    problems.push_back({name, range.describe("must be") + ", got " + number_text(*value)});
+}
+
+bool is_needed(std::string_view name) {
+  return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
+}
+
+const UnitField& unit_field(std::string_view name) {
+  return *std::ranges::find(unit_fields, name, &UnitField::name);
 }
 
 }  // namespace
@@ -56,6 +81,15 @@ const std::array<UnitField, 16> unit_fields{{
      "the run ends with the first half cycle of a lower amplitude"},
 }};
 
+const std::array<DamperUnitField, 6> damper_unit_fields{{
+    {"secondary_mass", &DamperInUnits::secondary_mass, "mass_ratio"},
+    {"clearance", &DamperInUnits::clearance, "clearance"},
+    {"restitution", &DamperInUnits::restitution, "restitution"},
+    {"contact_stiffness", &DamperInUnits::contact_stiffness, "wall_stiffness"},
+    {"secondary_displacement", &DamperInUnits::secondary_displacement, "y0"},
+    {"secondary_velocity", &DamperInUnits::secondary_velocity, "w0"},
+}};
+
 double Scales::time() const { return std::sqrt(mass / stiffness); }
 double Scales::frequency() const { return 1 / (2 * std::numbers::pi * time()); }
 double Scales::velocity() const { return length / time(); }
@@ -68,20 +102,23 @@ SiUnits si_units_of(const Scales& scales) {
   return {length, scales.time(), length / scales.time(), scales.mass, scales.force(), scales.energy()};
 }
 
-std::vector<Problem> problems_of(const SceneInUnits& scene) {
+std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers) {
   std::vector<Problem> problems;
-  for (const auto* needed : {"mass", "stiffness", "secondary_mass", "clearance"}) {
-    for (const UnitField& field : unit_fields) {
-      if (field.name == needed && !(scene.*field.member))
-        problems.push_back({needed, "missing, a value must be given in " + std::string(field.unit)});
-    }
-  }
   for (const UnitField& field : unit_fields) {
-    const std::optional<double>& value = scene.*field.member;
-    const NumberRange range{field.least, field.most, field.least_is_allowed};
-    if (value && !range.allows(*value))
-      problems.push_back(
-          {std::string(field.name), range.describe("must be") + ", got " + number_text(*value)});
+    const bool of_one_damper =
+        std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name) != damper_unit_fields.end();
+    const bool in_list = of_one_damper && !scene.dampers.empty();
+    if (in_list && scene.*field.member)
+      problems.push_back({std::string(field.name), std::string(beside_dampers)});
+    else
+      check(problems, std::string(field.name), field, scene.*field.member, is_needed(field.name) && !in_list);
+  }
+  for (std::size_t i = 0; i < scene.dampers.size() && i < most_dampers; ++i) {
+    for (const DamperUnitField& field : damper_unit_fields) {
+      const UnitField& same = unit_field(field.name);
+      check(problems, damper_field(i, field.name), same, scene.dampers[i].*field.member,
+            is_needed(field.name));
+    }
   }
   if (scene.damping && scene.damping_ratio)
     problems.push_back({"damping", "either it or damping_ratio must be given, got both"});
@@ -89,20 +126,34 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
     problems.push_back({"until_seconds", "until_seconds, until_millimetres or both must be given"});
   if (!problems.empty()) return problems;
 
-  for (const Problem& problem : problems_of(dimensionless(scene))) {
-    problems.push_back({std::string(maker_of(scene, problem.field)->name),
-                        "made dimensionless, as " + problem.field + ", " + problem.message});
+  for (const Problem& problem : problems_of(dimensionless(scene), dampers)) {
+    const bool of_the_list = problem.field == "dampers";
+    problems.push_back(
+        {maker_of(scene, problem.field),
+         (of_the_list ? "" : "made dimensionless, as " + problem.field + ", ") + problem.message});
   }
   return problems;
 }
 
-Scales scales_of(const SceneInUnits& scene) { return {*scene.mass, *scene.stiffness, *scene.clearance}; }
+Scales scales_of(const SceneInUnits& scene) {
+  return {*scene.mass, *scene.stiffness,
+          scene.dampers.empty() ? *scene.clearance : *scene.dampers[0].clearance};
+}
 
 Scene dimensionless(const SceneInUnits& scene) {
   const Scales scales = scales_of(scene);
   Scene made;
-  made.mass_ratio = *scene.secondary_mass / scales.mass;
+  if (scene.dampers.empty()) made.mass_ratio = *scene.secondary_mass / scales.mass;
   made.restitution = scene.restitution.value_or(made.restitution);
+  for (const DamperInUnits& damper : scene.dampers) {
+    SceneDamper& its = made.dampers.emplace_back();
+    its.mass_ratio = *damper.secondary_mass / scales.mass;
+    its.restitution = damper.restitution.value_or(its.restitution);
+    its.clearance = *damper.clearance / scales.length;
+    if (damper.contact_stiffness) its.wall_stiffness = *damper.contact_stiffness / scales.stiffness;
+    its.y0 = damper.secondary_displacement.value_or(0) / scales.length;
+    its.w0 = damper.secondary_velocity.value_or(0) / scales.velocity();
+  }
   if (scene.damping) made.damping_ratio = *scene.damping / scales.damping();
   if (scene.damping_ratio) made.damping_ratio = *scene.damping_ratio;
   if (scene.contact_stiffness) made.wall_stiffness = *scene.contact_stiffness / scales.stiffness;

@@ -2,9 +2,9 @@
 //
 // Masses are in kg, lengths in mm, velocities in mm/s, times in s, stiffnesses in N/m, forces in N,
 // frequencies in Hz, energies in J. Three numbers fix all scales: the primary mass M, the stiffness K of its
-// spring and the clearance epsilon, the free travel of the secondary mass. Lengths are made dimensionless by
-// epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon, energies by K epsilon^2; masses by M and
-// stiffnesses by K.
+// spring and the clearance epsilon, the free travel of the secondary mass, with several dampers that of the
+// first. Lengths are made dimensionless by epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon,
+// energies by K epsilon^2; masses by M and stiffnesses by K.
 #pragma once
 
 #include <array>
@@ -55,6 +55,13 @@ inline constexpr std::array<SiUnit, 6> si_units{{{"length_m", &SiUnits::length},
                                                  {"force_N", &SiUnits::force},
                                                  {"energy_J", &SiUnits::energy}}};
 
+// One of several dampers, by the names that a scene's one damper has, in SceneInUnits, with the same
+// defaults.
+struct DamperInUnits {
+  std::optional<double> secondary_mass, clearance;  // kg, mm: both required
+  std::optional<double> restitution, contact_stiffness, secondary_displacement, secondary_velocity;
+};
+
 // Every number that may be given; an absent one has the default that its comment names. Allowed values:
 // unit_fields.
 struct SceneInUnits {
@@ -69,6 +76,8 @@ struct SceneInUnits {
   std::optional<double> exciting_force,
       exciting_frequency;  // amplitude, N, absent: 0; Hz, absent: Omega_n / (2 pi)
   std::optional<double> until_seconds, until_millimetres;  // stops, s and mm; at least one
+  // Several in place of the one damper, none of whose numbers may then be given. At most most_dampers.
+  std::vector<DamperInUnits> dampers;
 };
 
 // One number of SceneInUnits: its name, which is its JSON key, where it is kept, which values it allows and
@@ -86,10 +95,24 @@ struct UnitField {
 };
 extern const std::array<UnitField, 16> unit_fields;
 
-// What is wrong with it, one entry per offending field, as by problems_of(Scene): required numbers that are
-// missing, numbers out of range, both dampings given, no stop, and numbers that make a Scene which is not
-// valid. Empty means that the two functions below may be called; otherwise their behaviour is undefined.
-std::vector<Problem> problems_of(const SceneInUnits& scene);
+// One number of DamperInUnits. The values it allows, its unit and meaning are those of the field of
+// unit_fields that has its name.
+struct DamperUnitField {
+  std::string_view name;
+  std::optional<double> DamperInUnits::*member;
+  std::string_view becomes;  // the field of SceneDamper that is made of it
+};
+extern const std::array<DamperUnitField, 6> damper_unit_fields;
+
+// What is wrong with a number of a scene's one damper beside a list of several.
+inline constexpr std::string_view beside_dampers =
+    "must not be given beside dampers, each of which has its own";
+
+// What is wrong with it, one entry per offending field, as by problems_of(Scene, DamperList): required
+// numbers that are missing, numbers out of range, both dampings given, no stop, a list of dampers beside
+// numbers of one, and numbers that make a Scene which is not valid. Empty means that the two functions below
+// may be called; otherwise their behaviour is undefined.
+std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers = DamperList::rejected);
 
 Scales scales_of(const SceneInUnits& scene);
 Scene dimensionless(const SceneInUnits& scene);

@@ -173,6 +173,10 @@ def main():
         subprocess.run([program, "run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
                         "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh], check=True)
         own["run"].append(fresh)
+    several = folder / "fresh" / "several.json"
+    subprocess.run([program, "run", "--scene", source / "tests/corpus/scene/dampers_every_key.json", "--engine", "restitution", "--record",
+                    "half_cycles,impacts,contacts,energy,history", "--history", "0:5:11", "-o", several], check=True)
+    own["run"].append(several)
 
     changed = 0
     drawn = random.Random(1)

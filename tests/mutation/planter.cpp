@@ -244,11 +244,11 @@ WRAPPED(Run, simulate, SIMULATE, const Scene& scene, const Engine& engine, const
 WRAPPED(std::string, run_text, RUN_TEXT, const Run& run, const std::optional<Scales>& scales) {
   return with_fault("file", real_run_text(run, scales));
 }
-WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file) {
-  return with_fault("read", real_read_run(file));
+WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file, DamperList dampers) {
+  return with_fault("read", real_read_run(file, dampers));
 }
-WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& text) {
-  return with_fault("read", real_parse_run(name, text));
+WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& text, DamperList dampers) {
+  return with_fault("read", real_parse_run(name, text, dampers));
 }
 WRAPPED(Table, figure_table, FIGURE_TABLE, const Figure& figure, const FigureRuns& runs,
         const FigureResponses& responses, const FigureSweeps& sweeps) {

@@ -26,11 +26,16 @@ std::string begins_outside(const Scene& scene, const std::optional<Scales>& scal
 
 std::vector<std::string> cautions_of(const Scene& scene, const std::optional<Scales>& scales) {
   std::vector<std::string> cautions;
+  const auto heavy = [&](const std::string& mass, double mass_ratio) {
+    if (mass_ratio > 1)
+      cautions.push_back(mass + " is " + rounded_text(mass_ratio, 4) + " times as heavy as the primary mass" +
+                         (scales ? ": are both given in kilograms?" : ""));
+  };
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i)
+    heavy("the secondary mass of damper " + std::to_string(i + 1), scene.dampers[i].mass_ratio);
+  if (!scene.dampers.empty()) return cautions;
   if (scene.y0 < 0 || scene.y0 > 1) cautions.push_back(begins_outside(scene, scales));
-  if (scene.mass_ratio > 1)
-    cautions.push_back("the secondary mass is " + rounded_text(scene.mass_ratio, 4) +
-                       " times as heavy as the primary mass" +
-                       (scales ? ": are both given in kilograms?" : ""));
+  heavy("the secondary mass", scene.mass_ratio);
   return cautions;
 }
 

@@ -15,7 +15,18 @@ constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
 class Examination {
  public:
-  explicit Examination(const Run& run) : run_(run), scene_(run.scene), cem_(std::get_if<Cem>(&run.engine)) {
+  explicit Examination(const Run& run)
+      : run_(run),
+        scene_(run.scene),
+        several_(!run.scene.dampers.empty()),
+        dampers_(run.scene.dampers),
+        cem_(std::get_if<Cem>(&run.engine)) {
+    if (!several_)
+      dampers_ = {{.mass_ratio = scene_.mass_ratio,
+                   .restitution = scene_.restitution,
+                   .wall_stiffness = scene_.wall_stiffness,
+                   .y0 = scene_.y0,
+                   .w0 = scene_.w0}};
     std::visit([&](const auto& engine) { budget_ = engine.budget; }, run.engine);
     if (cem_) step_ = cem_->large_step.value_or(cem_->time_step.value_or(0));
   }
@@ -23,6 +34,7 @@ class Examination {
   std::vector<Problem> problems() {
     examine_end();
     if (run_.half_cycles) examine_half_cycles(*run_.half_cycles);
+    if (run_.half_cycles && several_) examine_counts(*run_.half_cycles);
     if (run_.impacts) {
       examine_impacts(*run_.impacts);
       if (run_.half_cycles)
@@ -53,6 +65,28 @@ class Examination {
   }
   bool equal(const std::string& field, double wanted, double given, double tolerance, const std::string& of) {
     return require(std::abs(given - wanted) <= tolerance, field, got(number_text(wanted) + of, given));
+  }
+
+  // Where a section's file has what is the damper's own.
+  std::string of_damper(const std::string& section, std::size_t damper) const {
+    return several_ ? section + "dampers/" + std::to_string(damper) + '/' : section;
+  }
+  // The damper of a row, 0 where a scene has one.
+  static std::size_t damper_of(const std::vector<std::int32_t>& column, std::size_t row) {
+    return column.empty() ? 0 : static_cast<std::size_t>(column[row]);
+  }
+  static const std::vector<double>& y_of(const History& history, std::size_t damper) {
+    return history.dampers.empty() ? history.y : history.dampers[damper].y;
+  }
+  static const std::vector<double>& w_of(const History& history, std::size_t damper) {
+    return history.dampers.empty() ? history.w : history.dampers[damper].w;
+  }
+  // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0.
+  double fastest() const {
+    double twice_energy = scene_.x0 * scene_.x0 + scene_.v0 * scene_.v0;
+    for (const SceneDamper& damper : dampers_)
+      twice_energy += damper.mass_ratio * (scene_.v0 + damper.w0) * (scene_.v0 + damper.w0);
+    return std::sqrt(twice_energy) + std::abs(scene_.force_amplitude) * run_.end_time;
   }
 
   // How far two events may be apart in time that are one: rounding, and the component element method sees an
@@ -166,6 +200,17 @@ class Examination {
             got((rows.peak_time[0] == 0 ? "|x0| = " : ">= |x0| = ") + number_text(x0), first));
   }
 
+  void examine_counts(const HalfCycles& rows) {
+    for (std::size_t row = 0; row < rows.impacts.size(); ++row) {
+      std::int64_t sum = 0;
+      for (const std::vector<std::int64_t>& impacts : rows.impacts_by_damper) sum += impacts[row];
+      if (!require(sum == rows.impacts[row], "/half_cycles/impacts", row,
+                   "must be the sum over all dampers, " + std::to_string(sum) + ", got " +
+                       std::to_string(rows.impacts[row])))
+        break;
+    }
+  }
+
   void examine_impacts(const Impacts& impacts) {
     const std::string section = "/impacts/";
     for (std::size_t i = 0; i < impacts.time.size(); ++i) {
@@ -207,8 +252,10 @@ class Examination {
     for (std::size_t row = 0; row < rows.impacts.size(); ++row) {
       const double begin = row > 0 ? rows.zero_crossing[row - 1] : 0, end = rows.zero_crossing[row];
       const double amplitude = rows.amplitude[row];
+      std::vector<std::int64_t> by_damper(dampers_.size());
       for (std::int64_t n = 0; n < rows.impacts[row]; ++n, ++i) {
         const double time = impacts.time[i];
+        ++by_damper[damper_of(impacts.damper, i)];
         if (!require(
                 begin - instant(begin) <= time && time <= end + instant(end), section + "time", i,
                 got("in row " + std::to_string(row) + ", " + number_text(begin) + " to " + number_text(end),
@@ -232,6 +279,13 @@ class Examination {
                 got("at most the amplitude of its row, " + number_text(amplitude), impacts.displacement[i])))
           return;
       }
+      for (std::size_t damper = 0; damper < rows.impacts_by_damper.size(); ++damper) {
+        const std::int64_t given = rows.impacts_by_damper[damper][row];
+        if (!require(given == by_damper[damper], of_damper("/half_cycles/", damper) + "impacts", row,
+                     "must be the number of its impacts in the row, " + std::to_string(by_damper[damper]) +
+                         ", got " + std::to_string(given)))
+          return;
+      }
     }
     for (; i < count; ++i) {
       const double last = rows.zero_crossing.empty() ? 0 : rows.zero_crossing.back();
@@ -247,12 +301,16 @@ class Examination {
 
   void examine_contacts(const Contacts& contacts) {
     const std::string section = "/contacts/";
+    std::vector<std::vector<std::size_t>> of(dampers_.size());  // each damper
     for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
-      if (i > 0 &&
-          !require(contacts.begin[i] >= contacts.end[i - 1], section + "begin", i,
-                   got("at or after the end of the contact before it, " + number_text(contacts.end[i - 1]),
+      std::vector<std::size_t>& before = of[damper_of(contacts.damper, i)];
+      const double free_from = before.empty() ? 0 : contacts.end[before.back()];
+      if (!before.empty() &&
+          !require(contacts.begin[i] >= free_from, section + "begin", i,
+                   got("at or after the end of the contact before it, " + number_text(free_from),
                        contacts.begin[i])))
         break;
+      before.push_back(i);
       if (!require(contacts.end[i] <= run_.end_time, section + "end", i,
                    got("<= end_time, " + number_text(run_.end_time), contacts.end[i])))
         break;
@@ -260,13 +318,15 @@ class Examination {
     if (!run_.impacts) return;
     const Impacts& impacts = *run_.impacts;
     if (is_rigid()) {
-      std::size_t next = 0;
+      std::vector<std::size_t> next(dampers_.size());
       for (std::size_t i = 0; i < impacts.time.size(); ++i) {
         const double time = impacts.time[i];
-        while (next < contacts.end.size() && contacts.end[next] <= time) ++next;
-        if (!require(next == contacts.end.size() || time <= contacts.begin[next], "/impacts/time", i,
+        const std::vector<std::size_t>& its = of[damper_of(impacts.damper, i)];
+        std::size_t& n = next[damper_of(impacts.damper, i)];
+        while (n < its.size() && contacts.end[its[n]] <= time) ++n;
+        if (!require(n == its.size() || time <= contacts.begin[its[n]], "/impacts/time", i,
                      got("in no stuck interval, such as from " +
-                             number_text(next < contacts.begin.size() ? contacts.begin[next] : 0) + " on",
+                             number_text(n < its.size() ? contacts.begin[its[n]] : 0) + " on",
                          time)))
           break;
       }
@@ -296,11 +356,27 @@ class Examination {
     if (history.time.empty()) return;
     require(history.time.back() <= run_.end_time, "/history/time", history.time.size() - 1,
             got("<= end_time, " + number_text(run_.end_time), history.time.back()));
+    for (std::size_t i = 0; several_ && i < dampers_.size(); ++i) examine_place(history, i);
     if (history.time[0] != 0) return;
     const double size = std::abs(scene_.x0) + std::abs(scene_.v0) + f0;
     if (!equal("/history/x/0", scene_.x0, history.x[0], rounding * size, ", x0")) return;
-    equal("/history/y/0", scene_.y0, history.y[0],
-          rounding * (1 + size + std::abs(scene_.y0) + std::abs(scene_.w0)), ", y0");
+    for (std::size_t i = 0; i < dampers_.size(); ++i) {
+      const double y0 = dampers_[i].y0;
+      if (!equal(of_damper("/history/", i) + "y/0", y0, y_of(history, i)[0],
+                 rounding * (1 + size + std::abs(y0) + std::abs(dampers_[i].w0)), ", y0"))
+        return;
+    }
+  }
+
+  // Between rigid walls, but for the rounding of the flight there.
+  void examine_place(const History& history, std::size_t damper) {
+    const double clearance = dampers_[damper].clearance, near = rounding * (clearance + 2 * fastest());
+    const std::vector<double>& y = y_of(history, damper);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      if (!require(-near <= y[i] && y[i] <= clearance + near, of_damper("/history/", damper) + "y", i,
+                   got("between the walls, 0 to " + number_text(clearance), y[i])))
+        break;
+    }
   }
 
   void examine_samples(const HalfCycles& rows, const History& history) {
@@ -310,6 +386,7 @@ class Examination {
     // with central differences, which see a crossing late, than the energy at the release and the force;
     // where they have put in more, nothing does.
     double fastest = std::max(f0, 2 * std::abs(scene_.w0));  // as an impact at the release may make it
+    if (several_) fastest = std::max(f0, this->fastest());
     for (const auto* column : {&rows.amplitude, &history.x, &history.v})
       for (const double value : *column) fastest = std::max(fastest, std::abs(value));
     bool zeros_are_bounded = true;
@@ -361,25 +438,24 @@ class Examination {
   }
 
   void examine_energy(const EnergyBalance& balance) {
-    const double nu = scene_.mass_ratio, e = scene_.restitution;
     const double depth = is_rigid() ? 0 : std::max({0.0, -scene_.y0, scene_.y0 - 1});
-    examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, scene_.w0,
+    std::vector<double> w;
+    for (const SceneDamper& damper : dampers_) w.push_back(damper.w0);
+    examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, w,
                       scene_.wall_stiffness * depth * depth / 2, rounding);
+    examine_kinetic("initial_kinetic", &DamperEnergy::initial_kinetic, scene_.v0, w, rounding);
     if (run_.history && !run_.history->time.empty() && run_.history->time.back() == run_.end_time) {
       const History& history = *run_.history;
       // Near resonance or in an overdamped motion a state carries the rounding of more than it is made of at
       // last; velocities of central differences are of second order.
-      examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), history.w.back(),
-                        balance.final.wall, 1e-9 + step_ * step_);
+      for (std::size_t i = 0; i < w.size(); ++i) w[i] = w_of(history, i).back();
+      const double part = 1e-9 + step_ * step_;
+      examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), w,
+                        balance.final.wall, part);
+      examine_kinetic("final_kinetic", &DamperEnergy::final_kinetic, history.v.back(), w, part);
     }
-    const std::vector<double>& losses = balance.impact_loss;
-    for (std::size_t i = 0; is_rigid() && run_.impacts && i < losses.size(); ++i) {
-      const double w = run_.impacts->relative_velocity[i];
-      const double loss = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
-      if (!equal("/energy/impact_loss/" + std::to_string(i), loss, losses[i], rounding * loss,
-                 ", by its speed and the restitution"))
-        break;
-    }
+    if (is_rigid() && run_.impacts) examine_losses(*run_.impacts, balance.impact_loss);
+    if (several_) examine_sums(balance);
     if (is_rigid()) equal("/energy/contact_loss", 0, balance.contact_loss, 0, ": rigid walls take no energy");
     if (!is_rigid() || balance.bounce_downs == 0) {
       require(balance.bounce_downs == 0, "/energy/bounce_downs",
@@ -396,16 +472,92 @@ class Examination {
     examine_residual(balance);
   }
 
-  void examine_energy_at(const std::string& section, const Energy& energy, double x, double v, double w,
-                         double wall, double part) {
-    const double nu = scene_.mass_ratio, z1 = v + w;
-    const double moving = (v * v + nu * (std::abs(v) + std::abs(w)) * (std::abs(v) + std::abs(w))) / 2;
-    const double tolerance = part * (moving + x * x / 2 + wall);
+  // The w are those of all dampers, at one instant.
+  void examine_energy_at(const std::string& section, const Energy& energy, double x, double v,
+                         const std::vector<double>& w, double wall, double part) {
+    double moving = v * v, kinetic = v * v, paper = v * v;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      const double nu = dampers_[i].mass_ratio, most = std::abs(v) + std::abs(w[i]), z1 = v + w[i];
+      moving += nu * most * most;
+      kinetic += nu * z1 * z1;
+      paper += nu * (v * v + w[i] * w[i]);
+    }
+    const double tolerance = part * (moving / 2 + x * x / 2 + wall);
     const std::string of = ", that of the state";
-    equal(section + "kinetic", (v * v + nu * z1 * z1) / 2, energy.kinetic, tolerance, of);
+    equal(section + "kinetic", kinetic / 2, energy.kinetic, tolerance, of);
     equal(section + "spring", x * x / 2, energy.spring, tolerance, of);
     equal(section + "wall", wall, energy.wall, tolerance, of);
-    equal(section + "paper", (v * v + nu * (v * v + w * w) + x * x) / 2, energy.paper, tolerance, of);
+    equal(section + "paper", (paper + x * x) / 2, energy.paper, tolerance, of);
+  }
+
+  void examine_kinetic(const std::string& name, double DamperEnergy::*member, double v,
+                       const std::vector<double>& w, double part) {
+    for (std::size_t i = 0; several_ && i < w.size(); ++i) {
+      const double nu = dampers_[i].mass_ratio, z1 = v + w[i], most = std::abs(v) + std::abs(w[i]);
+      if (!equal(of_damper("/energy/", i) + name, nu * z1 * z1 / 2, run_.energy->dampers[i].*member,
+                 part * nu * most * most, ", that of its state"))
+        break;
+    }
+  }
+
+  // What an impact on a rigid wall loses, nu (1 - e^2) w^2 m/(m + nu)/2, where m, in units of the primary
+  // mass, is what is struck: the primary mass and any secondary masses that rest on the other side. Of
+  // several impacts at the same time only the sign is told.
+  void examine_losses(const Impacts& impacts, const std::vector<double>& losses) {
+    double all = 1;
+    for (const SceneDamper& damper : dampers_) all += damper.mass_ratio;
+    for (std::size_t i = 0; i < losses.size(); ++i) {
+      const SceneDamper& damper = dampers_[damper_of(impacts.damper, i)];
+      const double nu = damper.mass_ratio, e = damper.restitution, w = impacts.relative_velocity[i];
+      const double least = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
+      const std::string field = "/energy/impact_loss/" + std::to_string(i);
+      if (!several_) {
+        if (!equal(field, least, losses[i], rounding * least, ", by its speed and the restitution")) break;
+        continue;
+      }
+      const auto is_same = [&](std::size_t j) { return impacts.time[j] == impacts.time[i]; };
+      const bool alone = !(i > 0 && is_same(i - 1)) && !(i + 1 < losses.size() && is_same(i + 1));
+      const double most = least * (1 + nu) * (all - nu) / all, near = rounding * most;
+      if (!require(alone ? least - near <= losses[i] && losses[i] <= most + near : losses[i] >= 0, field,
+                   got(alone ? number_text(least) + " to " + number_text(most) +
+                                   ", by its speed and the restitution"
+                             : ">= 0",
+                       losses[i])))
+        break;
+    }
+  }
+
+  // What the dampers have to do with the balance is together what stands in it.
+  void examine_sums(const EnergyBalance& balance) {
+    const std::vector<DamperEnergy>& dampers = balance.dampers;
+    std::vector<double> losses(dampers.size());
+    double loss = 0;
+    for (std::size_t i = 0; i < balance.impact_loss.size(); ++i) {
+      loss += balance.impact_loss[i];
+      if (run_.impacts) losses[damper_of(run_.impacts->damper, i)] += balance.impact_loss[i];
+    }
+    const double rounded = rounding * (1 + static_cast<double>(balance.impact_loss.size()) / 64);
+    double impact_loss = 0, bounce_down_loss = 0;
+    std::int64_t bounce_downs = 0;
+    for (std::size_t i = 0; i < dampers.size(); ++i) {
+      const std::string section = of_damper("/energy/", i);
+      impact_loss += dampers[i].impact_loss;
+      bounce_down_loss += dampers[i].bounce_down_loss;
+      bounce_downs += dampers[i].bounce_downs;
+      if (run_.impacts && !equal(section + "impact_loss", losses[i], dampers[i].impact_loss,
+                                 rounded * losses[i], ", the sum over its impacts"))
+        return;
+      if (!require(dampers[i].bounce_downs > 0 || dampers[i].bounce_down_loss == 0,
+                   section + "bounce_down_loss",
+                   got("0 where there was no bounce-down to jump over", dampers[i].bounce_down_loss)))
+        return;
+    }
+    const std::string of = ", the sum over all dampers";
+    equal("/energy/impact_loss_total", impact_loss, loss, rounded * loss, of);
+    equal("/energy/bounce_down_loss", bounce_down_loss, balance.bounce_down_loss,
+          rounding * (1 + static_cast<double>(bounce_downs) / 64) * bounce_down_loss, of);
+    require(bounce_downs == balance.bounce_downs, "/energy/bounce_downs",
+            "must be " + std::to_string(bounce_downs) + of + ", got " + std::to_string(balance.bounce_downs));
   }
 
   // What it is divided by, the initial energy and the integral of the force's |power|, is not recorded. It is
@@ -439,6 +591,8 @@ class Examination {
 
   const Run& run_;
   const Scene& scene_;
+  const bool several_;
+  std::vector<SceneDamper> dampers_;  // of a scene with one damper this
   const Cem* const cem_;
   Budget budget_;
   double step_ = 0;  // the longest of the component element method, else 0

@@ -17,12 +17,17 @@ namespace impact_damper {
 //   half cycles: each row has a length > 0 and its peak within it; the first amplitude is >= |x0|;
 //   impacts: each row has as many as its count says, all within it, with the phases that follow from its
 //     crossings and with its amplitude; the relative velocity is towards the wall that is struck;
-//   contacts: they do not overlap; with compliant walls each begins with an impact, except one that begins
-//     at the release; with rigid walls no impact lies within one;
+//   contacts: those of one damper do not overlap; with compliant walls each begins with an impact, except one
+//   that begins
+//     at the release; with rigid walls no impact of the damper lies within one;
 //   history: x changes its sign only where a zero crossing is recorded and is zero in a sample there; |x|
 //     does not exceed the amplitude of its half cycle;
 //   energy: the energies at the release and at the end are those of the states there; an impact on a rigid
-//     wall loses what its speed implies; the recorded residual is that of the recorded terms.
+//     wall loses what its speed implies; the recorded residual is that of the recorded terms;
+//   several dampers: counts, losses and bounce-downs are the
+//   sums
+//     over all dampers, and those of a damper the sums over its impacts; each secondary mass lies between its
+//     walls, and its kinetic energy is that of its state.
 std::vector<Problem> inconsistencies_of(const Run& run);
 
 }  // namespace impact_damper

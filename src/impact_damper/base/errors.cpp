@@ -13,6 +13,16 @@ std::string joined(const std::vector<std::string>& lines) {
 
 }  // namespace
 
+std::string pointer_of(std::string_view field) {
+  std::string pointer;
+  for (const char c : field) {
+    if (pointer.empty()) pointer = "/";
+    if (c == '[' || c == '.') pointer += '/';
+    if (c != '[' && c != '.' && c != ']') pointer += c;
+  }
+  return pointer;
+}
+
 std::vector<std::string> lines_of(const std::vector<Problem>& problems, const std::string& head) {
   std::vector<std::string> lines;
   lines.reserve(problems.size());

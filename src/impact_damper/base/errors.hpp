@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace impact_damper {
@@ -12,6 +13,8 @@ struct Problem {
   std::string field;  // "" if it is about the whole
   std::string message;
 };
+// The JSON pointer of a field: "/dampers/2/clearance" for "dampers[2].clearance", "" for "".
+std::string pointer_of(std::string_view field);
 // Each problem as one line, "FIELD: MESSAGE", with `head` before it.
 std::vector<std::string> lines_of(const std::vector<Problem>& problems, const std::string& head = {});
 

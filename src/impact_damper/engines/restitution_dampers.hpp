@@ -153,7 +153,8 @@ class RestitutionOfDampers {
       if (release) event = {*release, true, {}};
     }
     const Real span = event.time < tracker_.search().span ? event.time : tracker_.search().span;
-    find_lower_bounds(motion.primary().bound(2, span), span);
+    const Real most = motion.primary().bound(2, span);
+    find_lower_bounds(most, span);
     meeting_.clear();
     Real earliest = event.time;
     for (;;) {
@@ -171,7 +172,9 @@ class RestitutionOfDampers {
       // What rounding leaves of its distance from that wall.
       const Real from = met->wall == masses_.wall(i) ? masses_.u[i] : masses_.clearance[i];
       const Real way = absolute(from) + absolute(masses_.u1[i]) * met->time, speed = absolute(met->state.w);
-      meeting_.push_back({i, met->time, met->wall, 4 * std::numeric_limits<Real>::epsilon() * way / speed});
+      // But no longer than it keeps its speed.
+      const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed, keeps = speed / (4 * most);
+      meeting_.push_back({i, met->time, met->wall, slack < keeps ? slack : keeps});
       if (met->time < earliest) earliest = met->time;
     }
     if (meeting_.empty()) return event;

@@ -230,6 +230,10 @@ void ObjectReader::reject(std::string_view key, std::size_t element, std::string
   problems_->add(pointer_to(key) + '/' + std::to_string(element), what);
 }
 
+void ObjectReader::reject(const Problem& problem) {
+  problems_->add(pointer_ + pointer_of(problem.field), problem.message);
+}
+
 std::vector<std::string> ObjectReader::keys() {
   std::vector<std::string> found;
   if (!object_) return found;
@@ -369,7 +373,8 @@ ObjectReader ObjectReader::required_object(std::string_view key) {
   return {problems_, pointer_to(key), nullptr};
 }
 
-std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, std::size_t most) {
+std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, std::size_t most,
+                                                         std::size_t least) {
   std::vector<ObjectReader> objects;
   const Json* const value = find(key);
   if (!value) return objects;
@@ -378,6 +383,11 @@ std::vector<ObjectReader> ObjectReader::optional_objects(std::string_view key, s
     return objects;
   }
   if (too_long(key, most, *value)) return objects;
+  if (value->size() < least) {
+    reject(key, "must have at least " + std::to_string(least) +
+                    (least == 1 ? " element, got " : " elements, got ") + std::to_string(value->size()));
+    return objects;
+  }
   for (std::size_t i = 0; i < value->size(); ++i) {
     const Json& element = (*value)[i];
     std::string place = pointer_to(key) + '/' + std::to_string(i);

@@ -98,11 +98,12 @@ class ObjectReader {
   // Objects within. An optional one that is missing (or null) is absent.
   ObjectReader required_object(std::string_view key);
   std::optional<ObjectReader> optional_object(std::string_view key);
-  // The elements of an array of at most `most` objects.
-  std::vector<ObjectReader> required_objects(std::string_view key, std::size_t most) {
-    return require(key) ? optional_objects(key, most) : std::vector<ObjectReader>{};
+  // The elements of an array of `least` to `most` objects.
+  std::vector<ObjectReader> required_objects(std::string_view key, std::size_t most, std::size_t least = 0) {
+    return require(key) ? optional_objects(key, most, least) : std::vector<ObjectReader>{};
   }
-  std::vector<ObjectReader> optional_objects(std::string_view key, std::size_t most);
+  std::vector<ObjectReader> optional_objects(std::string_view key, std::size_t most, std::size_t least = 0);
+  bool is_object() const { return object_ != nullptr; }  // false: what is wrong has been said
 
   // Every key that is there, sorted, and known from now on: for objects whose keys are data.
   std::vector<std::string> keys();
@@ -113,6 +114,7 @@ class ObjectReader {
   // is allowed and what was given. For checks that the reader cannot do.
   void reject(std::string_view key, std::string_view what);
   void reject(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
+  void reject(const Problem& problem);  // its field may lie deeper: "dampers[2].clearance"
   // Nothing of the whole document has been reported yet: what was read may be looked at together.
   bool all_valid() const;
   // Reports the field as missing unless it is there. True if it is there.

@@ -57,6 +57,9 @@ class CsvTable {
   static void append(std::string& line, std::string_view, std::int64_t value, double) {
     append_number(line, value);
   }
+  static void append(std::string& line, std::string_view, std::int32_t damper, double) {
+    append_number(line, std::int64_t{damper} + 1);
+  }
   static void append(std::string& line, std::string_view, Wall wall, double) {
     line += wall == Wall::left ? '0' : '1';
   }
@@ -69,11 +72,16 @@ class CsvTable {
 
 std::string run_csv(const Run& run, const std::optional<SiUnits>& units) {
   CsvTable table(units);
+  const bool several = !run.scene.dampers.empty();
+  std::int64_t damper = 0;
+  const auto of_next = [&](const std::string& name) { return name + std::to_string(++damper); };
   if (run.half_cycles) {
     table.column("zero_crossing", run.half_cycles->zero_crossing, time);
     table.column("peak_time", run.half_cycles->peak_time, time);
     table.column("amplitude", run.half_cycles->amplitude, length);
     table.column("impacts", run.half_cycles->impacts, number);
+    for (const std::vector<std::int64_t>& impacts : run.half_cycles->impacts_by_damper)
+      table.column(of_next("impacts_"), impacts, number);
   } else if (run.impacts) {
     table.column("time", run.impacts->time, time);
     table.column("wall", run.impacts->wall, number);
@@ -81,16 +89,23 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units) {
     table.column("phase_deg", run.impacts->phase_deg, number);
     table.column("amplitude", run.impacts->amplitude, length);
     table.column("displacement", run.impacts->displacement, length);
+    if (several) table.column("damper", run.impacts->damper, number);
   } else if (run.contacts) {
     table.column("begin", run.contacts->begin, time);
     table.column("end", run.contacts->end, time);
     table.column("wall", run.contacts->wall, number);
+    if (several) table.column("damper", run.contacts->damper, number);
   } else if (run.history) {
     table.column("time", run.history->time, time);
     table.column("x", run.history->x, length);
     table.column("v", run.history->v, velocity);
-    table.column("y", run.history->y, length);
-    table.column("w", run.history->w, velocity);
+    if (!several) table.column("y", run.history->y, length);
+    if (!several) table.column("w", run.history->w, velocity);
+    for (const History::Damper& its : run.history->dampers) {
+      const std::string number_of_damper = of_next("_");
+      table.column("y" + number_of_damper, its.y, length);
+      table.column("w" + number_of_damper, its.w, velocity);
+    }
   } else {
     throw std::invalid_argument(
         "record: one of half_cycles, impacts, contacts and history is needed for CSV");

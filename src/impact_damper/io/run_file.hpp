@@ -6,6 +6,11 @@
 // Numbers read back with the same bits; each column stands on a line of its own; a section that was not
 // recorded is not there. Columns are dimensionless; a run of a scene in units has an object "units" before
 // them, which says what one unit of each quantity is in SI (si_units).
+//
+// Where the scene has a list of dampers, impacts and contacts have a column "damper", the number of the
+// damper from 1, and half cycles, history and energy an array "dampers" with an object for each: its
+// "impacts" in each half cycle, its "y" and "w", the fields of DamperEnergy. A reader that is not told
+// DamperList::allowed rejects such a run.
 #pragma once
 
 #include <filesystem>
@@ -39,9 +44,10 @@ std::string sealed(std::string text);
 std::string run_text(const Run& run, const std::optional<Scales>& scales = {});
 
 // One recorded section of a run as CSV (RFC 4180, lines end with LF), its columns under their names in the
-// run file: the first of half_cycles, impacts, contacts and history that the run has.
-// With `units` they are in SI, and the names say so: "time_s", "amplitude_m", "v_m_per_s". An absent number
-// is an empty cell. Throws as run_text() does; std::invalid_argument if the run has none of these sections.
+// run file: the first of half_cycles, impacts, contacts and history that the run has. Those of several
+// dampers have the damper's number behind the name: "impacts_1", "y_2_m". With `units` they are in SI, and
+// the names say so: "time_s", "amplitude_m", "v_m_per_s". An absent number is an empty cell. Throws as
+// run_text() does; std::invalid_argument if the run has none of these sections.
 std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 
 // The run in a file or a text. The check is strict: every key is known and none missing, the columns of a
@@ -49,8 +55,8 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 // digest is that of the content. What is returned is dimensionless; "units" is for other programs. Throws
 // IoError if `file` cannot be read, InputError, with a line for everything that is not valid; these lines
 // begin with the name of the file, or with `name`.
-Run read_run(const std::filesystem::path& file);
-Run parse_run(const std::string& name, const std::string& text);
+Run read_run(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
+Run parse_run(const std::string& name, const std::string& text, DamperList dampers = DamperList::rejected);
 
 // The engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given; other
 // options have their defaults. Throws InputError as above.

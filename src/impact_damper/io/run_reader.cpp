@@ -20,6 +20,8 @@ namespace {
 class Columns {
  public:
   explicit Columns(ObjectReader& object) : object_(object) {}
+  // Of an object in the section, as long as `section`.
+  Columns(ObjectReader& object, const Columns& section) : object_(object), length_(section.length_) {}
 
   template <typename Element>
   bool read(std::string_view name, std::vector<Element>& column, NumberRange range = {}) {
@@ -38,8 +40,18 @@ class Columns {
     return is_read;
   }
 
-  bool read_times(std::string_view name, std::vector<double>& column) {
+  // Numbers of so many dampers, from 1.
+  bool read_damper(std::vector<std::int32_t>& column, std::size_t dampers) {
+    if (dampers == 0) return true;
+    std::vector<std::int64_t> numbers;
+    const bool is_read = read("damper", numbers, within(1, static_cast<double>(dampers)));
+    for (const std::int64_t number : numbers) column.push_back(static_cast<std::int32_t>(number - 1));
+    return is_read;
+  }
+
+  bool read_times(std::string_view name, std::vector<double>& column, bool ascending = true) {
     if (!read(name, column, at_least(0))) return false;
+    if (!ascending) return true;
     const auto drop = std::is_sorted_until(column.begin(), column.end());
     if (drop == column.end()) return true;
     object_.reject(
@@ -101,17 +113,29 @@ std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
   return engine;
 }
 
-HalfCycles read_half_cycles(ObjectReader object) {
+// The objects of a section for each damper of a scene with several.
+std::vector<ObjectReader> read_dampers(ObjectReader& object, std::size_t dampers) {
+  if (dampers == 0) return {};
+  std::vector<ObjectReader> objects = object.required_objects("dampers", most_dampers);
+  if (object.has("dampers") && objects.size() != dampers)
+    object.reject("dampers", "must be as many as in the scene, " + std::to_string(dampers) + ", got " +
+                                 std::to_string(objects.size()));
+  return objects;
+}
+
+HalfCycles read_half_cycles(ObjectReader object, std::size_t dampers) {
   HalfCycles half_cycles;
   Columns columns(object);
   columns.read_times("zero_crossing", half_cycles.zero_crossing);
   columns.read_times("peak_time", half_cycles.peak_time);
   columns.read("amplitude", half_cycles.amplitude, at_least(0));
   columns.read("impacts", half_cycles.impacts, at_least(0));
+  for (ObjectReader& damper : read_dampers(object, dampers))
+    Columns(damper, columns).read("impacts", half_cycles.impacts_by_damper.emplace_back(), at_least(0));
   return half_cycles;
 }
 
-Impacts read_impacts(ObjectReader object) {
+Impacts read_impacts(ObjectReader object, std::size_t dampers) {
   Impacts impacts;
   Columns columns(object);
   columns.read_times("time", impacts.time);
@@ -120,15 +144,18 @@ Impacts read_impacts(ObjectReader object) {
   columns.read("phase_deg", impacts.phase_deg, within(0, 180));
   columns.read("amplitude", impacts.amplitude, at_least(0));
   columns.read("displacement", impacts.displacement);
+  columns.read_damper(impacts.damper, dampers);
   return impacts;
 }
 
-Contacts read_contacts(ObjectReader object) {
+Contacts read_contacts(ObjectReader object, std::size_t dampers) {
   Contacts contacts;
   Columns columns(object);
-  const bool begun = columns.read_times("begin", contacts.begin);
-  const bool ended = columns.read_times("end", contacts.end);
+  const bool ascending = dampers == 0;  // of several only those of each, which analysis/consistency checks
+  const bool begun = columns.read_times("begin", contacts.begin, ascending);
+  const bool ended = columns.read_times("end", contacts.end, ascending);
   columns.read("wall", contacts.wall);
+  columns.read_damper(contacts.damper, dampers);
   for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
     if (contacts.begin[i] <= contacts.end[i]) continue;
     object.reject("end", i,
@@ -157,7 +184,7 @@ Energy read_energy(ObjectReader object) {
   return energy;
 }
 
-EnergyBalance read_energy_balance(ObjectReader object) {
+EnergyBalance read_energy_balance(ObjectReader object, std::size_t dampers) {
   EnergyBalance balance;
   balance.initial = read_energy(object.required_object("initial"));
   balance.final = read_energy(object.required_object("final"));
@@ -171,44 +198,55 @@ EnergyBalance read_energy_balance(ObjectReader object) {
   object.required("viscous_work", balance.viscous_work);
   object.required("forcing_work", balance.forcing_work);
   object.required("residual", balance.residual);
+  for (ObjectReader& damper : read_dampers(object, dampers)) {
+    DamperEnergy& its = balance.dampers.emplace_back();
+    for (const DamperEnergyField& field : damper_energy_fields)
+      damper.required(field.name, its.*field.member);
+    damper.required("bounce_downs", its.bounce_downs, at_least(0));
+  }
   return balance;
 }
 
-History read_history(ObjectReader object) {
+History read_history(ObjectReader object, std::size_t dampers) {
   History history;
   Columns columns(object);
   columns.read_times("time", history.time);
   columns.read("x", history.x);
   columns.read("v", history.v);
-  columns.read("y", history.y);
-  columns.read("w", history.w);
+  const auto read_motion = [](Columns of, std::vector<double>& y, std::vector<double>& w) {
+    of.read("y", y);
+    of.read("w", w);
+  };
+  if (dampers == 0) read_motion(columns, history.y, history.w);
+  for (ObjectReader& damper : read_dampers(object, dampers)) {
+    History::Damper& its = history.dampers.emplace_back();
+    read_motion({damper, columns}, its.y, its.w);
+  }
   return history;
-}
-
-// Every field of a run file's scene is there, absent stops as null.
-Scene read_full_scene(ObjectReader& object) {
-  for (const SceneField& field : scene_fields) object.require(field.name);
-  object.require("until_time");
-  object.require("until_amplitude");
-  return read_scene_fields(object);
 }
 
 // What the engine would reject of the scene: a run of it cannot have been.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
-  if (!problems_of(run.scene).empty()) return;
+  if (!problems_of(run.scene, DamperList::allowed).empty()) return;
   for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
     const bool of_scene =
+        problem.field.starts_with("dampers") ||
         std::ranges::find(scene_fields, problem.field, &SceneField::name) != scene_fields.end();
-    (of_scene ? scene : engine).reject(problem.field, problem.message);
+    (of_scene ? scene : engine).reject(problem);
   }
 }
 
-Run read_whole(JsonDocument document, bool sealed) {
+Run read_whole(JsonDocument document, bool sealed, DamperList list) {
   Run run;
   ObjectReader object = document.root();
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
-  run.scene = read_full_scene(scene);
+  run.scene = read_scene_fields(scene, list, MissingFields::are_problems);
+  if (scene.holds("dampers") && run.scene.dampers.empty()) {
+    object.keys();  // of what dampers the columns would have to be is not known
+    document.finish();
+  }
+  const std::size_t dampers = run.scene.dampers.size();
   if (const std::optional<Engine> whole = read_engine(engine, Lacking::nothing)) {
     run.engine = *whole;
     check_together(scene, engine, run);
@@ -219,11 +257,13 @@ Run read_whole(JsonDocument document, bool sealed) {
   object.required("end_time", run.end_time, at_least(0));
   check_units(object);
   if (const auto section = object.optional_object("half_cycles"))
-    run.half_cycles = read_half_cycles(*section);
-  if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section);
-  if (const auto section = object.optional_object("contacts")) run.contacts = read_contacts(*section);
-  if (const auto section = object.optional_object("energy")) run.energy = read_energy_balance(*section);
-  if (const auto section = object.optional_object("history")) run.history = read_history(*section);
+    run.half_cycles = read_half_cycles(*section, dampers);
+  if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section, dampers);
+  if (const auto section = object.optional_object("contacts"))
+    run.contacts = read_contacts(*section, dampers);
+  if (const auto section = object.optional_object("energy"))
+    run.energy = read_energy_balance(*section, dampers);
+  if (const auto section = object.optional_object("history")) run.history = read_history(*section, dampers);
   if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
     object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
                                 " impacts, got " + std::to_string(run.energy->impact_loss.size()));
@@ -234,16 +274,16 @@ Run read_whole(JsonDocument document, bool sealed) {
 
 }  // namespace
 
-Run read_run(const std::filesystem::path& file) {
+Run read_run(const std::filesystem::path& file, DamperList dampers) {
   std::string text = read_text(file, run_kind);
   const bool sealed = is_sealed(text);
   JsonDocument document = JsonDocument::parse(file.string(), text);
   std::string().swap(text);  // its memory is as large as that of the columns
-  return read_whole(std::move(document), sealed);
+  return read_whole(std::move(document), sealed, dampers);
 }
 
-Run parse_run(const std::string& name, const std::string& text) {
-  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
+Run parse_run(const std::string& name, const std::string& text, DamperList dampers) {
+  return read_whole(JsonDocument::parse(name, text), is_sealed(text), dampers);
 }
 
 std::optional<Engine> read_engine_of_response(ObjectReader& engine) {

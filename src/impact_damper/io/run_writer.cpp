@@ -19,20 +19,50 @@ std::vector<std::int64_t> numbers_of(const std::vector<Wall>& walls) {
   return numbers;
 }
 
+// Dampers are numbered from 0 in memory.
+std::vector<std::int64_t> from_one(const std::vector<std::int32_t>& dampers) {
+  std::vector<std::int64_t> numbers;
+  numbers.reserve(dampers.size());
+  for (const std::int32_t damper : dampers) numbers.push_back(std::int64_t{damper} + 1);
+  return numbers;
+}
+
+// What a section has of each of several dampers.
+template <class Of, class Write>
+void write_dampers(JsonWriter& out, const std::vector<Of>& dampers, const Write& write_fields) {
+  if (dampers.empty()) return;
+  out.open_array("dampers", Layout::lines);
+  for (const Of& each : dampers) {
+    out.open_object(Layout::one_line);
+    write_fields(each);
+    out.close();
+  }
+  out.close();
+}
+
 void write(JsonWriter& out, const HalfCycles& half_cycles) {
-  out.object("half_cycles", Layout::lines, "zero_crossing", half_cycles.zero_crossing, "peak_time",
-             half_cycles.peak_time, "amplitude", half_cycles.amplitude, "impacts", half_cycles.impacts);
+  out.open_object("half_cycles", Layout::lines);
+  out.fields("zero_crossing", half_cycles.zero_crossing, "peak_time", half_cycles.peak_time, "amplitude",
+             half_cycles.amplitude, "impacts", half_cycles.impacts);
+  write_dampers(out, half_cycles.impacts_by_damper,
+                [&](const std::vector<std::int64_t>& impacts) { out.field("impacts", impacts); });
+  out.close();
 }
 
-void write(JsonWriter& out, const Impacts& impacts) {
-  out.object("impacts", Layout::lines, "time", impacts.time, "wall", numbers_of(impacts.wall),
-             "relative_velocity", impacts.relative_velocity, "phase_deg", impacts.phase_deg, "amplitude",
-             impacts.amplitude, "displacement", impacts.displacement);
+void write(JsonWriter& out, const Impacts& impacts, bool several) {
+  out.open_object("impacts", Layout::lines);
+  out.fields("time", impacts.time, "wall", numbers_of(impacts.wall), "relative_velocity",
+             impacts.relative_velocity, "phase_deg", impacts.phase_deg, "amplitude", impacts.amplitude,
+             "displacement", impacts.displacement);
+  if (several) out.field("damper", from_one(impacts.damper));
+  out.close();
 }
 
-void write(JsonWriter& out, const Contacts& contacts) {
-  out.object("contacts", Layout::lines, "begin", contacts.begin, "end", contacts.end, "wall",
-             numbers_of(contacts.wall));
+void write(JsonWriter& out, const Contacts& contacts, bool several) {
+  out.open_object("contacts", Layout::lines);
+  out.fields("begin", contacts.begin, "end", contacts.end, "wall", numbers_of(contacts.wall));
+  if (several) out.field("damper", from_one(contacts.damper));
+  out.close();
 }
 
 void write(JsonWriter& out, std::string_view name, const Energy& energy) {
@@ -49,12 +79,20 @@ void write(JsonWriter& out, const EnergyBalance& balance) {
              balance.contact_loss, "bounce_downs", balance.bounce_downs, "bounce_down_loss",
              balance.bounce_down_loss, "viscous_work", balance.viscous_work, "forcing_work",
              balance.forcing_work, "residual", balance.residual);
+  write_dampers(out, balance.dampers, [&](const DamperEnergy& its) {
+    for (const DamperEnergyField& field : damper_energy_fields) out.field(field.name, its.*field.member);
+    out.field("bounce_downs", its.bounce_downs);
+  });
   out.close();
 }
 
 void write(JsonWriter& out, const History& history) {
-  out.object("history", Layout::lines, "time", history.time, "x", history.x, "v", history.v, "y", history.y,
-             "w", history.w);
+  out.open_object("history", Layout::lines);
+  out.fields("time", history.time, "x", history.x, "v", history.v);
+  if (history.dampers.empty()) out.fields("y", history.y, "w", history.w);
+  write_dampers(out, history.dampers,
+                [&](const History::Damper& its) { out.fields("y", its.y, "w", its.w); });
+  out.close();
 }
 
 template <class Value>
@@ -108,8 +146,9 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   out.field("end_time", run.end_time);
   if (scales) write_units(out, si_units_of(*scales));
   if (run.half_cycles) write(out, *run.half_cycles);
-  if (run.impacts) write(out, *run.impacts);
-  if (run.contacts) write(out, *run.contacts);
+  const bool several = !run.scene.dampers.empty();  // a column of no rows does not tell
+  if (run.impacts) write(out, *run.impacts, several);
+  if (run.contacts) write(out, *run.contacts, several);
   if (run.energy) write(out, *run.energy);
   if (run.history) write(out, *run.history);
   write_provenance(out);

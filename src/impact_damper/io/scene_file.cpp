@@ -34,25 +34,49 @@ GivenKeys given_keys(const ObjectReader& object) {
   return given;
 }
 
+// A list where one damper is wanted is all that is said of an object.
+bool rejects_dampers(ObjectReader& object, DamperList dampers) {
+  if (dampers == DamperList::allowed || !object.holds("dampers")) return false;
+  object.keys();
+  Scene scene;
+  scene.dampers.resize(1);
+  for (const Problem& problem : problems_of(scene)) object.reject(problem);
+  return true;
+}
+
 SceneInUnits read_unit_fields(ObjectReader& object) {
   SceneInUnits scene;
-  std::vector<std::string_view> unreadable;
-  for (const UnitField& field : unit_fields) {
-    if (!object.has(field.name)) continue;
+  std::vector<std::string> unreadable;
+  const auto read = [&](ObjectReader& from, std::string_view key, const std::string& field,
+                        std::optional<double>& target) {
+    if (!from.has(key)) return;
     // What cannot be read is neither missing nor a number that something can be made of.
     double value = std::numeric_limits<double>::quiet_NaN();
-    if (!object.optional(field.name, value)) unreadable.push_back(field.name);
-    scene.*field.member = value;
+    if (!from.optional(key, value)) unreadable.push_back(field);
+    target = value;
+  };
+  for (const UnitField& field : unit_fields)
+    read(object, field.name, std::string(field.name), scene.*field.member);
+  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
+    const std::size_t i = scene.dampers.size();
+    scene.dampers.emplace_back();
+    for (const DamperUnitField& field : damper_unit_fields) {
+      read(damper, field.name, damper_field(i, field.name), scene.dampers[i].*field.member);
+      if (!damper.is_object()) unreadable.push_back(damper_field(i, field.name));
+    }
   }
-  for (const Problem& problem : problems_of(scene))
-    if (std::ranges::find(unreadable, problem.field) == unreadable.end())
-      object.reject(problem.field, problem.message);
+  if (object.holds("dampers") && scene.dampers.empty()) {  // what is wrong with it has been said
+    scene.dampers.emplace_back();
+    for (const DamperUnitField& field : damper_unit_fields) unreadable.push_back(damper_field(0, field.name));
+  }
+  for (const Problem& problem : problems_of(scene, DamperList::allowed))
+    if (std::ranges::find(unreadable, problem.field) == unreadable.end()) object.reject(problem);
   return scene;
 }
 
-SceneFile read_whole(JsonDocument document) {
+SceneFile read_whole(JsonDocument document, DamperList dampers) {
   ObjectReader object = document.root();
-  SceneFile file = read_scene_object(object);
+  SceneFile file = read_scene_object(object, dampers);
   document.finish();
   return file;
 }
@@ -72,25 +96,43 @@ void reject_run(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene read_scene_fields(ObjectReader& object) {
+Scene read_scene_fields(ObjectReader& object, DamperList dampers, MissingFields missing) {
   Scene scene;
-  for (const SceneField& field : scene_fields) object.optional(field.name, scene.*field.member);
+  if (rejects_dampers(object, dampers)) return scene;
+  const bool several = object.has("dampers"), all = missing == MissingFields::are_problems;
+  const auto read = [&](ObjectReader& from, const auto& field, auto& target) {
+    if (all) from.require(field.name);
+    from.optional(field.name, target.*field.member);
+  };
+  for (const SceneField& field : scene_fields) {
+    if (!several || !is_of_one_damper(field))
+      read(object, field, scene);
+    else if (object.has(field.name))
+      object.reject(field.name, beside_dampers);
+  }
+  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
+    SceneDamper& its = scene.dampers.emplace_back();
+    for (const SceneDamperField& field : scene_damper_fields) read(damper, field, its);
+  }
+  for (const std::string_view stop : {"until_time", "until_amplitude"})
+    if (all) object.require(stop);
   const bool time_is_read = object.optional("until_time", scene.until_time);
   const bool amplitude_is_read = object.optional("until_amplitude", scene.until_amplitude);
-  for (const Problem& problem : problems_of(scene)) {
+  for (const Problem& problem : problems_of(scene, dampers)) {
     // A stop that was given but could not be read is not missing as well.
     const bool given = problem.field == "until_time" && !(time_is_read && amplitude_is_read);
-    if (!given) object.reject(problem.field, problem.message);
+    if (!given) object.reject(problem);
   }
   return scene;
 }
 
-SceneFile read_scene_object(ObjectReader& object) {
+SceneFile read_scene_object(ObjectReader& object, DamperList dampers) {
   SceneFile file;
+  if (rejects_dampers(object, dampers)) return file;
   object.optional("description", file.description);
   const auto [in_units, without_units] = given_keys(object);
   if (in_units.empty()) {
-    file.scene = read_scene_fields(object);
+    file.scene = read_scene_fields(object, dampers);
     return file;
   }
   file.in_units = read_unit_fields(object);
@@ -100,34 +142,46 @@ SceneFile read_scene_object(ObjectReader& object) {
     object.reject("",
                   "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
   }
-  if (problems_of(*file.in_units).empty()) {
+  if (problems_of(*file.in_units, dampers).empty()) {
     file.scene = dimensionless(*file.in_units);
     file.scales = scales_of(*file.in_units);
   }
   return file;
 }
 
-SceneFile read_scene_file(const std::filesystem::path& file) {
+SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers) {
   reject_run(file);
-  return read_whole(JsonDocument::read(file, scene_kind));
+  return read_whole(JsonDocument::read(file, scene_kind), dampers);
 }
 
-Scene read_scene(const std::filesystem::path& file) { return read_scene_file(file).scene; }
-
-SceneFile parse_scene_file(const std::string& name, const std::string& text) {
-  return read_whole(JsonDocument::parse(name, text));
+Scene read_scene(const std::filesystem::path& file, DamperList dampers) {
+  return read_scene_file(file, dampers).scene;
 }
 
-Scene parse_scene(const std::string& name, const std::string& text) {
-  return parse_scene_file(name, text).scene;
+SceneFile parse_scene_file(const std::string& name, const std::string& text, DamperList dampers) {
+  return read_whole(JsonDocument::parse(name, text), dampers);
+}
+
+Scene parse_scene(const std::string& name, const std::string& text, DamperList dampers) {
+  return parse_scene_file(name, text, dampers).scene;
 }
 
 void write_scene_fields(JsonWriter& out, const Scene& scene) {
-  for (const SceneField& each : scene_fields) out.field(each.name, scene.*each.member);
+  const bool several = !scene.dampers.empty();
+  for (const SceneField& each : scene_fields)
+    if (!several || !is_of_one_damper(each)) out.field(each.name, scene.*each.member);
+  if (several) out.open_array("dampers", JsonWriter::Layout::one_line);
+  for (const SceneDamper& damper : scene.dampers) {
+    out.open_object(JsonWriter::Layout::one_line);
+    for (const SceneDamperField& each : scene_damper_fields) out.field(each.name, damper.*each.member);
+    out.close();
+  }
+  if (several) out.close();
   out.field("until_time", scene.until_time);
   out.field("until_amplitude", scene.until_amplitude);
 }
 
+// Only run is for several dampers, and a run file is dimensionless.
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
   for (const UnitField& each : unit_fields)
     if (scene.*each.member) out.field(each.name, scene.*each.member);

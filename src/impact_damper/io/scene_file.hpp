@@ -11,6 +11,13 @@
 // left out has the default of Scene or SceneInUnits. One of the two stops must be given, and in units mass,
 // stiffness, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
 // file may have at most 64 KiB.
+//
+// Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or
+// damper_unit_fields, in place of what the scene itself would say of its one damper:
+//
+//   {"dampers": [{"mass_ratio": 0.02}, {"mass_ratio": 0.01, "clearance": 0.3}], "until_time": 100}
+//
+// A reader that is not told DamperList::allowed rejects them.
 #pragma once
 
 #include <filesystem>
@@ -37,23 +44,29 @@ struct SceneFile {
 
 // Throws IoError if `file` cannot be read, InputError, with a line for everything in it that is not valid.
 // These lines begin with the name of the file, or with `name`.
-SceneFile read_scene_file(const std::filesystem::path& file);
-SceneFile parse_scene_file(const std::string& name, const std::string& text);
+SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
+SceneFile parse_scene_file(const std::string& name, const std::string& text,
+                           DamperList dampers = DamperList::rejected);
 // Its scene alone.
-Scene read_scene(const std::filesystem::path& file);
-Scene parse_scene(const std::string& name, const std::string& text);
+Scene read_scene(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
+Scene parse_scene(const std::string& name, const std::string& text,
+                  DamperList dampers = DamperList::rejected);
 
 // Reads the fields of a scene from an object, which may hold others and collects the problems, and writes
 // them into one. For the project's own readers and writers: neither class is part of the library's interface.
-Scene read_scene_fields(ObjectReader& object);
+// Where a run is read, every field must be there, absent stops as null.
+enum class MissingFields { have_defaults, are_problems };
+Scene read_scene_fields(ObjectReader& object, DamperList dampers = DamperList::rejected,
+                        MissingFields missing = MissingFields::have_defaults);
 // The same of a whole scene, dimensionless or in units. Where there are problems, what is returned is not to
 // be used.
-SceneFile read_scene_object(ObjectReader& object);
+SceneFile read_scene_object(ObjectReader& object, DamperList dampers = DamperList::rejected);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that it has
 
-// The scene as JSON on one line, every field in the order of Scene, absent stops as null. It reads back as an
-// equal scene.
+// The scene as JSON on one line, every field in the order of Scene, absent stops as null, several dampers in
+// place of the fields of one. It reads back as an equal scene, if the numbers of one damper were not changed
+// beside a list.
 // Throws NumericalError if a number is not finite.
 std::string scene_text(const Scene& scene);
 

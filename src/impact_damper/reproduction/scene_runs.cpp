@@ -35,7 +35,10 @@ void require_scene(const Run& run, const fs::path& file, const Scene& scene, con
                                                            ": a run of another scene"});
   };
   for (const SceneField& field : scene_fields)
-    compare(field.name, scene.*field.member, run.scene.*field.member);
+    if (scene.dampers.empty() || !is_of_one_damper(field))
+      compare(field.name, scene.*field.member, run.scene.*field.member);
+  if (scene.dampers != run.scene.dampers)
+    problems.push_back({"/scene/dampers", "must be as in " + source + ": a run of another scene"});
   compare("until_time", scene.until_time, run.scene.until_time);
   compare("until_amplitude", scene.until_amplitude, run.scene.until_amplitude);
   if (!problems.empty()) throw InputError(file.string(), problems);
@@ -49,6 +52,8 @@ void require_engine(const Run& run, const fs::path& file, const Engine& engine, 
                                     ", with its options, got " + std::string(name_of(run.engine)) +
                                     ": runs of several engines are not put together"}});
 }
+
+Run read_run_of_one_damper(const fs::path& file) { return read_run(file); }
 
 // Reads a file; if there is none, what is thrown names the command that makes it.
 template <class Content>
@@ -80,7 +85,7 @@ void require_consistent(const Response& response, const fs::path& file) {
 
 void require_scene(const Run& run, const std::filesystem::path& file,
                    const std::filesystem::path& scene_file) {
-  require_scene(run, file, read_scene(scene_file), scene_file.string());
+  require_scene(run, file, read_scene(scene_file, DamperList::allowed), scene_file.string());
 }
 
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
@@ -113,7 +118,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
     const std::string number = std::to_string(member);
     const fs::path file = member_file(run_file, member);
     Run& run = others[static_cast<std::size_t>(i)];
-    run = read_or_name_command(read_run, file,
+    run = read_or_name_command(read_run_of_one_damper, file,
                                "impact-damper run --members " + std::to_string(options.members) + " -o " +
                                    run_file.string() + ", with the other options that made that run");
     require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
@@ -130,7 +135,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
 
 Run SceneRuns::read(const std::string& scene) const {
   const fs::path file = file_of(scene), scene_file = scenes / (scene + ".json");
-  Run run = read_or_name_command(read_run, file,
+  Run run = read_or_name_command(read_run_of_one_damper, file,
                                  "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                      ", with --record, --engine and --members as needed");
   require_scene(run, file, scene_file);
@@ -141,7 +146,7 @@ Run SceneRuns::read(const std::string& scene) const {
 Run SceneRuns::read(const CatalogueRun& wanted) const {
   const Run of_scene = read(wanted.scene);
   const fs::path file = file_of(wanted.name);
-  Run run = read_or_name_command(read_run, file,
+  Run run = read_or_name_command(read_run_of_one_damper, file,
                                  "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() +
                                      " -o " + file.string() + ", with what run " + wanted.name +
                                      " of the catalogue sets, and --members");
