@@ -156,10 +156,15 @@ void walk_impacts(Walk& walk, const Answer& a, const Answer& b, int damper, cons
       const Quad t = mine[i].time;
       const std::string which = name + std::to_string(i);
       ++walk.impacts;
-      walk.pairs.push_back({which + " time", t, t, its[j].time, Kind::time});
-      walk.pairs.push_back({which + " velocity", t, mine[i].relative_velocity, its[j].relative_velocity});
-      walk.pairs.push_back({which + " x", t, mine[i].displacement, its[j].displacement});
-      walk.pairs.push_back({which + " loss", t, mine[i].loss, its[j].loss, Kind::energy});
+      // What need not be listed may be rough, too: it changes nothing that comes later.
+      const bool rough = omitted(mine[i]) && omitted(its[j]);
+      walk.pairs.push_back(
+          {which + " time", t, t, its[j].time, rough ? Kind::begin : Kind::time, rough ? Quad(1) : Quad(0)});
+      if (!rough) {
+        walk.pairs.push_back({which + " velocity", t, mine[i].relative_velocity, its[j].relative_velocity});
+        walk.pairs.push_back({which + " x", t, mine[i].displacement, its[j].displacement});
+        walk.pairs.push_back({which + " loss", t, mine[i].loss, its[j].loss, Kind::energy});
+      }
       ++i, ++j;
     } else if (i < mine.size() && omitted(mine[i])) {
       ++i;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
 
 #include "reference.hpp"
 
@@ -250,6 +251,8 @@ class Integrator {
       if (each.stuck) continue;
       each.d = each.path(end);
       each.s = derivative(each.path)(end) / h;
+      if (!(each.d >= Quad(-1e-12L) && each.d <= each.clearance + Quad(1e-12L)))
+        throw std::logic_error("the oracle has lost a damper");
       if (near[i] <= together || far[i] <= together) {
         if (far[i] <= together) each.side = -each.side, each.s = -each.s;
         each.d = 0;
@@ -276,27 +279,26 @@ class Integrator {
     for (Damper& each : dampers_) {
       if (each.stuck) continue;
       each.s = noisy(each.s, event + 13);
-      // All in one direction, too, so that those as far from the same wall remain so; not in a chattering,
-      // where distances are small.
+      // All in one direction, too, so that those as far from the same wall remain so; not near a wall.
       if (each.s < 0) each.d = noisy(each.d, event + 14 + (each.side > 0));
-      if (magnitude(each.d) > Quad(1e-3L)) each.d += each.side * shift;
+      if (each.d > Quad(1e-3L) && each.clearance - each.d > Quad(1e-3L)) each.d += each.side * shift;
     }
   }
 
-  // The impulses of this instant, of all that are at a wall.
+  // The impulses of this instant, of all that are at a wall and do not leave it; and of those that were
+  // leaving it and that the wall overtakes.
   void impact() {
-    std::vector<Damper*> all;
-    for (Damper& each : dampers_)
-      if (each.d == 0) all.push_back(&each);
-    if (std::none_of(all.begin(), all.end(), [](const Damper* each) { return each->s < 0; })) return;
-    if (question_.fault == Fault::one_after_another) {
-      for (Damper* each : all)
-        if (each->s < 0) strike({each});
-      return;
+    for (;;) {
+      std::vector<Damper*> all;
+      for (Damper& each : dampers_)
+        if (each.d == 0 && each.s <= 0) all.push_back(&each);
+      if (std::none_of(all.begin(), all.end(), [](const Damper* each) { return each->s < 0; })) return;
+      if (question_.fault == Fault::not_released)
+        std::erase_if(all, [](const Damper* each) { return each->stuck; });
+      if (question_.fault == Fault::one_after_another)
+        all = {*std::find_if(all.begin(), all.end(), [](const Damper* each) { return each->s < 0; })};
+      strike(all);
     }
-    if (question_.fault == Fault::not_released)
-      std::erase_if(all, [](const Damper* each) { return each->stuck; });
-    strike(all);
   }
 
   void strike(const std::vector<Damper*>& all) {
@@ -346,32 +348,33 @@ class Integrator {
         answer_.damper_loss[number] += loss;
       }
     }
+    const Quad least = question_.fault == Fault::chattering_cut_short ? Quad(1e-4L) : no_rebound * speeds;
+    const Quad mass_now = joined_mass();
+    std::vector<Damper*> last;  // of a chattering
     for (Damper* each : all) {
-      const Quad joined = joined_mass();
-      const Quad least = question_.fault == Fault::chattering_cut_short ? Quad(1e-4L) : no_rebound * speeds;
-      if (each->s > 0 && each->s <= least && each->e < 1 &&
-          2 * each->s * joined <= each->side * now * (1 - each->e) * Quad(1e-4L))
-        join(*each);
       if (each->s > 0) leave(*each);
+      if (each->s > 0 && each->s <= least && each->s * mass_now <= each->side * now * Quad(1e-8L))
+        last.push_back(each);
     }
+    if (!last.empty()) join(last);
   }
 
-  // The rest of its chattering: it gives its momentum to the primary mass and what rests on the same wall.
-  void join(Damper& each) {
-    Quad mass = 1 + each.nu;
-    const auto rests = [&](const Damper& other) {
-      return &other != &each && other.side == each.side && other.d == 0 && other.s == 0;
-    };
-    for (const Damper& other : dampers_)
-      if (rests(other)) mass += other.nu;
-    const Quad jump = each.side * each.nu * each.s / mass;
-    answer_.damper_loss[&each - dampers_.data()] += each.nu * (mass - each.nu) / mass * each.s * each.s / 2;
-    if (question_.fault != Fault::chattering_cut_short) {
-      v_ += jump;
-      for (Damper& other : dampers_)
-        if (&other != &each && !rests(other)) other.s -= other.side * jump;
+  // The rest of a chattering: they give their momentum to the primary mass and what rests on the same wall.
+  void join(const std::vector<Damper*>& last) {
+    const int side = last.front()->side;
+    Quad mass = 1, driven = 0;
+    for (const Damper& each : dampers_)
+      if (each.side == side && each.d == 0 && each.s == 0) mass += each.nu;
+    for (const Damper* each : last) mass += each->nu, driven += each->nu * each->s;
+    const Quad jump = driven / mass;
+    for (Damper* each : last) {
+      answer_.damper_loss[each - dampers_.data()] += each->nu * each->s * (each->s - jump) / 2;
+      each->s = 0;
     }
-    each.s = 0;
+    if (question_.fault == Fault::chattering_cut_short) return;
+    v_ += side * jump;
+    for (Damper& each : dampers_)
+      if (each.side != side || each.d != 0 || each.s != 0) each.s -= each.side * side * jump;
   }
 
   void work(Quad end) {
