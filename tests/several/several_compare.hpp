@@ -18,7 +18,8 @@ namespace several {
 struct Tolerances {
   double growth = 1000;
   double predictable = 1e-10;
-  // The begin of sticking is known only so well, times 1 + t; contacts as near to each other are one.
+  // Contacts as near to each other, times 1 + t, are one. The begin of sticking may be off by three times
+  // that, in a chattering within another one by thirty times.
   double begin = 1e-7;
   // Impacts so shortly before sticking, times 1 + t, and so slow, need not be listed.
   double chattering_time = 1e-3, chattering_speed = 1e-5;
