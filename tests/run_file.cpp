@@ -559,7 +559,7 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
        {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
     Run run = full_run(engine);
     same(parse_run("run.json", run_text(run)), run);
-    run.scene = {0.1, 0.2, 0.3, 4, 5, 6, 0.7, 8, {}, 9, 10, 11, {}};
+    run.scene = {0.1, 0.2, 0.3, 4, 5, 6, 0.7, 8, 9, 10, 11, {}, {}};
     same(parse_run("run.json", run_text(run)), run);
     run.scene.until_amplitude = 0.5;
     run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.y0 = run.scene.w0 = 0;

@@ -44,16 +44,16 @@ struct Scene {
   // right wall. Outside them it begins by pressing a wall together, which needs compliant walls.
   double y0 = 0.0;
   double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
-  // Several dampers in place of the one above, whose numbers (mass_ratio, restitution, wall_stiffness, y0,
-  // w0) then mean nothing. Their order changes no number of a run. At most most_dampers; empty: the one
-  // above.
-  std::vector<SceneDamper> dampers;
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
   // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12. (The
   // magnitudes of x0, v0, y0, w0 and force_amplitude are at most 1e12, too.)
   std::optional<double> until_time;       // stop at this time
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
+  // Several dampers in place of the one above, whose numbers (mass_ratio, restitution, wall_stiffness, y0,
+  // w0) then mean nothing. Their order changes no number of a run. At most most_dampers; empty: the one
+  // above.
+  std::vector<SceneDamper> dampers;
 
   bool operator==(const Scene&) const = default;
 };
