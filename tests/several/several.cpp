@@ -1,7 +1,7 @@
 // The program of the oracle for several dampers.
 //
 //   impact-damper-several [--kind random|round] [--seed N] [--count M] [--begin-tolerance T] [--growth G]
-//                         [--scene FILE]
+//                         [--scene FILE] [--failures K] [--verbose 1]
 //
 // compares the scenes of seeds N to N + M - 1, of both kinds if none is given, or the scene of FILE, with
 // what the restitution engine makes of them. Prints the first scene that differs, with all that does, and a
@@ -122,7 +122,7 @@ int run(const std::vector<std::string>& words) {
     else if (word == "--verbose" && whole)
       options.verbose = *whole != 0;
     else if (word == "--scene")
-      options.scene = read_scene(value);
+      options.scene = read_scene(value, DamperList::allowed);
     else
       return usage("unknown option or value: " + word + " " + value);
   }
