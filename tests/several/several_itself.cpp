@@ -1,0 +1,199 @@
+// The oracle for several dampers against closed forms, and the comparison against planted faults.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "several_compare.hpp"
+#include "several_scenes.hpp"
+
+using namespace several;
+using namespace impact_damper;
+
+namespace {
+
+SceneDamper damper(double nu, double e, double clearance, double y0, double w0) {
+  SceneDamper damper;
+  damper.mass_ratio = nu, damper.restitution = e, damper.clearance = clearance;
+  damper.y0 = y0, damper.w0 = w0;
+  return damper;
+}
+
+Answer answer_for(const Scene& scene) {
+  Question question;
+  question.scene = scene;
+  question.samples = {0, *scene.until_time / 3, *scene.until_time};
+  return answer_to(question);
+}
+
+double off(Quad a, Quad b) { return double(oracle::magnitude(a - b)); }
+
+}  // namespace
+
+TEST_CASE("one damper with two impacts in each period moves as the closed form says") {
+  // Undamped, at omega; the secondary mass flies with velocity u from the left wall to the right one in half
+  // a period, theta. With x = a cos t + b sin t + X sin(omega t + tau) from the impact at the left wall on,
+  // symmetry, restitution and momentum give a, b, X and tau.
+  const double nu = 0.1, e = 0.6, clearance = 2, omega = 1.3, u = 0.4;
+  const double theta = std::numbers::pi / omega, x0 = (clearance - u * theta) / 2;
+  const double before = u * (1 + 2 * nu - e) / (1 + e);
+  const double a = nu * u * std::tan(theta / 2), b = -nu * u;
+  const double sine = x0 - a, cosine = (before - nu * u) / omega;
+  const double size = std::hypot(sine, cosine), tau = std::atan2(sine, cosine);
+  // The scene begins where the force is zero, in that half period.
+  double start = std::fmod(-tau / omega, theta);
+  if (start < 0) start += theta;
+  Scene scene;
+  scene.damping_ratio = 0, scene.force_frequency = omega;
+  scene.force_amplitude = size * (1 - omega * omega) * (std::cos(omega * start + tau) > 0 ? 1 : -1);
+  const auto x = [&](double t) {
+    return a * std::cos(t) + b * std::sin(t) + size * std::sin(omega * t + tau);
+  };
+  scene.x0 = x(start);
+  scene.v0 = -a * std::sin(start) + b * std::cos(start) + size * omega * std::cos(omega * start + tau);
+  scene.dampers = {damper(nu, e, clearance, x0 + u * start - scene.x0, u - scene.v0)};
+  scene.until_time = 8 * theta;
+  const Answer answer = answer_for(scene);
+  REQUIRE(answer.impacts.size() == 8);
+  for (int i = 0; i < 8; ++i) {
+    const Impact& each = answer.impacts[i];
+    CHECK(each.wall == (i % 2 == 0 ? Wall::right : Wall::left));
+    const double sign = i % 2 == 0 ? 1 : -1;
+    CHECK(off(each.time, (i + 1) * theta - start) < 1e-10);
+    CHECK(off(each.relative_velocity, sign * (u + before)) < 1e-10);
+    CHECK(off(each.displacement, -sign * x0) < 1e-10);
+  }
+}
+
+TEST_CASE("masses that meet a wall at one instant share their impulses") {
+  Scene scene;
+  scene.x0 = 0, scene.until_time = 0.1;
+  scene.dampers = {damper(0.5, 1, 1, 0, -1), damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 0, 0)};
+  // J = -(0.5 2 + 0.5 1.5)/(1 + 0.5 + 0.5): the third rests there and is left behind.
+  Answer answer = answer_for(scene);
+  REQUIRE(answer.impacts.size() == 2);
+  CHECK(answer.samples[0].v == Quad(-0.875));
+  CHECK(answer.samples[0].w[0] == 1);
+  CHECK(answer.samples[0].w[1] == Quad(0.5));
+  CHECK(answer.samples[0].w[2] == Quad(0.875));
+  // At the other side the third is pushed: 1 + 0.5 is struck.
+  scene.dampers = {damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 1, 0)};
+  answer = answer_for(scene);
+  CHECK(off(answer.samples[0].v, -Quad(0.75) / 2) < 1e-30);
+  CHECK(answer.samples[0].w[1] == 0);
+}
+
+TEST_CASE("equal dampers are one of their masses together, sticking included") {
+  for (const double e : {0.0, 0.25, 1.0}) {
+    Scene one, two;
+    one.until_time = two.until_time = 20;
+    one.x0 = two.x0 = 3;
+    one.damping_ratio = two.damping_ratio = 0.05;
+    one.dampers = {damper(0.25, e, 1, 0.3, 0)};
+    two.dampers = {damper(0.125, e, 1, 0.3, 0), damper(0.125, e, 1, 0.3, 0)};
+    const Answer a = answer_for(one), b = answer_for(two);
+    REQUIRE(b.impacts.size() == 2 * a.impacts.size());
+    REQUIRE(b.contacts.size() == 2 * a.contacts.size());
+    CHECK(a.impacts.size() > 5);
+    CAPTURE(e);
+    CHECK((e == 1) == a.contacts.empty());
+    for (std::size_t i = 0; i < a.impacts.size(); ++i) {
+      CHECK(b.impacts[2 * i + 1].damper == 1);
+      CHECK(off(a.impacts[i].time, b.impacts[2 * i].time) < 1e-22);
+      CHECK(b.impacts[2 * i].time == b.impacts[2 * i + 1].time);
+      CHECK(off(a.impacts[i].loss, b.impacts[2 * i].loss + b.impacts[2 * i + 1].loss) < 1e-22);
+    }
+    CHECK(off(a.samples[2].x, b.samples[2].x) < 1e-20);
+  }
+}
+
+TEST_CASE("those that stick move with the primary mass until x'' is zero") {
+  // At rest on the right wall, x0 > 0: x = cos(t / sqrt(1.5)) until x = 0, then all fly with x' as it is.
+  Scene scene;
+  scene.x0 = 1, scene.until_time = 3;
+  scene.dampers = {damper(0.25, 0.5, 10, 10, 0), damper(0.25, 0, 20, 20, 0)};
+  const Answer answer = answer_for(scene);
+  REQUIRE(answer.contacts.size() == 2);
+  const double release = std::numbers::pi / 2 * std::sqrt(1.5);
+  for (const Contact& each : answer.contacts) {
+    CHECK(each.begin == 0);
+    CHECK(off(each.end, release) < 1e-15);
+    CHECK(each.wall == Wall::right);
+  }
+  const double speed = 1 / std::sqrt(1.5);
+  CHECK(off(answer.samples[2].x, -speed * std::sin(3 - release)) < 1e-14);
+  CHECK(off(answer.samples[2].y[0], 10 - speed * (3 - release) + speed * std::sin(3 - release)) < 1e-14);
+}
+
+TEST_CASE("energy is kept, and no order of the dampers changes anything") {
+  int compared = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed)
+    for (Scene scene : {random_scene(seed), round_scene(seed)}) {
+      CAPTURE(text_of(scene));
+      const Answer a = answer_for(scene);
+      if (!a.complete) continue;
+      ++compared;
+      Quad losses = 0;
+      for (const Quad each : a.damper_loss) losses += each;
+      const Quad all = a.initial_kinetic + a.initial_spring + a.turnover;
+      CHECK(off(a.initial_kinetic + a.initial_spring + a.forcing_work,
+                a.final_kinetic + a.final_spring + losses + a.viscous_work) <= 1e-20 * double(1 + all));
+      for (const auto& each : a.samples)
+        for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
+          CHECK(each.y[n] >= Quad(-1e-25L));
+          CHECK(each.y[n] <= scene.dampers[n].clearance + Quad(1e-25L));
+        }
+      std::reverse(scene.dampers.begin(), scene.dampers.end());
+      const Answer b = answer_for(scene);
+      CHECK(a.impacts.size() == b.impacts.size());
+      CHECK(a.samples.size() == 3);
+      if (a.impacts.size() < 200) CHECK(off(a.samples[2].x, b.samples[2].x) < 1e-12);
+    }
+  CHECK(compared > 50);
+}
+
+TEST_CASE("the comparison finds no difference of the oracle's own run, and every planted fault") {
+  const auto found = [](const Program& program) {
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed)
+      for (Scene scene : {random_scene(seed), round_scene(seed)}) {
+        scene.until_time = std::min(*scene.until_time, 12.0);
+        count += !compare(scene, {}, program).differences.empty();
+      }
+    return count;
+  };
+  const auto with = [](Fault fault) {
+    return [fault](const Scene& scene) { return run_of_oracle(scene, fault); };
+  };
+  CHECK(found(with(Fault::none)) == 0);
+  for (const Fault fault :
+       {Fault::one_after_another, Fault::not_released, Fault::released_apart, Fault::chattering_cut_short,
+        Fault::restitution_of_first, Fault::own_mass_only, Fault::clearance_ignored}) {
+    CAPTURE(int(fault));
+    const int scenes = found(with(fault));
+    MESSAGE("fault " << int(fault) << ": found in " << scenes << " of 24 scenes");
+    CHECK(scenes > 0);
+  }
+  // Of what is recorded, a little off.
+  const auto altered = [&](const std::function<void(Run&)>& alter) {
+    return [alter](const Scene& scene) {
+      Run run = run_of_oracle(scene, Fault::none);
+      alter(run);
+      return run;
+    };
+  };
+  const auto nudge = [](std::vector<double>& column) {
+    if (!column.empty()) column.back() *= 1 + 1e-6;
+  };
+  CHECK(found(altered([&](Run& run) { nudge(run.impacts->time); })) > 0);
+  CHECK(found(altered([&](Run& run) { nudge(run.impacts->displacement); })) > 0);
+  CHECK(found(altered([&](Run& run) { nudge(run.energy->impact_loss); })) > 0);
+  CHECK(found(altered([&](Run& run) { nudge(run.contacts->end); })) > 0);
+  CHECK(found(altered([&](Run& run) { nudge(run.half_cycles->amplitude); })) > 0);
+  CHECK(found(altered([&](Run& run) { nudge(run.history->dampers.back().w); })) > 0);
+  CHECK(found(altered([&](Run& run) { run.energy->dampers.back().final_kinetic *= 1 + 1e-6; })) > 0);
+  CHECK(found(altered([&](Run& run) { run.energy->dampers.back().impact_loss *= 1 + 1e-6; })) > 0);
+  CHECK(found(altered([&](Run& run) { std::ranges::reverse(run.impacts->damper); })) > 0);
+  CHECK(found(altered([&](Run& run) { std::ranges::reverse(run.half_cycles->impacts_by_damper); })) > 0);
+}

@@ -1,0 +1,92 @@
+#include "several_scenes.hpp"
+
+#include <cmath>
+#include <initializer_list>
+#include <sstream>
+
+#include "reference.hpp"
+
+namespace several {
+
+using impact_damper::Scene, impact_damper::SceneDamper;
+
+Scene random_scene(std::uint64_t seed) {
+  reference::Random random(seed);
+  Scene scene;
+  scene.x0 = random.uniform(-5, 5);
+  scene.v0 = random.chance(0.5) ? 0 : random.uniform(-5, 5);
+  scene.damping_ratio = random.chance(0.4)   ? 0
+                        : random.chance(0.8) ? random.log_uniform(1e-4, 0.5)
+                                             : random.uniform(0.9, 4);
+  if (random.chance(1 / 3.)) {
+    scene.force_amplitude = random.log_uniform(0.01, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.2, 5);
+  }
+  scene.until_time = random.uniform(5, 40);
+  const int count = 1 + int(random.bits() % 6);
+  for (int i = 0; i < count; ++i) {
+    SceneDamper damper;
+    // Some begin as the one before.
+    if (i > 0) damper = scene.dampers.back();
+    if (i == 0 || random.chance(0.7)) {
+      damper.clearance = random.log_uniform(0.1, 10);
+      const int start = int(random.bits() % 4);
+      damper.y0 = start == 0           ? random.uniform(0, damper.clearance)
+                  : random.chance(0.5) ? damper.clearance
+                                       : 0;
+      damper.w0 = start == 1 || random.chance(0.3) ? 0 : random.uniform(-3, 3);
+    }
+    damper.mass_ratio = random.chance(0.1) ? random.log_uniform(0.5, 5) : random.log_uniform(1e-3, 0.5);
+    damper.restitution = random.chance(0.25) ? double(random.chance(0.4)) : random.uniform(0, 1);
+    scene.dampers.push_back(damper);
+  }
+  return scene;
+}
+
+Scene round_scene(std::uint64_t seed) {
+  reference::Random random(seed);
+  const auto one_of = [&](std::initializer_list<double> values) {
+    return values.begin()[random.bits() % values.size()];
+  };
+  Scene scene;
+  scene.x0 = one_of({0, 0.25, 0.5, 1, 2, 6}) * random.sign();
+  scene.v0 = one_of({0, 0, 1}) * random.sign();
+  scene.damping_ratio = one_of({0, 0, 0, 0.5, std::sqrt(0.5), 1, 2});
+  if (random.chance(1 / 3.)) {
+    scene.force_amplitude = one_of({0.25, 1, 4}) * random.sign();
+    scene.force_frequency = one_of({1, 0.5, 2});
+  }
+  scene.until_time = one_of({3, 10, 20, 4 * std::acos(-1.0)});
+  const int count = 1 + int(random.bits() % 6);
+  const bool one_clearance = random.chance(0.5), one_start = random.chance(0.5);
+  for (int i = 0; i < count; ++i) {
+    SceneDamper damper;
+    damper.mass_ratio = one_of({0.02, 0.1, 0.25, 0.5, 1, 2});
+    damper.restitution = one_of({0, 0, 0.25, 0.5, 0.6, 1});
+    damper.clearance = i > 0 && one_clearance ? scene.dampers[0].clearance : one_of({0.25, 0.5, 1, 2});
+    const bool right = random.chance(0.5);
+    const double distance = one_of({0, 0, 0, 0.125, 0.25});
+    damper.y0 = right ? damper.clearance - distance : distance;
+    damper.w0 = one_of({0, 0, 1}) * random.sign();
+    if (i > 0 && one_start && damper.clearance >= scene.dampers[0].y0)
+      damper.y0 = scene.dampers[0].y0, damper.w0 = scene.dampers[0].w0;
+    scene.dampers.push_back(damper);
+  }
+  return scene;
+}
+
+std::string text_of(const Scene& scene) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "{\"x0\": " << scene.x0 << ", \"v0\": " << scene.v0
+       << ", \"damping_ratio\": " << scene.damping_ratio << ", \"force_amplitude\": " << scene.force_amplitude
+       << ", \"force_frequency\": " << scene.force_frequency << ",\n \"until_time\": " << *scene.until_time
+       << ", \"dampers\": [";
+  for (const SceneDamper& each : scene.dampers)
+    text << (&each == scene.dampers.data() ? "\n" : ",\n") << "  {\"mass_ratio\": " << each.mass_ratio
+         << ", \"restitution\": " << each.restitution << ", \"clearance\": " << each.clearance
+         << ", \"y0\": " << each.y0 << ", \"w0\": " << each.w0 << "}";
+  return text.str() + "]}\n";
+}
+
+}  // namespace several

@@ -1,0 +1,17 @@
+// Scenes with several dampers, by their seed: random ones, and ones of round numbers, where events coincide.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "impact_damper/scene.hpp"
+
+namespace several {
+
+impact_damper::Scene random_scene(std::uint64_t seed);
+impact_damper::Scene round_scene(std::uint64_t seed);
+
+// As it stands in a scene file.
+std::string text_of(const impact_damper::Scene& scene);
+
+}  // namespace several
