@@ -158,9 +158,7 @@ engine        exact, restitution or cem with its default options, or a dict with
               "engine", such as {"name": "cem", "time_step": 1e-4, "locate": True}
 history       (begin, end, count): records the motion at count >= 2 equally spaced times, both ends included,
               0 <= begin < end, divided by 1/Omega_n also for a scene in units
-all others    the scene, by the keys of a scene file: **json.load(open("scene.json")) is a scene, too; several dampers
-              are a list of dicts, dampers=[{"mass_ratio": 0.02}, {"clearance": 0.3}], and need engine="restitution";
-              what a run has of each is then history["dampers"]["1"]["y"] and so on, numbered from 1
+all others    the scene, by the keys of a scene file: **json.load(open("scene.json")) is a scene, too
 
 Raises ValueError with a line for each argument that is not valid, and ArithmeticError where the engine fails or
 this process's arithmetic has been changed. Other threads run meanwhile; Ctrl-C takes effect when the run has ended,
@@ -178,6 +176,9 @@ epsilon Omega_n, forces by K epsilon.
   add("until_time", "stop at this time");
   add("until_amplitude",
       "stop at the end of the first half cycle below it; one of the two must be given, or both");
+  add("dampers",
+      "several with the restitution engine: a list of dicts of the numbers of one, and clearance; what a\n" +
+          std::string(24, ' ') + "run has of each is history[\"dampers\"][\"1\"][\"y\"] and so on, from 1");
   text +=
       "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
       "exciting_frequency that of\n"
