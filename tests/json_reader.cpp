@@ -164,6 +164,21 @@ TEST_CASE("an array is no longer than allowed, its texts no two alike") {
   CHECK(problems(R"({"a": [{}, {}, {}]})", [](ObjectReader& root) {
           CHECK(root.required_objects("a", 2).empty());
         }) == Lines{"f.json: /a: must have at most 2 elements, got 3"});
+  for (const std::size_t least : {1, 2}) {
+    CHECK(problems(R"({"a": []})",
+                   [&](ObjectReader& root) { CHECK(root.required_objects("a", 2, least).empty()); }) ==
+          Lines{"f.json: /a: must have at least " + std::string(least == 1 ? "1 element" : "2 elements") +
+                ", got 0"});
+  }
+}
+
+TEST_CASE("a field within a list is named by its pointer") {
+  CHECK(problems(R"({"a": {"list": [{}, {"b": 1}]}})", [](ObjectReader& root) {
+          ObjectReader a = root.required_object("a");
+          for (ObjectReader each : a.required_objects("list", 2)) each.has("b");
+          a.reject(Problem{"list[1].b", "is wrong"});
+          a.reject(Problem{"", "is wrong, too"});
+        }) == Lines{"f.json: /a/list/1/b: is wrong", "f.json: /a: is wrong, too"});
 }
 
 TEST_CASE("what takes far more memory than its text is rejected while it is read") {

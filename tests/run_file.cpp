@@ -584,3 +584,183 @@ TEST_CASE("a run file says which program made it") {
     CHECK(text.find(entry) != text.npos);
   }
 }
+
+namespace {
+
+Run run_of_several() {
+  Run run = full_run(restitution_on_a_budget());
+  run.scene.dampers = {{.mass_ratio = 0.1, .clearance = 1, .y0 = 0.5}, {.restitution = 1, .clearance = 0.25}};
+  run.scene.mass_ratio = Scene{}.mass_ratio;  // means nothing beside them
+  run.half_cycles->impacts_by_damper = {{1, 0}, {2, 0}};
+  run.impacts->damper = {0, 1, 1};
+  run.contacts->damper = {1, 0};
+  run.history->dampers = {{{0.5, 0.75}, {1, -1}}, {{0, 0.125}, {2, -0.0}}};
+  run.history->y = run.history->w = {};
+  run.energy->dampers = {{1, 2, 3, 4, 5}, {1.5, 2.5, 3.5, 0, 4.5}};
+  return run;
+}
+
+Lines problems_of_several(const std::string& text) {
+  try {
+    parse_run("r.json", text, DamperList::allowed);
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a run file of several dampers numbers them from 1 and has columns of each") {
+  const std::string text = run_text(run_of_several());
+  const auto holds = [&](const std::string& part) {
+    CAPTURE(part);
+    CHECK(text.find(part) != text.npos);
+  };
+  holds(
+      R"("scene": {"damping_ratio": 0, "x0": 6, "v0": 0, "force_amplitude": 0, "force_frequency": 1, "dampers": [{"mass_ratio": 0.1, "restitution": 0.6, "clearance": 1, "wall_stiffness": 10000, "y0": 0.5, "w0": 0}, {"mass_ratio": 0.02, "restitution": 1, "clearance": 0.25, "wall_stiffness": 10000, "y0": 0, "w0": 0}], "until_time": null,)");
+  holds(R"(
+  "impacts": [3,0],
+  "dampers": [
+   {"impacts": [1,0]},
+   {"impacts": [2,0]}
+  ]
+ },)");
+  holds(R"(
+  "displacement": [3.5,-4,0.3333333333333333],
+  "damper": [1,2,2]
+ },)");
+  holds(R"(
+  "wall": [1,0],
+  "damper": [2,1]
+ },)");
+  holds(R"(
+  "residual": -1e-16,
+  "dampers": [
+   {"initial_kinetic": 1, "final_kinetic": 2, "impact_loss": 3, "bounce_down_loss": 5, "bounce_downs": 4},
+   {"initial_kinetic": 1.5, "final_kinetic": 2.5, "impact_loss": 3.5, "bounce_down_loss": 4.5, "bounce_downs": 0}
+  ]
+ },)");
+  holds(R"(
+  "v": [0,-1],
+  "dampers": [
+   {"y": [0.5,0.75], "w": [1,-1]},
+   {"y": [0,0.125], "w": [2,-0.0]}
+  ]
+ },)");
+}
+
+TEST_CASE("a run of several dampers reads back as it was, and only where it may") {
+  const Run run = run_of_several();
+  const std::string text = run_text(run);
+  const Run back = parse_run("r.json", text, DamperList::allowed);
+  same(back, run);
+  CHECK(back.half_cycles->impacts_by_damper == run.half_cycles->impacts_by_damper);
+  CHECK(back.impacts->damper == run.impacts->damper);
+  CHECK(back.contacts->damper == run.contacts->damper);
+  REQUIRE(back.history->dampers.size() == 2);
+  REQUIRE(back.energy->dampers.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(back.history->dampers[i].y == run.history->dampers[i].y);
+    CHECK(back.history->dampers[i].w == run.history->dampers[i].w);
+  }
+  CHECK(run_text(back) == text);
+  CHECK(problems(text) == Lines{"r.json: /scene/dampers: a list is for run with the restitution engine only: "
+                                "give one damper without a list"});
+}
+
+TEST_CASE("columns of dampers that are not those of the scene are rejected") {
+  const std::string text = run_text(run_of_several());
+  const auto only = [&](const std::string& old, const std::string& by) {
+    CAPTURE(old);
+    const Lines found = problems_of_several(replaced(text, old, by));
+    REQUIRE(found.size() == 1);
+    return found[0];
+  };
+  CHECK(only("\"damper\": [1,2,2]", "\"damper\": [1,2,3]") ==
+        "r.json: /impacts/damper/2: must be a whole number >= 1 and <= 2, got 3");
+  CHECK(only("\"damper\": [2,1]", "\"damper\": [2,0]") ==
+        "r.json: /contacts/damper/1: must be a whole number >= 1 and <= 2, got 0");
+  CHECK(only("\"damper\": [2,1]", "\"damper\": [2]") ==
+        "r.json: /contacts/damper: must be as long as the section's first column, 2, got a length of 1");
+  CHECK(only("{\"impacts\": [2,0]}", "{\"impacts\": [2]}") ==
+        "r.json: /half_cycles/dampers/1/impacts: must be as long as the section's first column, 2, got a "
+        "length of 1");
+  CHECK(only(",\n   {\"impacts\": [2,0]}", "") ==
+        "r.json: /half_cycles/dampers: must be as many as in the scene, 2, got 1");
+  CHECK(only("\"w\": [1,-1]", "\"w\": [1]") ==
+        "r.json: /history/dampers/0/w: must be as long as the section's first column, 2, got a length of 1");
+  CHECK(only("\"bounce_downs\": 4}", "\"bounce_downs\": -4}") ==
+        "r.json: /energy/dampers/0/bounce_downs: must be a whole number >= 0, got -4");
+  CHECK(only("\"clearance\": 0.25, ", "") ==
+        "r.json: /scene/dampers/1/clearance: missing, a value must be given");
+  CHECK(only("\"clearance\": 1, ", "\"clearance\": 0.4, ") ==
+        "r.json: /scene/dampers/0/y0: must be >= 0 and <= 0.4, its clearance, as walls are rigid, got 0.5");
+}
+
+TEST_CASE("as CSV, columns of a damper have its number behind their names") {
+  Run run = run_of_several();
+  const SiUnits units = si_units_of(mast);
+  run.energy.reset();
+  CHECK(run_csv(run) ==
+        "zero_crossing,peak_time,amplitude,impacts,impacts_1,impacts_2\n1.5,0,6,3,1,2\n4.6,3,5.9,0,0,0\n");
+  run.half_cycles.reset();
+  CHECK(run_csv(run).starts_with("time,wall,relative_velocity,phase_deg,amplitude,displacement,damper\n"));
+  CHECK(run_csv(run).ends_with(",0.3333333333333333,2\n"));
+  run.impacts.reset();
+  CHECK(run_csv(run) == "begin,end,wall,damper\n1,1.125,1,2\n2,2,0,1\n");
+  run.contacts.reset();
+  CHECK(run_csv(run) == "time,x,v,y_1,w_1,y_2,w_2\n0,6,0,0.5,1,0,2\n1,-0.0,-1,0.75,-1,0.125,-0.0\n");
+  CHECK(run_csv(run, units)
+            .starts_with("time_s,x_m,v_m_per_s,y_1_m,w_1_m_per_s,y_2_m,w_2_m_per_s\n0,0.06,0,0.005,"));
+}
+
+TEST_CASE(
+    "a scene with a list of dampers is read and written with the list in place of one damper's numbers") {
+  const std::string text =
+      R"({"x0": 2, "dampers": [{}, {"mass_ratio": 0.01, "restitution": 0.5, "clearance": 3,
+                               "wall_stiffness": 5, "y0": 2, "w0": -1}], "until_time": 4})";
+  Scene expected;
+  expected.x0 = 2;
+  expected.until_time = 4;
+  expected.dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}};
+  const Scene scene = parse_scene("s.json", text, DamperList::allowed);
+  CHECK(scene == expected);
+  CHECK(parse_scene("s.json", scene_text(scene), DamperList::allowed) == scene);
+  CHECK(scene_text(scene).find("\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,") !=
+        std::string::npos);
+  CHECK_THROWS_WITH_AS(
+      parse_scene("s.json", text),
+      "s.json: /dampers: a list is for run with the restitution engine only: give one damper "
+      "without a list",
+      InputError);
+}
+
+TEST_CASE("the longest list of dampers reads back as it was") {
+  Scene scene;
+  scene.until_time = 1.0 / 3;
+  for (std::size_t i = 0; i < most_dampers; ++i)
+    scene.dampers.push_back({.mass_ratio = 1 / (3.0 + static_cast<double>(i))});
+  CHECK(parse_scene("s.json", scene_text(scene), DamperList::allowed) == scene);
+  scene.dampers.emplace_back();
+  CHECK_THROWS_WITH_AS(parse_scene("s.json", scene_text(scene), DamperList::allowed),
+                       "s.json: /dampers: must have at most 1000 elements, got 1001", InputError);
+  CHECK(problems_of(scene, DamperList::allowed).size() == 1);
+}
+
+TEST_CASE("a list of dampers beside numbers of one is rejected with all that is wrong") {
+  try {
+    parse_scene("s.json", R"({"mass_ratio": 0.1, "restitution": 0.1, "wall_stiffness": 1, "y0": 0, "w0": 0,
+        "dampers": [{"mass_ratio": 0, "x0": 1}, 3, {"clearance": "1"}], "until_time": 4})",
+                DamperList::allowed);
+    FAIL("read what is not valid");
+  } catch (const InputError& error) {
+    const std::string beside = ": must not be given beside dampers, each of which has its own";
+    CHECK(error.problems() == Lines{"s.json: /mass_ratio" + beside, "s.json: /restitution" + beside,
+                                    "s.json: /wall_stiffness" + beside, "s.json: /y0" + beside,
+                                    "s.json: /w0" + beside, "s.json: /dampers/1: must be an object, got 3",
+                                    "s.json: /dampers/2/clearance: must be a number, got the string \"1\"",
+                                    "s.json: /dampers/0/mass_ratio: must be >= 1e-09 and <= 1e+06, got 0",
+                                    "s.json: /dampers/0/x0: unknown key, did you mean \"w0\"?"});
+  }
+}

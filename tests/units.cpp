@@ -179,3 +179,87 @@ TEST_CASE("a mass outside its cavity and a heavy one are cautioned about, and no
   CHECK(cautions_of(scene, {})[1] == "the secondary mass is 40 times as heavy as the primary mass");
   for (const double y0 : {0.0, 0.5, 1.0}) CHECK(cautions_of({.mass_ratio = 1, .y0 = y0}, {}).empty());
 }
+
+namespace {
+
+// The mast with three boxes; every dimensionless number is a short decimal.
+SceneInUnits mast_with_boxes() {
+  SceneInUnits scene = mast();
+  scene.secondary_mass = scene.clearance = scene.restitution = scene.contact_stiffness = {};
+  scene.secondary_displacement = scene.secondary_velocity = {};
+  scene.dampers.resize(2);
+  scene.dampers[0].secondary_mass = 1.6;
+  scene.dampers[0].clearance = 10;
+  scene.dampers[1] = {.secondary_mass = 0.8,
+                      .clearance = 25,
+                      .restitution = 0.5,
+                      .contact_stiffness = 4e8,
+                      .secondary_displacement = 2.5,
+                      .secondary_velocity = 20};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("several dampers in units are made dimensionless with the clearance of the first") {
+  REQUIRE(problems_of(mast_with_boxes(), DamperList::allowed).empty());
+  CHECK(scales_of(mast_with_boxes()) == scales_of(mast()));
+  const Scene scene = dimensionless(mast_with_boxes());
+  CHECK(scene.x0 == near(6));
+  REQUIRE(scene.dampers.size() == 2);
+  CHECK(scene.dampers[0] == SceneDamper{.mass_ratio = 1.6 / 40, .y0 = 0});
+  CHECK(scene.dampers[1].mass_ratio == near(0.02));
+  CHECK(scene.dampers[1].restitution == 0.5);
+  CHECK(scene.dampers[1].clearance == near(2.5));
+  CHECK(scene.dampers[1].wall_stiffness == near(25000));
+  CHECK(scene.dampers[1].y0 == near(0.25));
+  CHECK(scene.dampers[1].w0 == near(0.1));
+  CHECK(problems_of(mast_with_boxes()).at(0).field == "dampers");
+}
+
+TEST_CASE("what is wrong with one of several dampers in units is said by its own name") {
+  const auto wrong = [](const auto& make) {
+    SceneInUnits scene = mast_with_boxes();
+    make(scene);
+    std::string all;
+    for (const Problem& problem : problems_of(scene, DamperList::allowed))
+      all += problem.field + ": " + problem.message + "\n";
+    return all;
+  };
+  CHECK(wrong([](SceneInUnits& scene) { scene.dampers[1].clearance.reset(); }) ==
+        "dampers[1].clearance: missing, a value must be given in mm\n");
+  CHECK(wrong([](SceneInUnits& scene) { scene.dampers[0].secondary_mass = 0; }) ==
+        "dampers[0].secondary_mass: must be >= 1e-15 and <= 1e+15, got 0\n");
+  CHECK(wrong([](SceneInUnits& scene) { scene.clearance = 10; }) ==
+        "clearance: must not be given beside dampers, each of which has its own\n");
+  CHECK(
+      wrong([](SceneInUnits& scene) { scene.dampers[1].contact_stiffness = 1e-9; }) ==
+      "dampers[1].contact_stiffness: made dimensionless, as dampers[1].wall_stiffness, must be >= 1e-06 and "
+      "<= 1e+15, got 6.25e-14\n");
+  CHECK(wrong([](SceneInUnits& scene) { scene.dampers.resize(1001, scene.dampers[0]); }) ==
+        "dampers: must be at most 1000, got 1001\n");
+}
+
+TEST_CASE("a scene file with several dampers in units is read as the scene that its numbers make") {
+  const std::string text =
+      R"({"mass": 40, "stiffness": 16000, "damping": 3.2, "initial_displacement": 60, "initial_velocity": -50,
+          "exciting_force": 4, "exciting_frequency": 3, "until_seconds": 30, "until_millimetres": 0.5,
+          "dampers": [{"secondary_mass": 1.6, "clearance": 10},
+                      {"secondary_mass": 0.8, "clearance": 25, "restitution": 0.5, "contact_stiffness": 4e8,
+                       "secondary_displacement": 2.5, "secondary_velocity": 20}]})";
+  const SceneFile file = parse_scene_file("boxes.json", text, DamperList::allowed);
+  CHECK(file.scene == dimensionless(mast_with_boxes()));
+  CHECK(file.scales == scales_of(mast()));
+  CHECK_THROWS_WITH_AS(parse_scene("boxes.json", text),
+                       "boxes.json: /dampers: a list is for run with the restitution engine only: give one "
+                       "damper without a list",
+                       InputError);
+}
+
+TEST_CASE("a secondary mass of several that is heavier than the primary mass is warned of by its number") {
+  Scene scene;
+  scene.y0 = 3;  // means nothing beside a list
+  scene.dampers = {SceneDamper{}, {.mass_ratio = 3}};
+  CHECK(cautions_of(scene, {}) ==
+        std::vector<std::string>{"the secondary mass of damper 2 is 3 times as heavy as the primary mass"});
+}

@@ -232,6 +232,18 @@ class Module(unittest.TestCase):
         done = subprocess.run(["nm", "-D", "--defined-only", MODULE], capture_output=True, text=True, check=True)
         self.assertEqual([line.split()[-1] for line in done.stdout.splitlines()], ["PyInit_impact_damper"])
 
+    def test_several_dampers_are_numbered_from_1(self):
+        scene = {"x0": 3, "until_time": 20, "dampers": [{"y0": 0.5}, {"mass_ratio": 0.01, "clearance": 0.3}]}
+        run = impact_damper.run(engine="restitution", history=(0, 5, 6), **scene)
+        file = json.loads(run.text())
+        for number in (1, 2):
+            for section, column in (("history", "y"), ("history", "w"), ("half_cycles", "impacts")):
+                self.assertEqual(list(getattr(run, section)["dampers"][str(number)][column]),
+                                 file[section]["dampers"][number - 1][column])
+        self.assertEqual(set(run.impacts["damper"]), {1, 2})
+        with self.assertRaisesRegex(ValueError, "several dampers are for the restitution engine"):
+            impact_damper.run(**scene)
+
     def test_every_field_is_in_the_documentation(self):
         schema = json.loads((SOURCE / "data/schema/scene.schema.json").read_text())
         fields = {name for text in self.keys_of(schema) for name in text} - {"description", "$schema"}

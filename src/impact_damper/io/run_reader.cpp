@@ -243,7 +243,7 @@ Run read_whole(JsonDocument document, bool sealed, DamperList list) {
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_scene_fields(scene, list, MissingFields::are_problems);
   if (scene.holds("dampers") && run.scene.dampers.empty()) {
-    object.keys();  // of what dampers the columns would have to be is not known
+    for (ObjectReader* each : {&object, &engine}) each->keys();  // the columns would be of unknown dampers
     document.finish();
   }
   const std::size_t dampers = run.scene.dampers.size();
