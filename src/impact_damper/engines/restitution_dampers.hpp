@@ -171,7 +171,8 @@ class RestitutionOfDampers {
       if (!met) continue;
       // What rounding leaves of its distance from that wall.
       const Real from = met->wall == masses_.wall(i) ? masses_.u[i] : masses_.clearance[i];
-      const Real way = absolute(from) + absolute(masses_.u1[i]) * met->time, speed = absolute(met->state.w);
+      const Real &t = met->time, speed = absolute(met->state.w);
+      const Real way = absolute(from) + (absolute(masses_.u1[i]) + most * t / 2) * t;
       // But no longer than it keeps its speed.
       const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed, keeps = speed / (4 * most);
       meeting_.push_back({i, met->time, met->wall, slack < keeps ? slack : keeps});
@@ -199,14 +200,16 @@ class RestitutionOfDampers {
       // The roots of u + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
       const Real near_root = square_root(Real(u1 * u1 + 2 * most * u)),
                  far_root = square_root(Real(u1 * u1 + 2 * most * far));
-      const Real home = u1 > 0 ? Real((u1 + near_root) / most) : Real(2 * u / (near_root - u1));
-      const Real across = u1 < 0 ? Real((far_root - u1) / most) : Real(2 * far / (far_root + u1));
+      const Real to_home = near_root - u1, to_far = far_root + u1;
+      const Real home = u1 > 0        ? Real((u1 + near_root) / most)
+                        : to_home > 0 ? Real(2 * u / to_home)
+                                      : Real(0);
+      const Real across = u1 < 0       ? Real((far_root - u1) / most)
+                          : to_far > 0 ? Real(2 * far / to_far)
+                                       : Real(0);
       const Real first = home < across ? home : across;
-      // NaN where nothing moves; what lies after the span is not excluded.
-      const Real bound = first < span ? first : span;
-      bounds_[i] = masses_.sticks[i] ? std::numeric_limits<Real>::infinity()
-                   : first == first  ? bound
-                                     : Real(0);
+      // What lies after the span is not excluded.
+      bounds_[i] = masses_.sticks[i] ? std::numeric_limits<Real>::infinity() : first < span ? first : span;
     }
   }
 
@@ -242,6 +245,12 @@ class RestitutionOfDampers {
   bool impacts(std::span<const Meeting> meeting) {
     if (!tracker_.has_room_for(std::int64_t(meeting.size()))) return false;
     at_walls_.clear();
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const auto meets = [&](const Meeting& each) { return each.index == i; };
+      if (masses_.rests(i) && std::none_of(meeting.begin(), meeting.end(), meets))
+        at_walls_.push_back(mass_at_wall(i));
+    }
+    const std::size_t resting = at_walls_.size();
     for (const Meeting& each : meeting) {
       const std::size_t i = each.index;
       if (each.wall != masses_.wall(i)) {
@@ -252,7 +261,7 @@ class RestitutionOfDampers {
       masses_.u[i] = 0;
       at_walls_.push_back(mass_at_wall(i));
     }
-    told_.assign(at_walls_.begin(), at_walls_.end());
+    told_.assign(at_walls_.begin() + std::ptrdiff_t(resting), at_walls_.end());
     std::sort(told_.begin(), told_.end(), [&](const auto& one, const auto& other) {
       return masses_.number[one.index] < masses_.number[other.index];
     });
@@ -260,12 +269,8 @@ class RestitutionOfDampers {
       observer_.impact(double(tracker_.now()), masses_.wall(each.index), double(masses_.w(each.index)),
                        double(x_), masses_.number[each.index]);
     }
-    if (some_rest_) {
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        if (masses_.sticks[i]) at_walls_.push_back(mass_at_wall(i));
-      std::sort(at_walls_.begin(), at_walls_.end(),
-                [](const auto& one, const auto& other) { return one.index < other.index; });
-    }
+    std::sort(at_walls_.begin(), at_walls_.end(),
+              [](const auto& one, const auto& other) { return one.index < other.index; });
     const Real jump = jump_of_velocity<Real>(at_walls_);
     // First all others, then those that meet walls.
     for (std::size_t i = 0; i < masses_.size(); ++i) masses_.u1[i] -= masses_.away[i] * jump;
