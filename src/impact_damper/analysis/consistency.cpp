@@ -475,7 +475,7 @@ class Examination {
   // The w are those of all dampers, at one instant.
   void examine_energy_at(const std::string& section, const Energy& energy, double x, double v,
                          const std::vector<double>& w, double wall, double part) {
-    double moving = v * v, kinetic = v * v, paper = v * v;
+    double moving = v * v, kinetic = moving, paper = moving;
     for (std::size_t i = 0; i < w.size(); ++i) {
       const double nu = dampers_[i].mass_ratio, most = std::abs(v) + std::abs(w[i]), z1 = v + w[i];
       moving += nu * most * most;

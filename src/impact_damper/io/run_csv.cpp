@@ -58,7 +58,8 @@ class CsvTable {
     append_number(line, value);
   }
   static void append(std::string& line, std::string_view, std::int32_t damper, double) {
-    append_number(line, std::int64_t{damper} + 1);
+    const std::int64_t from_one = std::int64_t{damper} + 1;
+    append_number(line, from_one);
   }
   static void append(std::string& line, std::string_view, Wall wall, double) {
     line += wall == Wall::left ? '0' : '1';
@@ -99,8 +100,10 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units) {
     table.column("time", run.history->time, time);
     table.column("x", run.history->x, length);
     table.column("v", run.history->v, velocity);
-    if (!several) table.column("y", run.history->y, length);
-    if (!several) table.column("w", run.history->w, velocity);
+    if (!several) {
+      table.column("y", run.history->y, length);
+      table.column("w", run.history->w, velocity);
+    }
     for (const History::Damper& its : run.history->dampers) {
       const std::string number_of_damper = of_next("_");
       table.column("y" + number_of_damper, its.y, length);
