@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_reader.hpp"
