@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_reader.hpp"
@@ -469,7 +470,7 @@ const CatalogueResponse* find_response(const std::vector<CatalogueResponse>& res
   return found == responses.end() ? nullptr : &*found;
 }
 
-Scene changed_scene(const CatalogueRun& run, Scene scene) { return changed(run.set, scene); }
+Scene changed_scene(const CatalogueRun& run, Scene scene) { return changed(run.set, std::move(scene)); }
 
 Response asked_for(const CatalogueResponse& response, const Scene& scene) {
   Response asked = response.asked;
