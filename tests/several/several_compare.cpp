@@ -322,6 +322,16 @@ Prediction predict(const Scene& scene, const Tolerances& tolerances) {
     end_at(result.answer.end_time, "the oracle's effort");
     return result;
   }
+  // Impacts on left and right walls that follow each other within rounding of their times: whether a mass
+  // rests on its wall when the next one comes, or is a hair from it, is then no property of the scene in
+  // double precision.
+  const auto& impacts = result.answer.impacts;
+  for (std::size_t i = 1; i < impacts.size(); ++i) {
+    const Quad t = impacts[i].time;
+    if (impacts[i].wall != impacts[i - 1].wall && t > impacts[i - 1].time &&
+        t - impacts[i - 1].time <= Quad(4 * rounding) * (1 + t))
+      end_at(impacts[i - 1].time, "rounding decides: left and right walls at one instant");
+  }
   question.noise = 1e-16;
   for (question.seed = 1; question.seed <= 3; ++question.seed) {
     const Answer other = answer_to(question);
