@@ -87,9 +87,9 @@ std::vector<double> frequencies_for(const Scene& scene, const Engine& engine) {
 // Makes and refines a response.
 class Sweeper {
  public:
-  Sweeper(const Scene& scene, const Engine& engine, const SteadyRule& rule, const Threads& threads,
+  Sweeper(Scene scene, const Engine& engine, const SteadyRule& rule, const Threads& threads,
           const std::function<void(std::int64_t done)>& progress)
-      : scene_(scene), engine_(bounded(engine)), threads_(threads), progress_(progress) {
+      : scene_(std::move(scene)), engine_(bounded(engine)), threads_(threads), progress_(progress) {
     response_.rule = rule;
   }
 
