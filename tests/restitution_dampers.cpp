@@ -250,6 +250,19 @@ TEST_CASE("sticking masses count to the primary mass, and leave together") {
   CHECK(std::abs(run.energy->residual) < 1e-14);
 }
 
+TEST_CASE("half cycles of many dampers take no more memory than those of one may") {
+  Scene scene;
+  scene.until_time = 1;
+  scene.dampers.assign(1000, {.mass_ratio = 1e-5});
+  const auto allowed = [&](const Record& record) {
+    return std::get<Restitution>(simulate(scene, Restitution{}, record).engine).budget.max_half_cycles;
+  };
+  CHECK(allowed({}) == most_rows / 1000);
+  CHECK(allowed({.half_cycles = false, .impacts = true}) == Budget{}.max_half_cycles);
+  scene.dampers.resize(10);
+  CHECK(allowed({}) == Budget{}.max_half_cycles);
+}
+
 TEST_CASE("what is not allowed of a list is said by its field") {
   Scene scene;
   scene.until_time = 1;

@@ -163,7 +163,9 @@ struct Run {
   StopReason stop_reason = StopReason::time;
   double end_time = 0;
   Scene scene;
-  Engine engine;  // with the options that simulate() filled in: Budget::max_time, Cem::time_step
+  // With the options that simulate() filled in, Budget::max_time and Cem::time_step; and where half cycles of
+  // several dampers are recorded, Budget::max_half_cycles at most most_rows divided by their number.
+  Engine engine;
   std::optional<HalfCycles> half_cycles;
   std::optional<Impacts> impacts;
   std::optional<Contacts> contacts;

@@ -46,8 +46,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const
   if (record.impacts || record.contacts || record.energy) {
     bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
   }
-  if (record.half_cycles)
-    bounded("max_half_cycles", budget.max_half_cycles, "half cycles are", most_rows / dampers);
+  if (record.half_cycles) bounded("max_half_cycles", budget.max_half_cycles, "half cycles are");
   std::int64_t samples = 0;
   const auto add = [&](const auto& windows) {
     for (const auto& window : windows) {
@@ -100,6 +99,10 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
+        if (record.half_cycles && !scene.dampers.empty()) {  // each has a column of its own
+          options.budget.max_half_cycles =
+              std::min(options.budget.max_half_cycles, most_rows / std::int64_t(scene.dampers.size()));
+        }
         return run(scene, options, recorder);
       },
       result.engine);

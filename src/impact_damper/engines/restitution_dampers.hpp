@@ -295,8 +295,7 @@ class RestitutionOfDampers {
     return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
   }
 
-  // x'' times the joined mass, and which way it leads: where that is zero to rounding, by the next
-  // derivative.
+  // x'' times the mass that moves, and the side to which it leads: where x'' is zero to rounding, x''' does.
   struct Acceleration {
     Real force, side;
   };
@@ -307,6 +306,7 @@ class RestitutionOfDampers {
     keep_sticking(now.side);
     if (now.side != 0 && take_limit_of_chattering(now)) keep_sticking(now.side);
   }
+  // Of those that rest the ones on `side` stick, 1 for the left walls, -1 for the right ones; the others fly.
   void keep_sticking(const Real& side) {
     some_rest_ = false;
     Real sticking{0};

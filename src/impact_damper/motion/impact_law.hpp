@@ -9,51 +9,56 @@
 
 namespace impact_damper {
 
-// A secondary mass that is at a wall, impinging or at rest there.
+// A secondary mass that is at a wall, impinging or at rest there. Velocities are divided by epsilon Omega_n.
 template <class Real>
 struct MassAtWall {
-  std::size_t index;  // whose; in ascending order where several are given
-  Real nu, e;
-  Real away;   // 1 at a left, -1 at a right wall
-  Real speed;  // away from the wall, <= 0; 0 at rest
-  // By how much its wall has to move away for it to be met with no impulse, (1+e) |speed|.
-  Real reach() const { return (1 + e) * -speed; }
+  std::size_t index;  // whose; ties are decided by it, so that the order of the masses changes no bit
+  Real nu, e;         // its mass, divided by the primary mass, > 0; its restitution, 0 to 1
+  Real away;          // the direction from the wall into the cavity: 1 at a left, -1 at a right wall
+  Real speed;         // before, relative to the wall and along `away`: < 0 impinging, 0 at rest
+  // The impulse on it vanishes if its wall's velocity jumps back by so much, (1+e) |speed|.
+  Real escape() const { return (1 + e) * -speed; }
 };
 
-// By how much x' jumps (M17.3): the root of a sum that is linear in pieces and rises. `at_walls` is
-// reordered.
+// J, by how much the primary mass's velocity x' jumps (M17.3): the root of
+//     J + sum of away nu max(0, escape + away J),
+// which rises with J and is linear in pieces. `at_walls`: one or several masses; it is reordered.
 template <class Real>
 Real jump_of_velocity(std::span<MassAtWall<Real>> at_walls) {
   if (at_walls.size() == 1) {
-    const MassAtWall<Real>& mass = at_walls.front();
-    return -mass.away * (mass.nu * mass.reach() / (1 + mass.nu));
+    const MassAtWall<Real>& only = at_walls.front();
+    return -only.away * (only.nu * only.escape() / (1 + only.nu));
   }
-  Real to_right{0}, to_left{0};
-  for (const MassAtWall<Real>& mass : at_walls)
-    (mass.away > 0 ? to_left : to_right) += mass.nu * mass.reach();
-  // The masses at the walls of the stronger side drive x' their way. Those at the others are met by their
-  // walls all the more; of the stronger side's, those which the walls do not escape.
-  const Real driving = to_right > to_left ? -1 : 1;
-  Real impulse = driving > 0 ? -to_right : -to_left, mass = 1;
+  // The impulses that the walls of each side would get if x' stayed as it is: the larger tells the sign of J,
+  // which throws the walls of the stronger side back.
+  Real left{0}, right{0};
+  for (const MassAtWall<Real>& each : at_walls) (each.away > 0 ? left : right) += each.nu * each.escape();
+  const Real stronger = right > left ? -1 : 1;
+  // With j = |J|: j (1 + sum of nu) = sum of +-nu escape, both sums over those masses that get an impulse.
+  // All of the weaker side do, as their walls come towards them; of the stronger side those with escape > j.
+  // These are added in descending order of escape: each makes j a mean of what it was and its escape, so that
+  // j rises and stays below it, until the next one's is not above j.
+  Real momentum = stronger > 0 ? -right : -left, mass = 1;
   for (const MassAtWall<Real>& each : at_walls)
-    if (each.away != driving) mass += each.nu;
+    if (each.away != stronger) mass += each.nu;
   std::sort(at_walls.begin(), at_walls.end(), [](const auto& one, const auto& other) {
-    const Real a = one.reach(), b = other.reach();
+    const Real a = one.escape(), b = other.escape();
     return a > b || (a == b && one.index < other.index);
   });
-  Real jump{0};
+  Real size{0};  // j, as far as it is not negative
   for (const MassAtWall<Real>& each : at_walls) {
-    if (each.away != driving) continue;
-    if (!(each.reach() > jump)) break;
-    impulse += each.nu * each.reach();
+    if (each.away != stronger) continue;
+    if (!(each.escape() > size)) break;
+    momentum += each.nu * each.escape();
     mass += each.nu;
-    const Real next = impulse / mass;
-    if (next > jump) jump = next;
+    const Real mean = momentum / mass;
+    if (mean > size) size = mean;
   }
-  return -driving * jump;
+  return -stronger * size;
 }
 
-// The speed away from the wall after the impacts, when x' has jumped.
+// Its speed after the impacts, relative to the wall and along `away`, where x' has jumped by `jump`: what
+// restitution asks for, or more where the wall moves away faster than that.
 template <class Real>
 Real speed_after(const MassAtWall<Real>& mass, const Real& jump) {
   const Real rebound = mass.e * -mass.speed, untouched = mass.speed - mass.away * jump;
