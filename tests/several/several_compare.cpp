@@ -541,7 +541,9 @@ Run run_of_oracle(const Scene& scene, Fault fault) {
         ++rows.impacts.back(), ++rows.impacts_by_damper[impact.damper].back();
     last = each.zero_crossing;
   }
-  run.history->time = question.samples;
+  // A fault may end the answer before the last of them.
+  run.history->time.assign(question.samples.begin(),
+                           question.samples.begin() + std::ptrdiff_t(answer.samples.size()));
   run.history->dampers.resize(count);
   for (const Sample& each : answer.samples) {
     run.history->x.push_back(double(each.x));
