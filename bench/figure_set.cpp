@@ -64,8 +64,10 @@ void make_all(const Work& work, Parts& parts, FigureSet& set) {
     ++set.scenes;
   }
   for (const Figure& figure : work.catalogue.figures) {
-    // The paper's figures, of runs alone.
-    if (figure.table == TableKind::drawing || !figure.responses.empty() || !figure.plan.empty()) continue;
+    // The paper's figures, of the scenes' runs alone.
+    if (figure.table == TableKind::drawing || !figure.responses.empty() || !figure.plan.empty() ||
+        !runs_of(figure).empty())
+      continue;
     bool ensemble = false;
     for (const FigureCurve& curve : figure.curves) ensemble |= curve.ensemble > 0;
     const std::string kind =

@@ -31,18 +31,19 @@ const nlohmann::json& recorded() {
   return table;
 }
 
-// Of every scene of the project, with or without a claim on it.
+// Of every scene of the catalogue, with or without a claim on it.
 const Power& power() {
   static const Power power = [] {
     PowerInput input;
-    input.claims = read_claims(source / "data/claims.json");
     const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
+    input.claims = claims_on_scenes_of(catalogue, read_claims(source / "data/claims.json"));
     input.further = catalogue.runs;
     input.asked = catalogue.responses;
     Record record;
     record.impacts = record.contacts = true;
-    for (const auto& file : std::filesystem::directory_iterator(source / "data/scenes"))
-      input.runs[file.path().stem().string()] = simulate(read_scene(file.path()), Exact{}, record);
+    for (const CatalogueScene& scene : catalogue.scenes)
+      input.runs[scene.name] =
+          simulate(read_scene(source / "data/scenes" / (scene.name + ".json")), Exact{}, record);
     input.left_out = recorded()["unsettled"].get<std::vector<std::string>>();
     return Power(std::move(input));
   }();
@@ -77,7 +78,9 @@ TEST_CASE("the smallest change is found between the first that turns a verdict a
 
 TEST_CASE("the recorded table has every number of every scene, of the analysis and of what runs record") {
   const nlohmann::json& rows = recorded()["numbers"];
-  CHECK(recorded()["claims"] == read_claims(source / "data/claims.json").size());
+  CHECK(recorded()["claims"] == claims_on_scenes_of(read_catalogue(source / "figures/catalogue.json"),
+                                                    read_claims(source / "data/claims.json"))
+                                    .size());
   CHECK(recorded()["members"] == EnsembleOptions{}.members);
   CHECK(recorded()["engine"] == "exact");
   const std::vector<PowerNumber>& numbers = power().numbers();

@@ -84,9 +84,12 @@ def where(section: str) -> str:
 
 def scenes_of(values: Values, number: str) -> list:
     """The scenes of its curves, and of the responses that it draws."""
-    figure, responses = values.figures[number], {each["name"]: each for each in values.catalogue["responses"]}
-    return list(dict.fromkeys([curve["scene"] for curve in figure.get("curves", [])] +
-                              [responses[name]["scene"] for name in figure.get("responses", [])]))
+    figure = values.figures[number]
+    further = {each["name"]: each for part in ("runs", "responses") for each in values.catalogue[part]}
+    curves = figure.get("curves", [])
+    return list(dict.fromkeys([curve["scene"] for curve in curves if "scene" in curve] +
+                              [further[curve[key]]["scene"] for curve in curves for key in ("run", "alone") if key in curve] +
+                              [further[name]["scene"] for name in figure.get("responses", [])]))
 
 
 def table_of(values: Values, number: str):

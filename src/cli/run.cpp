@@ -181,9 +181,6 @@ int run_scene(Arguments& arguments) {
   ensemble.threads = threads_of(arguments);
   if (ensemble.members > 1 && !arguments.given("--output"))
     arguments.reject("--members", "needs --output FILE: the members are files beside it");
-  if (ensemble.members > 1 && several)
-    arguments.reject("--members",
-                     "must be 1, as the scene has a list of dampers: an ensemble is of one damper");
   if (ensemble.members > 1 && format == Format::csv)
     arguments.reject("--members", "is for run files, --format json");
   for (std::int64_t member = 2; file && member <= ensemble.members; ++member)

@@ -60,6 +60,18 @@ void for_figure(const Figure& figure, Read read) {
   }
 }
 
+// The further runs that a figure draws, with their ensembles.
+void load_further(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
+                  const Threads& threads, FigureRuns& runs) {
+  for (const std::string& name : runs_of(figure))
+    for_figure(figure, [&] {
+      const fs::path file = folders.file_of(name);
+      FigureRun source{file, folders.read(*find_run(catalogue.runs, name))};
+      source.others = read_members(source.run, file, {.members = catalogue.members, .threads = threads});
+      runs[name] = std::move(source);
+    });
+}
+
 // A figure's runs, and the members of the ensembles that it shows. All are of one engine, whatever figure
 // they were read for.
 void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
@@ -121,12 +133,14 @@ int make_tables(Arguments& arguments) {
                                      (output ? in_quotes(*output) : "none"));
   }
   std::vector<fs::path> inputs{catalogue_file};
-  for (const CatalogueScene& scene : catalogue.scenes) {
-    const fs::path run = folders.file_of(scene.name);
+  const auto add_run = [&](const std::string& name) {
+    const fs::path run = folders.file_of(name);
     inputs.push_back(run);
     for (std::int64_t member = 2; member <= most_members; ++member)
       inputs.push_back(member_file(run, member));
-  }
+  };
+  for (const CatalogueScene& scene : catalogue.scenes) add_run(scene.name);
+  for (const CatalogueRun& run : catalogue.runs) add_run(run.name);
   for (const CatalogueResponse& response : catalogue.responses)
     inputs.push_back(folders.file_of(response.name));
   for (const Figure* figure : figures) {
@@ -146,7 +160,7 @@ int make_tables(Arguments& arguments) {
     for (const Figure* figure : figures) require_writable(place_of(*figure));
   }
 
-  FigureRuns runs;
+  FigureRuns runs, further;
   FigureResponses responses;
   FigureSweeps sweeps;
   std::size_t made = 0;
@@ -156,9 +170,11 @@ int make_tables(Arguments& arguments) {
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
     load(*figure, folders, threads, runs);
+    load_further(*figure, folders, catalogue, threads, further);
     load(*figure, folders, catalogue, responses);
     load(*figure, folders, catalogue_file, sweeps);
-    const Table table = figure_table(*figure, runs, responses, sweeps);
+    const bool draws_further = !runs_of(*figure).empty();
+    const Table table = figure_table(*figure, draws_further ? further : runs, responses, sweeps);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     if (!output) {
       write_standard_output(text);
@@ -178,7 +194,7 @@ Command series_command() {
       {"--runs", "FOLDER",
        "folder of the runs, must be given: SCENE.json of each scene, with\n"
        "the members of the ensembles that figures show (run --members),\n"
-       "NAME.json of each response and NAME.csv of each sweep that they\ndraw"},
+       "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"},
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

@@ -178,17 +178,18 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   return out.finish() + '\n';
 }
 
-// What claims rest on: runs of scenes, further runs, whose scenes' runs are among them, and responses.
+// What claims rest on: runs of scenes, further runs, whose scenes' runs are among them if they are the
+// catalogue's, and responses.
 struct RunNames {
   std::set<std::string> scenes, further, responses;
 };
-RunNames runs_of(const std::vector<Claim>& claims, const std::vector<CatalogueRun>& further) {
+RunNames runs_of(const std::vector<Claim>& claims, const Catalogue& catalogue) {
   RunNames names;
   const auto add = [&](const MeasureCall& call) {
     for (const std::string& name : call.scenes) {
-      const CatalogueRun* const run = find_run(further, name);
-      names.scenes.insert(run ? run->scene : name);
+      const CatalogueRun* const run = find_run(catalogue.runs, name);
       if (run) names.further.insert(name);
+      if (!run || find_scene(catalogue, run->scene)) names.scenes.insert(run ? run->scene : name);
     }
     names.responses.insert(call.responses.begin(), call.responses.end());
   };
@@ -243,7 +244,7 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::s
                const Catalogue& catalogue, std::map<std::string, Response> responses,
                const EnsembleOptions& ensemble, const std::optional<std::string>& json_file,
                const std::optional<std::string>& markdown_file) {
-  PowerInput input{.claims = std::move(claims),
+  PowerInput input{.claims = claims_on_scenes_of(catalogue, std::move(claims)),
                    .runs = {},
                    .further = catalogue.runs,
                    .asked = catalogue.responses,
@@ -298,7 +299,7 @@ int verify(Arguments& arguments) {
   const bool has_catalogue = arguments.given("--catalogue") || fs::exists(catalogue_file);
   const Catalogue catalogue = has_catalogue ? read_catalogue(catalogue_file) : Catalogue{};
   if (arguments.given("--catalogue")) check_figures(catalogue.figures, catalogue_file, claims);
-  const RunNames names = runs_of(claims, catalogue.runs);
+  const RunNames names = runs_of(claims, catalogue);
   std::vector<fs::path> inputs{claims_file};
   if (has_catalogue) inputs.emplace_back(catalogue_file);
   for (const std::set<std::string>* list : {&names.scenes, &names.further})

@@ -14,13 +14,14 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from asked import respond  # noqa: E402
+from asked import drawn_runs, rerun, respond  # noqa: E402
 
 program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
 ENDS_OF_CHARTS = {("curve", 3): "low", ("curve", 4): "high"}
+ENDS_OF_SETS = {("set", 3): "low", ("set", 4): "high"}
 GAP = ("", "", "", "")
 faults = []
 
@@ -39,7 +40,7 @@ def gnuplot_blocks(text):
 
 def wanted_rows(kind, name, headings, rows):
     """(block, curve, x, y, low, high) of each row, in the order of the file."""
-    own = {"phase": ENDS_OF_PHASES, "design_charts": ENDS_OF_CHARTS}
+    own = {"phase": ENDS_OF_PHASES, "design_charts": ENDS_OF_CHARTS, "damper_sets": ENDS_OF_SETS}
     ends = {} if kind == "largest_response" else {**ENDS, **own.get(kind, {})}
     family = re.sub(r"(-\d+)+$", "", name)
     role = {column: ends.get((family, column), "y") for column in range(2, len(headings) + 1)}
@@ -63,6 +64,8 @@ for scene in catalogue["scenes"]:
     windows = [f"--history-below={w['amplitude']}:{w['length']}:{w['count']}" for w in scene.get("history_below", [])]
     run("run", "--scene", source / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]), *windows,
         "--members", str(catalogue["members"]), "-o", f"runs/{scene['scene']}.json")
+for entry in drawn_runs(catalogue):
+    run(*rerun(entry, source / "data/scenes"), "--members", str(catalogue["members"]), "-o", f"runs/{entry['name']}.json")
 for entry in catalogue["responses"]:
     run(*respond(entry, source / "data/scenes"), "-o", f"runs/{entry['name']}.json")
 for plan in {figure["plan"] for figure in catalogue["figures"] if "plan" in figure}:

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from asked import respond  # noqa: E402
+from asked import rerun, respond  # noqa: E402
 
 PREFIX, BUILT, SOURCE, FOLDER = (Path(each).resolve() for each in sys.argv[1:5])
 PROGRAM = PREFIX / "bin/impact-damper"
@@ -51,12 +51,8 @@ def finds_its_files():
         run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]),
             *below, "--members", str(catalogue["members"]), "-o", runs / f"{scene['scene']}.json")
     for each in catalogue["runs"]:
-        engine = dict(each.get("engine", {"name": "exact"}))
-        options = ["--engine", engine.pop("name")] + (["--stuck", "paper"] if "stuck_speed" in engine else [])
-        for key, value in {**each.get("set", {}), **engine}.items():
-            options += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
-        run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{each['scene']}.json", *options, "--record",
-            ",".join(each["record"]), "--members", str(catalogue["members"]), "-o", runs / f"{each['name']}.json")
+        run(PROGRAM, *rerun(each, SHARE / "data/scenes"), "--members", str(catalogue["members"]),
+            "-o", runs / f"{each['name']}.json")
     same_as_in_the_source_folder("series", "--runs", runs, "--figure", "7")
     demand(run(PROGRAM, "check", "run", *sorted(runs.rglob("*.json"))).count("\n") ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")

@@ -39,7 +39,7 @@ from typing import NamedTuple
 SOURCE = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from asked import respond  # noqa: E402
+from asked import drawn_runs, rerun, respond  # noqa: E402
 from differences import compare_files  # noqa: E402
 
 VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
@@ -147,6 +147,7 @@ def small_catalogues(work: Path) -> dict:
     """The catalogue with shorter responses, and with ensembles of two for the component element method, which takes a
     hundred times as long."""
     catalogue = json.loads((SOURCE / "figures/catalogue.json").read_text())
+    catalogue["members"] = 2  # of runs that figures draw
     for entry in catalogue["responses"]:
         for axis in entry["vary"]:
             if "count" in axis:
@@ -199,7 +200,14 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
             for number, way in enumerate(WAYS[engine]):
                 call([program, "run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
                       *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json"], **options)
-        for entry in catalogue["responses"]:  # with an engine of their own
+        for entry in drawn_runs(catalogue):  # with an engine of their own
+            file = runs / f"{entry['name']}.json"
+            if engine == ENGINES[0]:
+                call([program, *rerun(entry, "data/scenes"), "--members", str(catalogue["members"]), "-o", file], **options)
+            else:
+                shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
+                shutil.copytree(results / ENGINES[0] / "runs" / f"{entry['name']}.members", runs / f"{entry['name']}.members")
+        for entry in catalogue["responses"]:  # likewise
             file = runs / f"{entry['name']}.json"
             if engine == ENGINES[0]:
                 call([program, *respond(entry, "data/scenes"), "-o", file], **options)

@@ -23,6 +23,7 @@ std::uint64_t draw(std::uint64_t& state) {
 Scene scaled(Scene scene, double factor) {
   for (double Scene::*const part : {&Scene::x0, &Scene::v0, &Scene::w0, &Scene::force_amplitude})
     scene.*part *= factor;
+  for (SceneDamper& damper : scene.dampers) damper.w0 *= factor;
   if (scene.y0 < 0) scene.y0 *= factor;
   if (scene.y0 > 1) scene.y0 = 1 + (scene.y0 - 1) * factor;
   return scene;

@@ -21,8 +21,8 @@ struct EnsembleOptions {
   Threads threads;  // that simulate the members; no result depends on it
 };
 
-// The scene itself, then members - 1 perturbed ones: x0, v0, w0, the force's amplitude and the depth of y0 in
-// a wall (0 inside the cavity) are all multiplied by 1 + n step, n a whole number != 0 with |n| <=
+// The scene itself, then members - 1 perturbed ones: x0, v0, each w0, the force's amplitude and the depth of
+// y0 in a wall (0 inside the cavity) are all multiplied by 1 + n step, n a whole number != 0 with |n| <=
 // most_steps, drawn from the seed for each member; the other sign of n is taken where a number would leave
 // its allowed range. If all these are 0, the members are equal. Equal options give equal scenes on every
 // machine. Throws std::invalid_argument if members or most_steps is below 1.

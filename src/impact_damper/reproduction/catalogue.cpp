@@ -82,7 +82,12 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   std::vector<FigureCurve> curves;
   for (ObjectReader item : figure.optional_objects("curves", 100)) {
     FigureCurve curve;
-    item.required("scene", curve.scene, a_name);
+    if (table == TableKind::damper_sets) {
+      item.required("run", curve.run, a_name);
+      item.required("alone", curve.alone, a_name);
+    } else {
+      item.required("scene", curve.scene, a_name);
+    }
     if (table == TableKind::loss_factor || table == TableKind::largest_response) {
       std::int64_t half_cycles = curve.loss_factor.half_cycles;
       item.optional("half_cycles", half_cycles, within(10, 18));
@@ -108,6 +113,7 @@ const char* missing_record(TableKind table, const Record& record) {
     case TableKind::decay:
     case TableKind::loss_factor:
     case TableKind::largest_response:
+    case TableKind::damper_sets:
       return record.half_cycles ? nullptr : "half_cycles";
     case TableKind::phase:
       return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
@@ -144,6 +150,14 @@ const char* wrong_response(TableKind table, const Response& asked) {
              : "a basin over force_frequency and force_amplitude, in this order";
 }
 
+void read_amplitudes(ObjectReader& item, std::vector<double>& range) {
+  if (item.require("range") && item.optional("range", range, amplitudes) &&
+      !(range.size() == 2 && range[0] < range[1]))
+    item.reject("range", "must be two amplitudes, the lower first, got " +
+                             (range.size() == 2 ? number_text(range[0]) + " and " + number_text(range[1])
+                                                : std::to_string(range.size())));
+}
+
 void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& catalogue) {
   const std::size_t count = figure.curves.size();
   const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase ||
@@ -157,9 +171,21 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
                               " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
                               std::to_string(count));
   }
-  if ((count > 1) != item.has("varied")) {
+  if (figure.table != TableKind::damper_sets && (count > 1) != item.has("varied")) {
     item.reject("varied", "must be given if, and only if, there are several curves, got " +
                               std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
+  }
+  if (figure.table == TableKind::damper_sets) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const std::string& name : {figure.curves[i].run, figure.curves[i].alone}) {
+        const CatalogueRun* const run = find_run(catalogue.runs, name);
+        if (!run && !name.empty())
+          item.reject("curves", i, "must draw runs of this catalogue, got the string " + in_quotes(name));
+        if (const char* const missing = run ? missing_record(figure.table, run->record) : nullptr)
+          item.reject("curves", i, "needs \"" + std::string(missing) + "\" in the record of run " + name);
+      }
+    }
+    return;
   }
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& name = figure.curves[i].scene;
@@ -231,7 +257,10 @@ void read_names(ObjectReader& item, const Catalogue& catalogue, std::string& nam
        find_scene(catalogue, name)))
     item.reject("name",
                 "must be given once among scenes, runs and responses, got the string " + in_quotes(name));
-  if (item.required("scene", scene, a_name) && !find_scene(catalogue, scene))
+  item.required("scene", scene, a_name);
+}
+void check_scene(ObjectReader& item, const Catalogue& catalogue, const std::string& scene) {
+  if (!scene.empty() && !find_scene(catalogue, scene))
     item.reject("scene", "must be a scene of this catalogue, got the string " + in_quotes(scene));
 }
 
@@ -240,7 +269,10 @@ CatalogueRun read_run_entry(ObjectReader& item, const Catalogue& catalogue) {
   read_names(item, catalogue, run.name, run.scene);
   if (const std::optional<ObjectReader> changes = item.optional_object("set"))
     run.set = read_changes(*changes, {"until_time", "until_amplitude"});
-  if (std::optional<ObjectReader> engine = item.optional_object("engine")) run.engine = read_engine(*engine);
+  if (std::optional<ObjectReader> engine = item.optional_object("engine"))
+    run.engine = read_engine(*engine);
+  else
+    check_scene(item, catalogue, run.scene);
   run.record = read_record(item);
   return run;
 }
@@ -292,6 +324,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<
 CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catalogue) {
   CatalogueResponse response;
   read_names(item, catalogue, response.name, response.scene);
+  check_scene(item, catalogue, response.scene);
   if (const std::optional<ObjectReader> changes = item.optional_object("set"))
     response.set = read_changes(*changes, {});
   const std::array<Response, 3> kinds{SweepResponse{}, BasinResponse{}, OrbitsResponse{}};
@@ -335,11 +368,11 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   if (!item.required("table", figure.table,
                      {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
                       TableKind::response, TableKind::largest_response, TableKind::response_map,
-                      TableKind::design_charts, TableKind::drawing})) {
+                      TableKind::design_charts, TableKind::damper_sets, TableKind::drawing})) {
     item.keys();  // which others are known depends on the table
     return figure;
   }
-  if (item.has("varied")) {
+  if (figure.table != TableKind::damper_sets && item.has("varied")) {
     figure.varied = Varied::mass_ratio;
     item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
   }
@@ -351,16 +384,12 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     item.required("ordinate", *figure.ordinate, ordinates);
     if (item.has("second_ordinate"))
       item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta), ordinates);
-    if (item.has("range") && item.optional("range", figure.range, amplitudes) &&
-        !(figure.range.size() == 2 && figure.range[0] < figure.range[1])) {
-      item.reject("range", "must be two amplitudes, the lower first, got " +
-                               (figure.range.size() == 2
-                                    ? number_text(figure.range[0]) + " and " + number_text(figure.range[1])
-                                    : std::to_string(figure.range.size())));
-    }
+    if (item.has("range")) read_amplitudes(item, figure.range);
   }
+  if (figure.table == TableKind::damper_sets) read_amplitudes(item, figure.range);
   if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
-  if (figure.table != TableKind::motion && !is_without_curves(figure.table))
+  if (figure.table != TableKind::motion && figure.table != TableKind::damper_sets &&
+      !is_without_curves(figure.table))
     item.required("down_to", figure.down_to.emplace(), amplitudes);
   check_curves(item, figure, catalogue);
   return figure;
@@ -403,6 +432,8 @@ std::string_view name_of(TableKind kind) {
       return "response_map";
     case TableKind::design_charts:
       return "design_charts";
+    case TableKind::damper_sets:
+      return "damper_sets";
     case TableKind::motion:
       return "motion";
     case TableKind::decay:
@@ -493,10 +524,18 @@ std::string sweep_stem(const Figure& figure) { return std::filesystem::path(figu
 
 std::vector<std::string> scenes_of(const Figure& figure) {
   std::vector<std::string> scenes;
-  for (const FigureCurve& curve : figure.curves) {
-    if (std::ranges::find(scenes, curve.scene) == scenes.end()) scenes.push_back(curve.scene);
-  }
+  for (const FigureCurve& curve : figure.curves)
+    if (!curve.scene.empty() && std::ranges::find(scenes, curve.scene) == scenes.end())
+      scenes.push_back(curve.scene);
   return scenes;
+}
+
+std::vector<std::string> runs_of(const Figure& figure) {
+  std::vector<std::string> runs;
+  for (const FigureCurve& curve : figure.curves)
+    for (const std::string& name : {curve.run, curve.alone})
+      if (!name.empty() && std::ranges::find(runs, name) == runs.end()) runs.push_back(name);
+  return runs;
 }
 
 }  // namespace impact_damper

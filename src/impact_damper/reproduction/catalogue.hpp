@@ -43,6 +43,7 @@ enum class TableKind {
   largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
   response_map,      // which steady motion there is, over frequency and amplitude of a force
   design_charts,     // loss factor over amplitude for many restitutions and mass ratios, of a sweep
+  damper_sets,       // loss factor of several dampers over amplitude, beside the sum of theirs
   drawing,           // none: a schematic that no run stands behind
 };
 std::string_view name_of(TableKind kind);
@@ -61,8 +62,8 @@ struct CatalogueScene {
 // own, or both. Its file lies beside the runs of the scenes, and it is an ensemble as these are
 // (scene_runs.hpp).
 struct CatalogueRun {
-  std::string name;                                // of its file, without .json; no scene's
-  std::string scene;                               // one of the catalogue's
+  std::string name;   // of its file, without .json; no scene's of the catalogue
+  std::string scene;  // one of the catalogue's, or with an engine of its own any of the project's
   std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
   std::optional<Engine> engine;                    // absent: that of the scenes' runs
   Record record;
@@ -84,14 +85,16 @@ struct CatalogueResponse {
 Response asked_for(const CatalogueResponse& response, const Scene& scene);
 
 struct FigureCurve {
-  std::string scene;
+  std::string scene;  // but for damper_sets tables
+  // damper_sets tables only: a run of several dampers and one of a single damper, of the catalogue's runs.
+  std::string run, alone;
   // loss_factor and largest_response tables only:
   LossFactorOptions loss_factor;  // its window of averaging
   std::int64_t ensemble = 0;      // members of the ensemble whose spread is shown; 0 for none
 };
 
 struct Figure {
-  std::string number;  // "1" ... "15", "A" ... "E", "H"
+  std::string number;  // "1" ... "15", "A" ... "H"
   std::string title;
   TableKind table = TableKind::drawing;
   // One for motion, phase and largest_response, none for a drawing, response, response_map and design_charts.
@@ -101,9 +104,10 @@ struct Figure {
   std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
   std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
   std::optional<Varied> varied;                 // if there is more than one curve
-  std::optional<double> window;     // motion tables: the amplitude of one of the scene's history windows
-  std::optional<double> down_to;    // amplitude that every curve must reach, or its run is short
-  std::vector<double> range;        // loss_factor: amplitudes over which the spread is shown; empty or two
+  std::optional<double> window;   // motion tables: the amplitude of one of the scene's history windows
+  std::optional<double> down_to;  // amplitude that every curve must reach, or its run is short
+  // Two amplitudes. loss_factor: over which the spread is shown, or empty; damper_sets: which are drawn.
+  std::vector<double> range;
   std::string script;               // beside the catalogue; each once, without its ending too
   std::vector<std::string> claims;  // ids in data/claims.json
 };
@@ -137,5 +141,7 @@ std::string sweep_stem(const Figure& figure);
 
 // The scenes of a figure, each once, in the order of its curves.
 std::vector<std::string> scenes_of(const Figure& figure);
+// The further runs of a figure, likewise.
+std::vector<std::string> runs_of(const Figure& figure);
 
 }  // namespace impact_damper

@@ -32,6 +32,7 @@ const std::vector<MeasureNumber>& measure_numbers() {
       {"stuck_speed", above_up_to(0, 1e6), 0, "relative speed of impact below which the masses join"},
       {"to", amplitudes, 0, "largest amplitude looked at, in units of the clearance"},
       {"until_time", above_up_to(0, 1e3), 0, "end of a scene of the measure's own, in units of 1/Omega_n"},
+      {"within", within(0, 0.9), 0, "share by which a constant may be missed either way"},
       {"x0", above_up_to(0, 1e6), 0, "release of a scene of the measure's own, in units of the clearance"},
   };
   return table;

@@ -43,7 +43,7 @@ const Run& Runs::file(const std::string& name) {
   if (found != ensembles_.end()) return found->second.front();
   Run run;
   if (folder_) {
-    run = read_run(*folder_ / (name + ".json"));
+    run = read_run(*folder_ / (name + ".json"), DamperList::allowed);
   } else {
     const CatalogueRun* const further = find_run(further_, name);
     if (!further) throw std::invalid_argument("there is no run of scene " + name);
@@ -125,7 +125,7 @@ const std::vector<Measure>& measures() {
   static const std::vector<Measure> table = [] {
     std::vector<Measure> all;
     for (auto part : {loss_measures(), regime_measures(), model_measures(), audit_measures(),
-                      stuck_measures(), steady_measures()})
+                      stuck_measures(), steady_measures(), damper_measures()})
       all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end(), [](const Measure& a, const Measure& b) { return a.name < b.name; });
     return all;
@@ -134,8 +134,14 @@ const std::vector<Measure>& measures() {
 }
 
 Spread measure(Runs& runs, const MeasureCall& call) {
-  for (const Measure& each : measures())
-    if (each.name == call.name) return each.find(runs, call);
+  for (const Measure& each : measures()) {
+    if (each.name != call.name) continue;
+    for (const std::string& scene : call.scenes)
+      if (!each.takes_dampers && !runs.file(scene).scene.dampers.empty())
+        throw std::invalid_argument("measure " + call.name + ": is of one damper, run " + scene +
+                                    " of a list of dampers");
+    return each.find(runs, call);
+  }
   throw std::invalid_argument("measure: unknown name " + call.name);
 }
 

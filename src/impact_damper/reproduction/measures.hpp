@@ -102,6 +102,7 @@ struct Measure {
   Spread (*find)(Runs& runs, const MeasureCall& call);
   std::string_view meaning;
   std::size_t least_responses = 0, most_responses = 0;
+  bool takes_dampers = false;  // runs of a list of dampers, too
 };
 const std::vector<Measure>& measures();  // in the order of names
 
@@ -115,6 +116,7 @@ std::vector<Measure> model_measures();   // engine against engine, wall and time
 std::vector<Measure> audit_measures();   // the paper's slips
 std::vector<Measure> stuck_measures();   // the paper's stuck regime
 std::vector<Measure> steady_measures();  // steady motions under a force
+std::vector<Measure> damper_measures();  // several dampers
 
 // For each member of the one scene of `call`, or for the members of all of them side by side.
 template <class Find>

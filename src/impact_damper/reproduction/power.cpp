@@ -251,6 +251,16 @@ std::optional<Trial> smallest_turn(const Trials& trials, const std::function<boo
   return std::nullopt;
 }
 
+std::vector<Claim> claims_on_scenes_of(const Catalogue& catalogue, std::vector<Claim> claims) {
+  std::erase_if(claims, [&](const Claim& claim) {
+    return std::ranges::any_of(claim.measure.scenes, [&](const std::string& name) {
+      const CatalogueRun* const run = find_run(catalogue.runs, name);
+      return run && !find_scene(catalogue, run->scene);
+    });
+  });
+  return claims;
+}
+
 std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t ensembles) {
   std::vector<std::vector<Verdict>> verdicts(static_cast<std::size_t>(ensembles) + 1);
   for_each_index(ensembles + 1, input.ensemble.threads, [&](std::int64_t i) {

@@ -68,6 +68,9 @@ struct PowerInput {
   std::vector<std::string> left_out;
 };
 
+// Those of the claims that rest on the catalogue's scenes alone: of no other scene a number is changed.
+std::vector<Claim> claims_on_scenes_of(const Catalogue& catalogue, std::vector<Claim> claims);
+
 // The claims whose verdicts some of so many ensembles, of other seeds, turn: ids, in the order of the claims.
 // Such a verdict turns by chance with any change, so that the claim notices none.
 std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t ensembles);

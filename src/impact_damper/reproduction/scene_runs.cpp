@@ -54,6 +54,7 @@ void require_engine(const Run& run, const fs::path& file, const Engine& engine, 
 }
 
 Run read_run_of_one_damper(const fs::path& file) { return read_run(file); }
+Run read_run_of_any(const fs::path& file) { return read_run(file, DamperList::allowed); }
 
 // Reads a file; if there is none, what is thrown names the command that makes it.
 template <class Content>
@@ -118,7 +119,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
     const std::string number = std::to_string(member);
     const fs::path file = member_file(run_file, member);
     Run& run = others[static_cast<std::size_t>(i)];
-    run = read_or_name_command(read_run_of_one_damper, file,
+    run = read_or_name_command(read_run_of_any, file,
                                "impact-damper run --members " + std::to_string(options.members) + " -o " +
                                    run_file.string() + ", with the other options that made that run");
     require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
@@ -144,17 +145,17 @@ Run SceneRuns::read(const std::string& scene) const {
 }
 
 Run SceneRuns::read(const CatalogueRun& wanted) const {
-  const Run of_scene = read(wanted.scene);
-  const fs::path file = file_of(wanted.name);
-  Run run = read_or_name_command(read_run_of_one_damper, file,
-                                 "impact-damper run --scene " + (scenes / (wanted.scene + ".json")).string() +
-                                     " -o " + file.string() + ", with what run " + wanted.name +
-                                     " of the catalogue sets, and --members");
-  require_scene(run, file, changed_scene(wanted, of_scene.scene), "run " + wanted.name + " of the catalogue");
+  const fs::path file = file_of(wanted.name), scene_file = scenes / (wanted.scene + ".json");
+  Run run =
+      read_or_name_command(read_run_of_any, file,
+                           "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
+                               ", with what run " + wanted.name + " of the catalogue sets, and --members");
+  const std::string source = "run " + wanted.name + " of the catalogue";
+  require_scene(run, file, changed_scene(wanted, read_scene(scene_file, DamperList::allowed)), source);
   if (wanted.engine)
-    require_engine(run, file, *wanted.engine, "run " + wanted.name + " of the catalogue");
+    require_engine(run, file, *wanted.engine, source);
   else
-    require_same_engine(run, file, of_scene, file_of(wanted.scene));
+    require_same_engine(run, file, read(wanted.scene), file_of(wanted.scene));
   require_consistent(run, file);
   return run;
 }

@@ -53,7 +53,7 @@ struct SceneRuns {
   // command that makes it if it is missing, or InputError.
   Run read(const std::string& scene) const;
   // The further run, consistent, of its scene with its changes and by its engine, or that of the scene's run,
-  // which is read as well. Throws the same.
+  // which is then read as well. Throws the same.
   Run read(const CatalogueRun& wanted) const;
   // The response, consistent, of what the catalogue asks for. Throws the same; no run is read.
   Response read(const CatalogueResponse& wanted) const;

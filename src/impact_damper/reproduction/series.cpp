@@ -63,16 +63,6 @@ struct EngineWords {
   }
 };
 
-// The engine with the options that decide the motion, for the header.
-std::string options_text(const Engine& engine) {
-  std::string text(name_of(engine));
-  for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
-    const std::string given = option_text(value);
-    if (option.decides_motion && !given.empty()) text += " " + std::string(option.name) + "=" + given;
-  });
-  return text;
-}
-
 // What all curves have in common, and what sets one apart, for the line under the title.
 std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs, const Scene& scene) {
   std::string text;
@@ -171,6 +161,15 @@ void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& s
 
 }  // namespace
 
+std::string options_text(const Engine& engine) {
+  std::string text(name_of(engine));
+  for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
+    const std::string given = option_text(value);
+    if (option.decides_motion && !given.empty()) text += " " + std::string(option.name) + "=" + given;
+  });
+  return text;
+}
+
 InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why) {
   return InputError({"figure " + figure.number + ": " + file.string() + ": " + why});
 }
@@ -205,6 +204,7 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene) {
 Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses,
                    const FigureSweeps& sweeps) {
   if (figure.table == TableKind::design_charts) return design_table(figure, sweeps.at(figure.plan));
+  if (figure.table == TableKind::damper_sets) return damper_sets_table(figure, runs);
   std::vector<const FigureRun*> sources;
   for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
   std::vector<const FigureResponse*> found;
@@ -259,6 +259,7 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureRes
       add_map_blocks(figure, *found[0], table);
       break;
     case TableKind::design_charts:
+    case TableKind::damper_sets:
     case TableKind::drawing:
       break;
   }

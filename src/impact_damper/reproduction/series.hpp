@@ -20,7 +20,7 @@ struct FigureRun {
   Run run;
   std::vector<Run> others{};  // the other members of its ensemble, for curves that show one
 };
-using FigureRuns = std::map<std::string, FigureRun>;  // by scene name
+using FigureRuns = std::map<std::string, FigureRun>;  // by the name of the scene, or of the further run
 struct FigureResponse {
   std::filesystem::path file;  // as above
   Response response;
@@ -32,8 +32,9 @@ using FigureSweeps = std::map<std::string, SweepTable>;         // by the name o
 // 0 if it shows none.
 std::int64_t members_shown(const Figure& figure, const std::string& scene);
 
-// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes, with as many members
-// of each as the figure shows, `responses` at least the responses, `sweeps` that of its plan. Blocks by kind:
+// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes and further runs, with
+// as many members of each as the figure shows, `responses` at least the responses, `sweeps` that of its plan.
+// Blocks by kind:
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks
@@ -58,6 +59,9 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //   design_charts  of the first, second ... restitution: "panel-1" (e); "curve-1-1", "curve-1-2" ... of the
 //                mass ratios (amplitude, mean loss factor, least, greatest); "failure-1", "bounce-down-1",
 //                the closed forms' amplitudes, where they are in the range; "reading", the report's example
+//   damper_sets  of the first, second ... curve: "set-1" (amplitude, mean loss factor of the run's ensemble
+//                divided by the mass of all dampers, least, greatest) in bins of a twelfth of a decade;
+//                "sum-1" the same if its dampers add, of the run alone; "dampers-1" (clearance, mass)
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.

@@ -12,6 +12,9 @@ namespace impact_damper {
 // What is said when a figure cannot be made from a file: "figure 8: FILE: why".
 InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why);
 
+// The engine with the options that decide the motion, for a table's header.
+std::string options_text(const Engine& engine);
+
 // The run's half cycles, at least one, reaching down to Figure::down_to.
 const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source);
 
@@ -40,5 +43,6 @@ void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& t
 
 // The whole table.
 Table design_table(const Figure& figure, const SweepTable& sweep);
+Table damper_sets_table(const Figure& figure, const FigureRuns& runs);
 
 }  // namespace impact_damper
