@@ -6,8 +6,10 @@
 #include <filesystem>
 
 #include "commands.hpp"
+#include "design_dampers.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/sweeps/damper_set_design.hpp"
 #include "impact_damper/sweeps/design_file.hpp"
 #include "impact_damper/sweeps/lightest_design.hpp"
 #include "interruption.hpp"
@@ -212,6 +214,8 @@ std::string text_of(const Asked& asked, const DesignAnswer& answer) {
 }
 
 int design(Arguments& arguments) {
+  if (arguments.given("--dampers")) return design_dampers(arguments);
+  if (arguments.given("--upper")) arguments.reject("--upper", "is for several dampers, --dampers");
   const Asked asked = asked_of(arguments);
   const Threads threads = threads_of(arguments);
   const auto output = arguments.file("--output"), plan = arguments.file("--write-plan");
@@ -245,7 +249,7 @@ Command design_command() {
       .name = "design",
       .description =
           "Find the lightest secondary mass, and its clearance, with which a free decay is over in time, "
-          "within tolerances."};
+          "within tolerances; or several dampers for a range of amplitudes."};
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help,
                        Option::Takes takes = Option::Takes::value) {
     command.options.push_back({name, type, help, "Design", takes});
@@ -271,6 +275,15 @@ Command design_command() {
   add("--neighbours", "N",
       "how many random deviations a design is checked with; 100 to 1e6,\ndefault " +
           std::to_string(DesignQuestion{}.neighbours));
+  add("--dampers", "N",
+      "instead: clearances and masses of up to so many dampers, 1 to " + std::to_string(most_set_dampers) +
+          ", with\nwhich the least loss factor from --upper to --to is largest, after a\nrelease from "
+          "--from. "
+          "Together they have the mass --secondary-mass M,\ndefault the scene's; --tolerance is of "
+          "restitution "
+          "and clearance;\n--output is the scene with them");
+  add("--upper", "A",
+      "the amplitude that the range of --dampers begins with, in mm; default\nnine tenths of the release");
   add("--seed", "N",
       "of the random deviations; 0 to 1e15, default " + std::to_string(DesignQuestion{}.seed) +
           ". The check has others than\nthe search");
@@ -297,7 +310,8 @@ Command design_command() {
       "it.\n\n"
       "Example:\n"
       "  impact-damper design --scene data/examples/mast.json --to 6 --within 10 \\\n"
-      "    --tolerance restitution=0.1 --tolerance clearance=10%";
+      "    --tolerance restitution=0.1 --tolerance clearance=10%\n"
+      "  impact-damper design --scene data/examples/mast.json --dampers 6 --to 2 -o boxes.json";
   command.act = design;
   return command;
 }

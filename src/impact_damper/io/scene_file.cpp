@@ -181,10 +181,18 @@ void write_scene_fields(JsonWriter& out, const Scene& scene) {
   out.field("until_amplitude", scene.until_amplitude);
 }
 
-// Only run is for several dampers, and a run file is dimensionless.
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
   for (const UnitField& each : unit_fields)
     if (scene.*each.member) out.field(each.name, scene.*each.member);
+  if (scene.dampers.empty()) return;
+  out.open_array("dampers", JsonWriter::Layout::lines);
+  for (const DamperInUnits& damper : scene.dampers) {
+    out.open_object(JsonWriter::Layout::one_line);
+    for (const DamperUnitField& each : damper_unit_fields)
+      if (damper.*each.member) out.field(each.name, damper.*each.member);
+    out.close();
+  }
+  out.close();
 }
 
 std::string scene_text(const Scene& scene) {

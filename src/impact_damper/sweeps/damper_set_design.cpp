@@ -1,0 +1,299 @@
+#include "impact_damper/sweeps/damper_set_design.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/sweeps/sampling.hpp"
+
+#ifdef IMPACT_DAMPER_CLP
+#include <Clp_C_Interface.h>
+#endif
+
+namespace impact_damper {
+namespace {
+
+// A mass at rest anywhere in its cavity is met by a wall if the primary mass moves farther than the
+// clearance, twice the release; the first half cycle of company shortens that.
+constexpr double widest = 1.8;
+
+// What one damper does with three restitutions: as it should be, and off either way.
+struct Known {
+  LossAlone nominal, lower, higher;
+};
+
+Engine engine_of_sets() {
+  Restitution engine;
+  engine.budget.max_impacts = 50'000'000;
+  return engine;
+}
+
+LossAlone measured_alone(double mass_ratio, double restitution, double from, const Threads& threads) {
+  Scene scene;
+  scene.mass_ratio = mass_ratio;
+  scene.restitution = restitution;
+  scene.x0 = from;
+  scene.until_amplitude = fold_amplitude(restitution) / 2;
+  scene.until_time = 4e5;
+  return loss_alone(simulate_ensemble(scene, engine_of_sets(), Record{}, {.members = 4, .threads = threads}));
+}
+
+double least_within(const Known& known, double amplitude, double clearance, double off) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LossAlone* alone : {&known.nominal, &known.lower, &known.higher})
+    for (int i = -4; i <= 4; ++i)
+      least = std::min(least, alone->at(amplitude / (clearance * (1 + off * i / 4))));
+  return least;
+}
+
+// eta/nu of one damper with that clearance between each two edges: row by row of the linear programme.
+std::vector<double> column_of(const Known& known, double clearance, const std::vector<double>& edges,
+                              double off) {
+  constexpr int parts = 4;
+  std::vector<double> column;
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    double sum = 0;
+    for (int part = 0; part < parts; ++part)
+      sum += least_within(known, edges[k] * std::pow(edges[k + 1] / edges[k], (part + 0.5) / parts),
+                          clearance, off);
+    column.push_back(sum / parts);
+  }
+  return column;
+}
+
+double rounded(double value, int digits) { return *parse_number(rounded_text(value, digits)); }
+
+std::vector<double> clearances_between(double least, double most, std::int64_t count) {
+  std::vector<double> clearances;
+  for (std::int64_t j = 0; j < count; ++j)
+    clearances.push_back(
+        rounded(count == 1 ? least : most * std::pow(least / most, double(j) / double(count - 1)), 3));
+  return clearances;
+}
+
+// The clearances whose best shares are best, with their columns.
+struct Clearances {
+  std::vector<double> values;
+  std::vector<std::vector<double>> columns;
+  double least = -1;
+};
+Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count, const Known& known,
+                           const std::vector<double>& edges) {
+  constexpr int narrow_steps = 16, wide_steps = 12;
+  const double fold = fold_amplitude(question.restitution),
+               most = std::min(widest * question.release, question.upper / fold);
+  Clearances best;
+  for (int narrow = 0; narrow < narrow_steps; ++narrow) {
+    // From where the fold is just below `to` to where it is half of it; one damper may need it wider.
+    const double c = std::min(
+        most, question.to / fold * std::pow(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
+    for (int wide = 0; wide < (count == 1 ? 1 : wide_steps); ++wide) {
+      const double end = most * std::pow(0.3, double(wide) / wide_steps);
+      if (count > 1 && !(end > c)) continue;
+      Clearances tried{clearances_between(c, end, count), {}, 0};
+      for (const double clearance : tried.values)
+        tried.columns.push_back(column_of(known, clearance, edges, question.clearance_off));
+      tried.least = best_shares(tried.columns).least;
+      if (tried.least > best.least) best = std::move(tried);
+    }
+  }
+  return best;
+}
+
+std::vector<SceneDamper> dampers_of(const DamperSetQuestion& question, const Clearances& clearances,
+                                    const std::vector<double>& shares) {
+  std::vector<SceneDamper> dampers;
+  double sum = 0;
+  for (std::size_t j = 0; j < shares.size(); ++j) {
+    if (shares[j] < 1e-3) continue;
+    SceneDamper& damper = dampers.emplace_back();
+    damper.mass_ratio = shares[j];
+    damper.restitution = question.restitution;
+    damper.clearance = clearances.values[j];
+    sum += shares[j];
+  }
+  for (SceneDamper& damper : dampers)
+    damper.mass_ratio = question.mass_ratio * rounded(damper.mass_ratio / sum, 3);
+  return dampers;
+}
+
+std::vector<Run> runs_of(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
+                         const Threads& threads) {
+  return simulate_ensemble(scene_of_set(question, dampers), engine_of_sets(), Record{},
+                           {.members = set_releases, .threads = threads});
+}
+
+// Sets whose dampers are each off at random.
+std::vector<Run> varied_runs(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
+                             const Threads& threads) {
+  std::vector<Scene> scenes;
+  for (std::int64_t draw = 0; draw < set_draws; ++draw) {
+    std::vector<SceneDamper> off = dampers;
+    for (std::size_t j = 0; j < off.size(); ++j) {
+      off[j].clearance *=
+          1 + question.clearance_off * (2 * uniform_draw({1, std::uint32_t(2 * j), draw}) - 1);
+      off[j].restitution +=
+          question.restitution_off * (2 * uniform_draw({1, std::uint32_t(2 * j + 1), draw}) - 1);
+    }
+    scenes.push_back(scene_of_set(question, off));
+  }
+  return simulate_scenes(scenes, engine_of_sets(), Record{}, threads);
+}
+
+std::vector<double> in_releases(std::vector<double> lengths, double release) {
+  for (double& length : lengths) length /= release;
+  return lengths;
+}
+
+}  // namespace
+
+#ifdef IMPACT_DAMPER_CLP
+Shares best_shares(const std::vector<std::vector<double>>& columns) {
+  // Maximise t, the last column: sum of x_j columns[j][i] - t >= 0 for each row, and the last row, sum of x
+  // = 1.
+  const int rows = int(columns.front().size()), dampers = int(columns.size());
+  std::vector<CoinBigIndex> start;
+  std::vector<int> index;
+  std::vector<double> value, objective(std::size_t(dampers) + 1, 0.0);
+  objective.back() = 1;
+  for (int j = 0; j <= dampers; ++j) {
+    start.push_back(CoinBigIndex(index.size()));
+    for (int i = 0; i < rows; ++i) {
+      index.push_back(i);
+      value.push_back(j < dampers ? columns[std::size_t(j)][std::size_t(i)] : -1);
+    }
+    if (j == dampers) continue;
+    index.push_back(rows);
+    value.push_back(1);
+  }
+  start.push_back(CoinBigIndex(index.size()));
+  const std::vector<double> least(objective.size(), 0.0);
+  std::vector<double> lower(std::size_t(rows) + 1, 0.0),
+      upper(lower.size(), std::numeric_limits<double>::max());
+  lower.back() = upper.back() = 1;
+  const std::unique_ptr<Clp_Simplex, decltype(&Clp_deleteModel)> model(Clp_newModel(), Clp_deleteModel);
+  Clp_setLogLevel(model.get(), 0);
+  Clp_loadProblem(model.get(), dampers + 1, rows + 1, start.data(), index.data(), value.data(), least.data(),
+                  nullptr, objective.data(), lower.data(), upper.data());
+  Clp_setOptimizationDirection(model.get(), -1);
+  Clp_primal(model.get(), 0);
+  if (Clp_status(model.get()) != 0) throw std::runtime_error("the linear programme was not solved");
+  const double* const found = Clp_primalColumnSolution(model.get());
+  return {{found, found + dampers}, found[dampers]};
+}
+#else
+Shares best_shares(const std::vector<std::vector<double>>&) {
+  throw std::runtime_error("the program was built without Clp: install coinor-libclp-dev and build it anew");
+}
+#endif
+
+bool has_linear_programmes() {
+#ifdef IMPACT_DAMPER_CLP
+  return true;
+#else
+  return false;
+#endif
+}
+
+std::vector<Problem> problems_of(const DamperSetQuestion& question) {
+  std::vector<Problem> problems;
+  const auto demand = [&](std::string_view field, double value, double least, double most) {
+    if (!(value >= least && value <= most))
+      problems.push_back({std::string(field), "must be >= " + number_text(least) + " and <= " +
+                                                  number_text(most) + ", got " + number_text(value)});
+  };
+  demand("release", question.release, 1e-6, 1e6);
+  demand("upper", question.upper, 0, 0.9 * question.release);
+  demand("to", question.to, question.upper / 1000, question.upper / 2);
+  demand("mass_ratio", question.mass_ratio, 1e-4, 0.2);
+  demand("count", double(question.count), 1, double(most_set_dampers));
+  demand("clearance_off", question.clearance_off, 0, 0.5);
+  demand("restitution_off", question.restitution_off, 0, 0.4);
+  demand("restitution", question.restitution, 0.1 + question.restitution_off, 0.9 - question.restitution_off);
+  demand("damping_ratio", question.damping_ratio, 0, 0.1);
+  return problems;
+}
+
+Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers) {
+  Scene scene;
+  scene.damping_ratio = question.damping_ratio;
+  scene.x0 = 1;
+  scene.dampers = dampers;
+  for (SceneDamper& damper : scene.dampers) damper.clearance /= question.release;
+  scene.until_time = 1e5;
+  scene.until_amplitude = 0.9 * question.to / question.release;
+  return scene;
+}
+
+DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& threads,
+                          const std::function<void(const std::string& doing)>& tell) {
+  if (auto problems = problems_of(question); !problems.empty()) throw InvalidArguments(std::move(problems));
+  const double e = question.restitution, fold = fold_amplitude(e);
+  DamperSet set;
+  set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
+  tell("what one damper does alone");
+  // The narrowest clearance that is tried, at its narrowest.
+  const double from = 1.1 * question.upper * fold / (0.4 * question.to) / (1 - question.clearance_off);
+  // f hardly depends on the mass; a very light one takes long.
+  const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
+  const auto alone = [&](double restitution) {
+    return measured_alone(alone_mass, restitution, from, threads);
+  };
+  const LossAlone nominal = alone(e);
+  const Known exactly{nominal, nominal, nominal};
+  const double off = question.restitution_off;
+  const Known known = off == 0 ? exactly : Known{nominal, alone(e - off), alone(e + off)};
+  tell("clearances");
+  Clearances clearances = best_clearances(question, question.count, known, set.edges);
+  const double viscous = 2 * question.damping_ratio / (1 + question.mass_ratio);
+  const auto expected_of = [&](const std::vector<SceneDamper>& dampers, const Known& with,
+                               double clearance_off) {
+    std::vector<double> sum(set.edges.size() - 1, viscous);
+    for (const SceneDamper& damper : dampers) {
+      const std::vector<double> column = column_of(with, damper.clearance, set.edges, clearance_off);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += damper.mass_ratio * column[i];
+    }
+    return sum;
+  };
+  // Where the dampers do not quite add their run tells by how much: the programme once more with that.
+  constexpr int passes = 3;
+  double best = -1;
+  for (int pass = 0; pass < passes; ++pass) {
+    tell("masses, " + std::to_string(pass + 1) + " of " + std::to_string(passes));
+    const std::vector<SceneDamper> dampers =
+        dampers_of(question, clearances, best_shares(clearances.columns).share);
+    const LossSpread run =
+        losses_between(runs_of(question, dampers, threads), in_releases(set.edges, question.release));
+    const std::vector<double> expected = expected_of(dampers, exactly, 0);
+    const double least = *std::ranges::min_element(run.mean);
+    if (least > best) {
+      best = least;
+      set.dampers = dampers;
+      set.run = run;
+      set.expected = expected;
+    }
+    for (std::size_t i = 0; i < run.mean.size(); ++i) {
+      const double ratio = std::clamp((run.mean[i] - viscous) / (expected[i] - viscous), 0.5, 2.0);
+      for (std::vector<double>& column : clearances.columns) column[i] *= ratio;
+    }
+  }
+  set.worst = expected_of(set.dampers, known, question.clearance_off);
+  tell("dampers that are off");
+  set.varied =
+      losses_between(varied_runs(question, set.dampers, threads), in_releases(set.edges, question.release));
+  set.least_of_one = viscous + question.mass_ratio * best_clearances(question, 1, exactly, set.edges).least;
+  return set;
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,139 @@
+// Designs of several dampers, held against plain searches and runs.
+#include "impact_damper/sweeps/damper_set_design.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/sweeps/sampling.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+DamperSetQuestion question(std::int64_t count) {
+  DamperSetQuestion asked;
+  asked.release = 60;
+  asked.upper = 54;
+  asked.to = 2;
+  asked.mass_ratio = 0.02;
+  asked.count = count;
+  return asked;
+}
+DamperSet answer(const DamperSetQuestion& asked, int threads = 2) {
+  return best_damper_set(asked, threads, [](const std::string&) {});
+}
+double least(const std::vector<double>& values) { return *std::ranges::min_element(values); }
+
+}  // namespace
+
+TEST_CASE("damper_set_design: a question out of range is rejected, with its fields") {
+  DamperSetQuestion asked = question(3);
+  CHECK(problems_of(asked).empty());
+  asked.upper = 55, asked.to = 40, asked.mass_ratio = 0.3, asked.count = 41, asked.restitution = 0.95;
+  asked.clearance_off = 0.6, asked.damping_ratio = -1;
+  std::vector<std::string> fields;
+  for (const Problem& problem : problems_of(asked)) fields.push_back(problem.field);
+  CHECK(fields == std::vector<std::string>{"upper", "to", "mass_ratio", "count", "clearance_off",
+                                           "restitution", "damping_ratio"});
+  if (has_linear_programmes()) CHECK_THROWS_AS(answer(asked), InvalidArguments);
+}
+
+TEST_CASE("damper_set_design: the dampers are those asked for, and what is said of them is a run's") {
+  if (!has_linear_programmes()) return;
+  const DamperSetQuestion asked = question(4);
+  const DamperSet set = answer(asked);
+  REQUIRE(!set.dampers.empty());
+  CHECK(set.dampers.size() <= 4);
+  double mass = 0;
+  for (const SceneDamper& damper : set.dampers) {
+    mass += damper.mass_ratio;
+    CHECK(damper.clearance <= 1.8 * asked.release);
+    CHECK(damper.restitution == asked.restitution);
+  }
+  CHECK(mass == doctest::Approx(asked.mass_ratio).epsilon(2e-3));
+  CHECK(set.edges.front() == asked.upper);
+  CHECK(set.edges.back() == asked.to);
+  Restitution engine;
+  engine.budget.max_impacts = 10'000'000;
+  // In millimetres instead of releases.
+  Scene scene = scene_of_set(asked, set.dampers);
+  scene.x0 = asked.release;
+  scene.dampers = set.dampers;
+  *scene.until_amplitude *= asked.release;
+  const std::vector<double> losses =
+      losses_between(*simulate(scene, engine, Record{}).half_cycles, set.edges);
+  // Before chaos tells two lengths apart.
+  for (std::size_t i = 0; i < 4; ++i) CHECK(losses[i] == doctest::Approx(set.run.mean[i]).epsilon(1e-3));
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    CHECK(set.run.low[i] <= set.run.mean[i]);
+    CHECK(set.run.mean[i] <= set.run.high[i]);
+    CHECK(set.worst[i] <= set.expected[i] * (1 + 1e-12));
+  }
+}
+
+TEST_CASE("damper_set_design: no shares have a larger least than those of the linear programme") {
+  if (!has_linear_programmes()) return;
+  for (std::uint32_t problem = 0; problem < 20; ++problem) {
+    std::vector<std::vector<double>> columns(3);
+    for (std::uint32_t j = 0; j < 3; ++j)
+      for (std::int64_t i = 0; i < 7; ++i)
+        columns[j].push_back(uniform_draw({problem, j, i}) + (std::int64_t(j) == i % 3 ? 1 : 0));
+    const auto least_of = [&](const std::vector<double>& share) {
+      double least = 1e9;
+      for (std::size_t i = 0; i < 7; ++i)
+        least =
+            std::min(least, share[0] * columns[0][i] + share[1] * columns[1][i] + share[2] * columns[2][i]);
+      return least;
+    };
+    const Shares found = best_shares(columns);
+    REQUIRE(found.share.size() == 3);
+    CHECK(found.share[0] + found.share[1] + found.share[2] == doctest::Approx(1).epsilon(1e-12));
+    CHECK(least_of(found.share) == doctest::Approx(found.least).epsilon(1e-12));
+    double best = 0;
+    constexpr int steps = 200;
+    for (int a = 0; a <= steps; ++a)
+      for (int b = 0; a + b <= steps; ++b)
+        best =
+            std::max(best, least_of({double(a) / steps, double(b) / steps, double(steps - a - b) / steps}));
+    CHECK(best <= found.least * (1 + 1e-12));
+    CHECK(best > found.least * 0.98);
+  }
+}
+
+TEST_CASE("damper_set_design: one damper is what is said of one") {
+  if (!has_linear_programmes()) return;
+  DamperSetQuestion asked = question(2);
+  asked.clearance_off = asked.restitution_off = 0;
+  const DamperSet two = answer(asked);
+  CHECK(least(two.expected) > two.least_of_one);
+  asked.count = 1;
+  const DamperSet one = answer(asked);
+  CHECK(one.dampers.size() == 1);
+  CHECK(least(one.expected) == doctest::Approx(two.least_of_one).epsilon(0.01));
+}
+
+TEST_CASE("damper_set_design: more dampers damp a wide range better than one, in runs too") {
+  if (!has_linear_programmes()) return;
+  DamperSetQuestion asked = question(5);
+  asked.to = 1;
+  const DamperSet set = answer(asked);
+  CHECK(least(set.run.mean) > 1.3 * set.least_of_one);
+  CHECK(least(set.varied.mean) > 1.3 * set.least_of_one);
+}
+
+TEST_CASE("damper_set_design: viscous damping adds to all, and the number of threads changes nothing") {
+  if (!has_linear_programmes()) return;
+  DamperSetQuestion asked = question(3);
+  const DamperSet set = answer(asked, 1), again = answer(asked, 2);
+  CHECK(set.run.mean == again.run.mean);
+  CHECK(set.varied.low == again.varied.low);
+  CHECK(set.dampers == again.dampers);
+  asked.damping_ratio = 0.003;
+  const DamperSet damped = answer(asked);
+  CHECK(damped.least_of_one - set.least_of_one == doctest::Approx(2 * 0.003 / 1.02).epsilon(1e-9));
+}
