@@ -1,5 +1,5 @@
 // How much several dampers lose together: the loss factor between two amplitudes, and the sum of what each
-// damper would lose alone (docs/mathematics.md, 17.5). Amplitudes are divided by the scene's epsilon.
+// damper would lose alone (docs/mathematics.md, 17.6). Amplitudes are divided by the scene's epsilon.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ std::vector<double> descending_amplitudes(double from, double to, int in_decade)
 inline constexpr int set_bins_in_decade = 12;
 
 // The loss factor eta between each two neighbours of `edges`, which descend and are > 0, one entry less than
-// edges (M17.9): from the time that the peaks take from the one to the other. 0 where they do not come down
+// edges (M17.12): from the time that the peaks take from the one to the other. 0 where they do not come down
 // to the lower one before the run ends, NaN where they begin below the upper one.
 std::vector<double> losses_between(const HalfCycles& half_cycles, const std::vector<double>& edges);
 // The same from the mean of the times that several runs take, entry by entry, and the least and greatest of
@@ -40,7 +40,7 @@ struct LossAlone {
 // half_cycles.
 LossAlone loss_alone(const std::vector<Run>& runs);
 
-// eta between each two neighbours of `edges` if these dampers add: (M17.10). NaN where an amplitude is above
+// eta between each two neighbours of `edges` if these dampers add: (M17.13). NaN where an amplitude is above
 // the first edge of `alone`, 0 where nothing is lost.
 std::vector<double> sum_of_losses(const std::vector<SceneDamper>& dampers, const LossAlone& alone,
                                   const std::vector<double>& edges);

@@ -1,5 +1,5 @@
 // Several dampers for a range of amplitudes: clearances and masses with which the least loss factor in it is
-// as large as can be (docs/mathematics.md, 17.6, (M17.11)). Lengths in any one unit, masses divided by the
+// as large as can be (docs/mathematics.md, 17.7, (M17.14)). Lengths in any one unit, masses divided by the
 // primary mass.
 #pragma once
 
@@ -51,7 +51,7 @@ DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& thre
 // Parts of it. The scene that is run, in units of the release.
 Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers);
 // Shares x >= 0 whose sum is 1 that make the least of the sums over j of x_j columns[j][i] largest, and that
-// least: (M17.11). Columns not empty and of equal length.
+// least: (M17.14). Columns not empty and of equal length.
 struct Shares {
   std::vector<double> share;
   double least = 0;
