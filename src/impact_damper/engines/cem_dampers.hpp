@@ -1,6 +1,6 @@
 // The component element method for several dampers on one primary mass (docs/mathematics.md, 17.5): cem.hpp
 // with a sum over the walls. Each secondary mass is in flight or in contact by itself, and only x couples
-// them, so that a step solves for x first and then for each q (M17.11). Contact, `locate`, observations,
+// them, so that a step solves for x first and then for each q (M17.10). Contact, `locate`, observations,
 // segments and energy balance are those of cem.hpp; there is no stuck regime.
 //
 // Two rates: steps of up to H where no secondary mass is in contact or can meet a wall (cem_rates.hpp). While
@@ -94,7 +94,7 @@ class CemOfDampers {
     const Mass& m = masses_[i];
     return m.wall ? m.c * s.w[i] + m.omega_2 * s.q[i] : Real(0);
   }
-  Real acceleration(const Real& time, const Whole& s) const {  // x'', (M17.10)
+  Real acceleration(const Real& time, const Whole& s) const {  // x'', (M17.9)
     Real force = value_of(force_, time);
     for (const std::size_t i : in_contact_) force += masses_[i].nu * wall_force(s, i);
     return force - (2 * zeta_ * s.v + s.x);
@@ -133,7 +133,7 @@ class CemOfDampers {
     if (energy_balance_) add_powers(-h_ / 2, time, s, time);
     renew_step();
   }
-  // The step's coefficients (M17.11), for h and those that are in contact.
+  // The step's coefficients (M17.10), for h and those that are in contact.
   void renew_step() {
     const Real outer = h_ * zeta_, h_2 = h_ * h_;
     const auto ahead = [&](const Mass& m) { return centred_ ? h_ * m.c / 2 : Real(0); };
@@ -184,29 +184,35 @@ class CemOfDampers {
   // Steps until a wall is met or left, x changes its sign or x' its own, or `most` are done.
   void take_steps(std::int64_t most) {
     const bool forced = bool(force_);
-    const Real side = half_cycles_.side(), trend = trend_;
+    const Real side = half_cycles_.side(), trend = trend_, dx_dx = dx_dx_, dx_x = dx_x_;
+    const std::int64_t from = step_;
+    Real x = now_.x, dx = now_.dx, last_x, last_dx;
     bool uneventful;
     do {
       if ((forced || energy_balance_) && step_ % ForceAtSteps<Real>::block == 0) {
         add_sums();
         if (forced) force_at_steps_ = {force_, origin_ + Real(step_) * h_, h_};
       }
-      before_ = now_;
-      now_.dx = dx_dx_ * before_.dx + dx_x_ * before_.x;
+      last_x = x;
+      last_dx = dx;
+      dx = dx_dx * last_dx + dx_x * x;
       for (const std::size_t i : in_contact_)
-        now_.dx += masses_[i].dx_dq * masses_[i].now.dx + masses_[i].dx_q * masses_[i].now.x;
-      if (forced) now_.dx += dx_f_ * force_at_steps_.f;
-      now_.x = before_.x + now_.dx;
-      const Real slows = before_.dx - now_.dx;
-      uneventful = (side * now_.x >= 0) & (trend * now_.dx >= 0);
+        dx += masses_[i].dx_dq * masses_[i].now.dx + masses_[i].dx_q * masses_[i].now.x;
+      if (forced) dx += dx_f_ * force_at_steps_.f;
+      x += dx;
+      const Real slows = last_dx - dx;
+      uneventful = (side * x >= 0) & (trend * dx >= 0);
       for (Mass& m : masses_) {
-        m.before = m.now;
-        m.now.dx = (m.dq_dq * m.before.dx + m.dq_q * m.before.x) + m.dq_dx * slows;
-        m.now.x = m.before.x + m.now.dx;
-        uneventful &= (m.now.x >= m.least) & (m.now.x <= m.most);
+        const Real q = m.now.x, last_dq = m.now.dx;
+        const Real dq = (m.dq_dq * last_dq + m.dq_q * q) + m.dq_dx * slows, next = q + dq;
+        m.before.x = q;
+        m.before.dx = last_dq;
+        m.now.x = next;
+        m.now.dx = dq;
+        uneventful &= (next >= m.least) & (next <= m.most);
       }
       if (energy_balance_) {
-        const Real v = before_.dx + now_.dx;
+        const Real v = last_dx + dx;
         sums_.vv += v * v;
         sums_.fv += force_at_steps_.f * v;
         for (const std::size_t i : in_contact_) {
@@ -217,9 +223,11 @@ class CemOfDampers {
       }
       if (forced) force_at_steps_.advance();
       ++step_;
-      --steps_left_;
-      if (large_h_) --steps_at_pace_;
     } while (uneventful && --most > 0);
+    before_ = {last_x, last_dx};
+    now_ = {x, dx};
+    steps_left_ -= step_ - from;
+    if (large_h_) steps_at_pace_ -= step_ - from;
   }
 
   void look_at_last_step() {

@@ -25,7 +25,7 @@ double last_of(double most, Semidefinite&& semidefinite) {
   }
 }
 
-// (M17.12)
+// (M17.11)
 double stability_limit_of_list(const Scene& scene, Damper damper, Calibration calibration) {
   std::vector<RegimeEquations<double>> walls;
   for (const SceneDamper& each : scene.dampers)

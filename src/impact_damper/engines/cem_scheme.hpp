@@ -148,7 +148,7 @@ double fastest_contact_frequency(const Scene& scene);
 //     lagged:  the determinant's first root; for a free primary mass it is
 //              2 (sqrt(1 + z^2) - z) / omega_c, z = zeta_m sqrt(1 + nu), omega_c = omega_m sqrt(1 + nu).
 // The limit in flight is 2 and never the lower one, for omega > 1. Of a list it is that of all masses in
-// contact (M17.12): fewer in contact have a higher one.
+// contact (M17.11): fewer in contact have a higher one.
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration);
 
 }  // namespace impact_damper
