@@ -11,6 +11,7 @@
 
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/simulate.hpp"
+#include "reference.hpp"
 
 using namespace impact_damper;
 
@@ -537,6 +538,61 @@ TEST_CASE(
     const Run begun = simulate(shorter, options, {.impacts = true});
     REQUIRE(begun.impacts->time.size() > 4);
     CHECK(std::equal(begun.impacts->time.begin(), begun.impacts->time.end(), all.impacts->time.begin()));
+  }
+}
+
+TEST_CASE(
+    "random lists, in every way, run, agree with themselves and are what they are looked at from the other "
+    "side") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    CAPTURE(seed);
+    reference::Random random(seed);
+    Scene scene;
+    scene.damping_ratio = random.chance(0.5) ? 0 : random.log_uniform(1e-3, 2);
+    scene.x0 = random.uniform(-10, 10);
+    scene.v0 = random.chance(0.5) ? 0 : random.uniform(-10, 10);
+    if (random.chance(0.33)) {
+      scene.force_amplitude = random.log_uniform(0.1, 10);
+      scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
+    }
+    const int count = 1 + int(random.uniform(0, 6));
+    for (int i = 0; i < count; ++i) {
+      SceneDamper damper;
+      damper.mass_ratio = random.log_uniform(1e-3, random.chance(0.2) ? 10 : 0.5);
+      damper.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+      damper.clearance = random.chance(0.2) ? 1 : random.log_uniform(0.1, 10);
+      damper.wall_stiffness = damper.mass_ratio * random.log_uniform(10, 1e4);
+      const bool flies = random.chance(0.4);
+      damper.y0 = damper.clearance * (flies ? random.uniform(-0.1, 1.1) : double(random.chance(0.5)));
+      damper.w0 = flies ? random.uniform(-3, 3) : 0;
+      scene.dampers.push_back(damper);
+    }
+    scene.until_time = 10;
+    Cem options{.damper = random.chance(0.5) ? Damper::centred : Damper::lagged,
+                .locate = random.chance(0.5),
+                .calibration = random.chance(0.5) ? Calibration::fixed_wall : Calibration::two_body};
+    options.time_step =
+        std::min(0.01, stability_limit(scene, options.damper, options.calibration) / random.uniform(20, 60));
+    if (random.chance(0.5)) options.large_step = 0.1;
+    if (random.chance(0.2)) options.budget.max_impacts = std::int64_t(random.uniform(0, 20));
+    if (random.chance(0.2)) options.budget.max_half_cycles = 2;
+
+    const Run run = run_of(scene, options);  // every_run.cpp holds it against itself
+    CHECK(std::abs(run.energy->residual) < 0.3);
+    const Run less = simulate(scene, options, {.impacts = true});
+    CHECK(less.impacts->time == run.impacts->time);
+    CHECK(less.half_cycles->amplitude == run.half_cycles->amplitude);
+    CHECK(less.end_time == run.end_time);
+
+    Scene mirrored = scene;
+    mirrored.x0 = -scene.x0, mirrored.v0 = -scene.v0, mirrored.force_amplitude = -scene.force_amplitude;
+    for (SceneDamper& damper : mirrored.dampers)
+      damper.y0 = damper.clearance - damper.y0, damper.w0 = -damper.w0;
+    const Run other = run_of(mirrored, options);
+    for (std::size_t i = 0; i < std::min<std::size_t>(run.history->x.size(), 5); ++i)
+      CHECK(std::abs(run.history->x[i] + other.history->x[i]) < 1e-6);
+    for (std::size_t i = 0; i < std::min<std::size_t>(run.impacts->time.size(), 2); ++i)
+      CHECK(std::abs(run.impacts->time[i] - other.impacts->time[i]) < 1e-6);
   }
 }
 

@@ -531,7 +531,7 @@ class Examination {
       }
       const auto is_same = [&](std::size_t j) { return impacts.time[j] == impacts.time[i]; };
       const bool alone = !(i > 0 && is_same(i - 1)) && !(i + 1 < losses.size() && is_same(i + 1));
-      const double most = least * (1 + nu) * (all - nu) / all, near = rounding * most;
+      const double most = least * (1 + nu) * (all - nu) / all, near = rounding * nu * w * w;
       if (!require(alone ? least - near <= losses[i] && losses[i] <= most + near : losses[i] >= 0, field,
                    got(alone ? number_text(least) + " to " + number_text(most) +
                                    ", by its speed and the restitution"
