@@ -70,7 +70,7 @@ class CemOfDampers {
     Real origin_of_q() const { return wall == Wall::right ? clearance : Real(0); }
     Arc<Real> arc(const Real& h) const { return arc_of(before, now, h); }
   };
-  // The state of all, or its rates: of a secondary mass (q, q').
+  // The state of all: x and x', and q and q' of each secondary mass.
   struct Whole {
     Real x, v;
     std::vector<Real> q, w;
@@ -157,7 +157,8 @@ class CemOfDampers {
     }
   }
   // To a wall or into flight, with the same y.
-  void set_wall(Mass& m, std::optional<Wall> wall) {
+  void set_wall(std::size_t i, std::optional<Wall> wall) {
+    Mass& m = masses_[i];
     constexpr Real smallest = std::numeric_limits<Real>::denorm_min();
     constexpr Real infinity = std::numeric_limits<Real>::infinity();
     const Real old_origin = m.origin_of_q();
@@ -167,9 +168,8 @@ class CemOfDampers {
     if (!wall) m.dq_dq = m.dq_dx = 1, m.dq_q = m.dx_dq = m.dx_q = 0;
     m.least = !wall ? Real(0) : wall == Wall::left ? -infinity : smallest;
     m.most = !wall ? m.clearance : wall == Wall::left ? -smallest : infinity;
-    in_contact_.clear();
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (masses_[i].wall) in_contact_.push_back(i);
+    std::erase(in_contact_, i);
+    if (wall) in_contact_.insert(std::ranges::lower_bound(in_contact_, i), i);
   }
 
   void spend_look() {  // as CemEngine
@@ -241,7 +241,11 @@ class CemOfDampers {
     std::erase_if(changes_, [&](const Change& change) { return too_late(change.at); });
 
     const bool restart = locate_ && !changes_.empty();
-    if (restart) keep_first_changes();
+    std::optional<Whole> anew;
+    if (restart) {
+      keep_first_changes();
+      anew = refined_state_at(changes_.front().at);
+    }
     const Real span = restart ? changes_.front().at : last ? std::max(end_time_ - begin, Real(0)) : h_;
     std::optional<Real> zero;
     if (crosses) zero = x_arc().times(side).fall(h_);
@@ -257,12 +261,12 @@ class CemOfDampers {
         cross_zero(*zero, span);
         zero.reset();
       }
-      if (!end_) change_regime(change);
+      if (!end_) change_regime(change, anew);
       if (end_) return;
     }
     if (zero) cross_zero(*zero, span);
     if (end_) return;
-    if (restart) return begin_anew(span);
+    if (restart) return begin_anew(span, *std::move(anew));
     if (!changes_.empty()) renew_step();
     if (last) return finish(horizon_.stop_reason, span, true);
     if (steps_left_ == 0) return finish(StopReason::step_budget, span);
@@ -295,7 +299,7 @@ class CemOfDampers {
     std::erase_if(changes_, [&](const Change& each) { return time_of(each) > time_of({0, first}); });
     for (Change& each : changes_) each.at = first;
   }
-  void change_regime(const Change& change) {
+  void change_regime(const Change& change, const std::optional<Whole>& anew) {
     Mass& m = masses_[change.index];
     const Real& at = change.at;
     const Real y = m.now.x + m.origin_of_q();
@@ -310,41 +314,42 @@ class CemOfDampers {
     if (meeting > budget_.max_impacts - impacts_) return finish(StopReason::impact_budget, at);
     const Real time = last_step_begin() + at;
     give_samples(time);
-    if (!locate_ && m.wall) leave(m, time);
+    if (!locate_ && m.wall) leave(change.index, time);
     if (!met) return;
-    const Whole s = locate_ ? refined_state_at(at) : state_at(at);
+    const Real w = anew ? anew->w[change.index] : m.arc(h_).slope_at(at);
     const Wall wall = y > m.clearance / 2 ? Wall::right : Wall::left;
     ++impacts_;
-    observer_.impact(double(time), wall, double(s.w[change.index]), double(s.x), m.number);
-    if (!locate_) enter(m, wall, time);
+    observer_.impact(double(time), wall, double(w), double(x_arc().at(at)), m.number);
+    if (!locate_) enter(change.index, wall, time);
   }
   // At the changes' own time: those that change are on their walls exactly.
-  void begin_anew(const Real& at) {
+  void begin_anew(const Real& at, Whole s) {
     const Real time = last_step_begin() + at;
-    Whole s = refined_state_at(at);
     if (energy_balance_) close_powers(at);
     for (const auto& [i, same] : changes_) {
       Mass& m = masses_[i];
       s.q[i] = 0;
       if (!m.wall) {
-        enter(m, m.now.x > m.clearance / 2 ? Wall::right : Wall::left, time);
+        enter(i, m.now.x > m.clearance / 2 ? Wall::right : Wall::left, time);
       } else {
         if (m.wall == Wall::right) s.q[i] = m.clearance;
-        leave(m, time);
+        leave(i, time);
       }
     }
     trend_ = sign(s.v);
     begin_segment(time, s);
   }
-  void enter(Mass& m, Wall wall, const Real& time) {
-    set_wall(m, wall);
+  void enter(std::size_t i, Wall wall, const Real& time) {
+    Mass& m = masses_[i];
+    set_wall(i, wall);
     m.contact_begin = time;
     steps_at_pace_ = 0;
     if (!energy_balance_) return;
     m.impact = observer_.energy_balance().impact_loss.size();
     observer_.energy_balance().impact_loss.push_back(0);
   }
-  void leave(Mass& m, const Real& time) {
+  void leave(std::size_t i, const Real& time) {
+    Mass& m = masses_[i];
     if (observer_.wants_contacts())
       observer_.contact(double(m.contact_begin), double(time), *m.wall, m.number);
     if (energy_balance_) {
@@ -354,7 +359,7 @@ class CemOfDampers {
     }
     m.impact.reset();
     m.work = 0;
-    set_wall(m, {});
+    set_wall(i, {});
     steps_at_pace_ = 0;
   }
   void cross_zero(const Real& at, const Real& span) {
@@ -393,8 +398,8 @@ class CemOfDampers {
       for (std::size_t i = 0; i < masses_.size(); ++i)
         energy_[masses_[i].number].final_kinetic = kinetic(s, i);
     }
-    for (Mass& m : masses_)
-      if (m.wall) leave(m, time);
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_[i].wall) leave(i, time);
     if (energy_balance_) {
       EnergyBalance& balance = observer_.energy_balance();
       balance.viscous_work = double(viscous_work_);
@@ -594,7 +599,7 @@ CemOfDampers<Real, Observer>::CemOfDampers(const Scene& scene, const Cem& option
     start_.w.push_back(d.w0);
   }
   const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall) {
-    set_wall(masses_[i], wall);
+    set_wall(i, wall);
     start_.q[i] -= masses_[i].origin_of_q();
   };
   // In contact from the beginning, as in CemEngine: first who overlaps, then who rests and is pressed.
