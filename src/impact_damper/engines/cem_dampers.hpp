@@ -327,7 +327,7 @@ class CemOfDampers {
     const Real time = last_step_begin() + at;
     if (energy_balance_) close_powers(at);
     for (const auto& [i, same] : changes_) {
-      Mass& m = masses_[i];
+      const Mass& m = masses_[i];
       s.q[i] = 0;
       if (!m.wall) {
         enter(i, m.now.x > m.clearance / 2 ? Wall::right : Wall::left, time);
