@@ -475,6 +475,18 @@ TEST_CASE("two rates lose nothing of the accuracy of small steps, and spare most
                    fine = mean_distance(scene, reference, {.locate = true, .large_step = 0.01}, 2e-5, 1);
     CHECK(order(coarse.x, fine.x, 4) > 1.5);
   }
+  // A flight in large steps: x and x' of the samples are on the circle, and both secondary masses stay where
+  // they are.
+  Scene flight{
+      .x0 = 3, .until_time = 10, .dampers = {{.clearance = 50, .y0 = 20}, {.clearance = 90, .y0 = 50}}};
+  const Run far = run_of(flight, {.large_step = 0.1, .max_steps = 200});
+  REQUIRE(far.end_time == 10);
+  for (std::size_t i = 0; i < far.history->x.size(); ++i) {
+    const double x = far.history->x[i], v = far.history->v[i];
+    CHECK(std::abs(x * x + v * v - 9) < 1e-5);
+    CHECK(std::abs(x + far.history->dampers[1].y[i] - 53) < 1e-12);
+    CHECK(std::abs(v + far.history->dampers[1].w[i]) < 1e-12);
+  }
   // Stiff walls, so that contacts are short.
   Scene stiff = four;
   for (SceneDamper& damper : stiff.dampers) damper.wall_stiffness *= 1e6, damper.restitution = 0.9;
