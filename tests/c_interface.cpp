@@ -136,6 +136,7 @@ TEST_CASE("every number of a run file is a column for C, with the same bits") {
   check(forced, "cem", Cem{});
   check(in_units, "exact", Exact{});
   check(several, "restitution", Restitution{});
+  check(several, "cem", Cem{});
 }
 
 TEST_CASE("an engine's options are those of a run file, each with its default") {

@@ -188,7 +188,7 @@ const std::vector<Alteration> of_any_engine{
 };
 
 // Three dampers, two of them alike, so that impacts coincide; none sticks.
-Run run_of_several() {
+Run run_of_several(const Engine& engine = Restitution{}) {
   Scene scene;
   scene.x0 = 1;
   scene.damping_ratio = 0.01;
@@ -200,7 +200,7 @@ Run run_of_several() {
   Record record;
   record.impacts = record.contacts = record.energy = true;
   record.history = {{0, 40, 1001}};
-  return simulate(scene, Restitution{}, record);
+  return simulate(scene, engine, record);
 }
 
 void stick(Run& run, double begin, double end, std::int32_t damper) {
@@ -400,4 +400,31 @@ TEST_CASE("a run of several dampers agrees with itself, and an altered one does 
   stick(run, 39.8, 39.9, 0);
   stick(run, 39.85, 39.95, 1);
   CHECK(fields_of(inconsistencies_of(run)) == "");
+}
+
+TEST_CASE("contacts of several dampers are told apart, and all or none of simultaneous impacts are there") {
+  const Run by_cem = run_of_several(Cem{});
+  REQUIRE(by_cem.contacts->begin.size() > 8);
+  check_found(
+      by_cem,
+      {{"/contacts/begin", "a contact that another damper is said to have",
+        [](Run& run) { run.contacts->damper[5] = 1 - run.contacts->damper[5] % 2; }},
+       {"/contacts/begin", "a contact too few",
+        [](Run& run) {
+          run.contacts->begin.pop_back(), run.contacts->end.pop_back();
+          run.contacts->wall.pop_back(), run.contacts->damper.pop_back();
+        }},
+       {"/contacts/begin/", "a contact a little later", [](Run& run) { run.contacts->begin[4] += 1e-3; }},
+       {"/contacts/wall/", "the other wall",
+        [](Run& run) { run.contacts->wall[4] = Wall(1 - int(run.contacts->wall[4])); }},
+       {"/energy/initial/wall", "energy in a wall that is not pushed",
+        [](Run& run) { run.energy->initial.wall = 1e-3; }},
+       {"/energy/dampers/1/impact_loss", "a damper's loss that is not the sum over its impacts",
+        [](Run& run) { run.energy->dampers[1].impact_loss *= 1.01; }},
+       {"/energy/residual", "another loss in contacts that no impact began",
+        [](Run& run) { run.energy->contact_loss += 0.01; }}});
+  Run ended = run_of_several(Restitution{.budget = {.max_impacts = 20}});
+  CHECK(fields_of(inconsistencies_of(ended)) == "");
+  std::get<Restitution>(ended.engine).budget.max_impacts = 23;
+  CHECK(fields_of(inconsistencies_of(ended)).starts_with("/impacts/time"));
 }

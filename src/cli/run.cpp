@@ -159,8 +159,8 @@ int run_scene(Arguments& arguments) {
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments, scene_file);
   const bool several = !scene.dampers.empty();
-  if (several && !std::holds_alternative<Restitution>(engine))
-    arguments.reject("--engine", "must be restitution, as the scene has a list of dampers, got " +
+  if (several && std::holds_alternative<Exact>(engine))
+    arguments.reject("--engine", "must be restitution or cem, as the scene has a list of dampers, got " +
                                      std::string(name_of(engine)));
   const std::optional<std::string> file = arguments.file("--output");
   arguments.reject_overwriting("--output", file, {arguments.text("--scene").value_or("")});

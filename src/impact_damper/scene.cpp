@@ -53,7 +53,8 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
     problems.push_back(
-        {"dampers", "a list is for run with the restitution engine only: give one damper without a list"});
+        {"dampers",
+         "a list is for run with the restitution engine or cem only: give one damper without a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {

@@ -21,7 +21,8 @@ Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
 
 Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
   options = resolved(scene, options);
-  return run_cem<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_cem<double>(scene, options, recorder)
+                               : run_cem_dampers<double>(scene, options, recorder);
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {

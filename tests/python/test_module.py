@@ -234,13 +234,14 @@ class Module(unittest.TestCase):
 
     def test_several_dampers_are_numbered_from_1(self):
         scene = {"x0": 3, "until_time": 20, "dampers": [{"y0": 0.5}, {"mass_ratio": 0.01, "clearance": 0.3}]}
-        run = impact_damper.run(engine="restitution", history=(0, 5, 6), **scene)
-        file = json.loads(run.text())
-        for number in (1, 2):
-            for section, column in (("history", "y"), ("history", "w"), ("half_cycles", "impacts")):
-                self.assertEqual(list(getattr(run, section)["dampers"][str(number)][column]),
-                                 file[section]["dampers"][number - 1][column])
-        self.assertEqual(set(run.impacts["damper"]), {1, 2})
+        for engine in ("restitution", "cem"):
+            run = impact_damper.run(engine=engine, history=(0, 5, 6), **scene)
+            file = json.loads(run.text())
+            for number in (1, 2):
+                for section, column in (("history", "y"), ("history", "w"), ("half_cycles", "impacts")):
+                    self.assertEqual(list(getattr(run, section)["dampers"][str(number)][column]),
+                                     file[section]["dampers"][number - 1][column])
+            self.assertEqual(set(run.impacts["damper"]), {1, 2})
         with self.assertRaisesRegex(ValueError, "several dampers are for the restitution engine"):
             impact_damper.run(**scene)
 

@@ -18,16 +18,14 @@ namespace impact_damper {
 //   impacts: each row has as many as its count says, all within it, with the phases that follow from its
 //     crossings and with its amplitude; the relative velocity is towards the wall that is struck;
 //   contacts: those of one damper do not overlap; with compliant walls each begins with an impact, except one
-//   that begins
-//     at the release; with rigid walls no impact of the damper lies within one;
+//     of each damper that begins at the release; with rigid walls no impact of the damper lies within one;
 //   history: x changes its sign only where a zero crossing is recorded and is zero in a sample there; |x|
 //     does not exceed the amplitude of its half cycle;
 //   energy: the energies at the release and at the end are those of the states there; an impact on a rigid
 //     wall loses what its speed implies; the recorded residual is that of the recorded terms;
-//   several dampers: counts, losses and bounce-downs are the
-//   sums
-//     over all dampers, and those of a damper the sums over its impacts; each secondary mass lies between its
-//     walls, and its kinetic energy is that of its state.
+//   several dampers: counts, losses and bounce-downs are the sums over all dampers, and those of a damper the
+//     sums over its impacts; each secondary mass lies between its walls if they are rigid, and its kinetic
+//     energy is that of its state.
 std::vector<Problem> inconsistencies_of(const Run& run);
 
 }  // namespace impact_damper

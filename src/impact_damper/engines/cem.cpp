@@ -21,7 +21,10 @@ std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
 
 Cem resolved(const Scene& scene, Cem options) {
   if (!options.time_step) {
-    double half_period = std::min(nominal_contact_time(scene), std::numbers::pi);
+    double half_period = std::numbers::pi;
+    for (const SceneDamper& damper : scene.dampers)
+      half_period = std::min(half_period, nominal_contact_time(with_alone(scene, damper)));
+    if (scene.dampers.empty()) half_period = std::min(half_period, nominal_contact_time(scene));
     if (scene.force_amplitude != 0)
       half_period = std::min(half_period, std::numbers::pi / scene.force_frequency);
     options.time_step = half_period / 100;
@@ -32,6 +35,9 @@ Cem resolved(const Scene& scene, Cem options) {
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
   std::vector<Problem> problems = problems_of(options);
   if (!problems.empty()) return problems;
+  if (options.stuck_speed && !scene.dampers.empty())
+    problems.push_back(
+        {"stuck_speed", "is for one damper: the masses of a list stick by pressing their walls"});
   const double h = options.time_step.value();
   const double limit = stability_limit(scene, options.damper, options.calibration);
   if (!(h <= limit || options.unstable)) {

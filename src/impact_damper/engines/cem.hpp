@@ -49,17 +49,23 @@
 namespace impact_damper {
 
 // The options with the step filled in if absent: a hundredth of the nominal contact time, or of half a
-// period of the primary mass or of the forcing where that is shorter.
+// period of the primary mass or of the forcing where that is shorter; of a list, of the stiffest wall.
 Cem resolved(const Scene& scene, Cem options);
 
-// What is wrong with the (resolved) options: each by itself (engine.hpp), then, if nothing, a step beyond the
-// stability limit without `unstable`; a large step that is no larger, beyond the limit in flight, or longer
-// than half a period of the forcing. Empty if nothing.
+// What is wrong with the (resolved) options: each by itself (engine.hpp), then, if nothing, a stuck speed
+// beside a list of dampers; a step beyond the stability limit without `unstable`; a large step that is no
+// larger, beyond the limit in flight, or longer than half a period of the forcing. Empty if nothing.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 
 [[noreturn]] void fail_of_overflow(double time, double step);
 // Rounded up, 1 at least and 1e15 at most.
 std::int64_t whole_steps(double steps);
+// The largest whole multiple of h that is at most `step`, where that is told.
+template <class Real>
+Real multiple_of(const Real& h, const Real& step) {
+  const Real steps = step / h;
+  return steps < 1e15 ? Real(std::int64_t(steps)) * h : step;
+}
 
 // The parabola through three successive steps of one coordinate, about the middle one.
 template <class Real>
@@ -81,6 +87,30 @@ struct Arc {
   // it.
   Real extremum(const Real& from, const Real& to) const {
     return bend == 0 || !(from < to) ? from : std::clamp(-slope / bend, from, to);
+  }
+};
+
+// The scheme's v_n from the motion's own velocity V of x, and back (cem_rates.hpp).
+template <class Real>
+struct OwnVelocity {
+  Real zeta;
+  Forcing<Real> force;
+  Real stiffness;  // divided by the mass that moves
+
+  Real to_scheme(const Real& x, const Real& own, const Real& time, const Real& h) const {
+    return turn(h) * own + lag(x, own, time, h);
+  }
+  Real from_scheme(const Real& x, const Real& v, const Real& time, const Real& h) const {
+    return (v - lag(x, v, time, h)) / turn(h);
+  }
+
+ private:
+  Real turn(const Real& h) const { return square_root(1 - stiffness * h * h / 4); }
+  Real lag(const Real& x, const Real& v, const Real& time, const Real& h) const {
+    if (!force && zeta == 0) return 0;
+    const Real& b = stiffness;
+    const Real bend = b * (value_of(force, time) - 2 * zeta * v - x);
+    return b * h * h / 6 * (rate_of(force, time) - 2 * zeta * bend);
   }
 };
 
@@ -156,19 +186,16 @@ class CemEngine {
   State<Real> of_scheme(State<Real> s, const Real& time, const Real& h) const;
   State<Real> flown(const Real& x, const Real& y, const Real& middle_v, const Real& middle_w,
                     const Real& time, const Real& h) const;
-  Real turn(const Real& h) const;
-  Real lag(const Real& x, const Real& v, const Real& time, const Real& h) const;
+  OwnVelocity<Real> own_velocity() const {
+    return {flight_.zeta, force_, wall_ ? 1 / (1 + flight_.nu) : Real(1)};
+  }
   State<Real> motion_at(const Real& at) const;
 
-  Real multiple_of_h(const Real& step) const {  // rounded down
-    const Real steps = step / small_.h;
-    return steps < 1e15 ? Real(std::int64_t(steps)) * small_.h : step;
-  }
+  Real multiple_of_h(const Real& step) const { return multiple_of(small_.h, step); }
   Pace<Real> pace_of(const Real& h) const {
     return {h, cem_step(flight_, damper_, h), cem_step(contact_, damper_, h),
             cem_step_stuck(flight_.nu, flight_.zeta, h)};
   }
-  Real stiffness() const { return wall_ ? 1 / (1 + flight_.nu) : Real(1); }
 
   Real push() const { return wall_ == Wall::left ? Real(1) : Real(-1); }  // of the wall on the mass
   Real origin_of_q() const { return wall_ == Wall::right ? Real(1) : Real(0); }
@@ -191,13 +218,8 @@ class CemEngine {
   }
   static Real sign(const Real& value) { return Real((value > 0) - (value < 0)); }
   const RegimeEquations<Real>& equations() const { return wall_ ? contact_ : flight_; }
-  Real forcing(const Real& time) const {
-    return forced_ ? force_.amplitude * sin_cos(Real(force_.frequency * time)).sin : Real(0);
-  }
-  Real forcing_rate(const Real& time) const {
-    return forced_ ? force_.amplitude * force_.frequency * sin_cos(Real(force_.frequency * time)).cos
-                   : Real(0);
-  }
+  Real forcing(const Real& time) const { return value_of(force_, time); }
+  Real forcing_rate(const Real& time) const { return rate_of(force_, time); }
 
   Energy energy(const State<Real>& state);
   void add_powers(const Real& weight, const Real& time, const State<Real>& state);
@@ -239,10 +261,7 @@ class CemEngine {
   Real row_begin_ = 0, peak_ = 0, peak_time_ = 0;
   std::int64_t impacts_ = 0, rows_ = 0;
 
-  // The force at the next step, f_n, and its recurrence: f_{n+1} = f_n + df, df += -curb f_{n+1}.
-  struct ForceAtSteps {
-    Real f = 0, df = 0, curb = 0;
-  } force_at_steps_;
+  ForceAtSteps<Real> force_at_steps_;
   // Over steps not yet in the works below, of (2 h v)^2, (2 h w)^2 and f (2 h v), v and w centred.
   struct Sums {
     Real vv = 0, ww = 0, fv = 0;

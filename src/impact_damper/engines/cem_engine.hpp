@@ -146,25 +146,19 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   const bool centred = damper_ == Damper::centred;
   Moment now = now_, before = now_;
 
-  // At every 1024th step of a segment, before rounding can add up: the force,
-  // f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n, is computed afresh, and the sums are added up.
+  // At every 1024th step of a segment the force is computed afresh, and the sums are added up.
   if constexpr (forced || balance) {
-    constexpr std::int64_t block = 1024;
+    constexpr std::int64_t block = ForceAtSteps<Real>::block;
     const std::int64_t in_block = step_ % block;
     most = std::min(most, block - in_block);
     if (in_block == 0) {
       if constexpr (balance) add_sums();
-      if constexpr (forced) {
-        const Real half = force_.frequency * pace_.h / 2, time = origin_ + Real(step_) * pace_.h;
-        const Real sin_half = sin_cos(half).sin;
-        force_at_steps_ = {
-            forcing(time),
-            2 * force_.amplitude * sin_half * sin_cos(Real(force_.frequency * time + half)).cos,
-            4 * sin_half * sin_half};
-      }
+      if constexpr (forced)
+        force_at_steps_ = ForceAtSteps<Real>(force_, origin_ + Real(step_) * pace_.h, pace_.h);
     }
   }
-  auto [f, df, curb] = force_at_steps_;
+  ForceAtSteps<Real> force = force_at_steps_;
+  const Real& f = force.f;
   auto [sum_vv, sum_ww, sum_fv] = sums_;
 
   bool uneventful;
@@ -192,8 +186,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
       if constexpr (forced) sum_fv += f * v;
     }
     if constexpr (forced) {
-      f += df;
-      df -= curb * f;
+      force.advance();
     }
     ++n;
     if constexpr (regime == Regime::flight) {
@@ -211,7 +204,7 @@ void CemEngine<Real, Observer>::take_steps(std::int64_t most) {
   step_ += n;
   steps_left_ -= n;
   if (rates_) steps_at_pace_ -= n;
-  if constexpr (forced) force_at_steps_ = {f, df, curb};
+  if constexpr (forced) force_at_steps_ = force;
   if constexpr (balance) sums_ = {sum_vv, sum_ww, sum_fv};
 }
 

@@ -54,8 +54,8 @@ class Certificate {
  public:
   // `now`, with the acceleration x2 of the primary mass, in flight; `step` > 0, the longest, <= `horizon`.
   Certificate(const Real& zeta, const Forcing<Real>& force, const State<Real>& now, const Real& x2,
-              const Real& step, const Real& horizon)
-      : now_(now), x2_(x2) {
+              const Real& step, const Real& horizon, const Real& clearance = Real(1))
+      : now_(now), clearance_(clearance), x2_(x2) {
     const Real f0 = absolute(force.amplitude);
     const Real swing = square_root(now.x * now.x + now.v * now.v) + f0 * horizon;
     const Real bend = square_root(1 + 4 * zeta * zeta) * swing + f0;
@@ -71,13 +71,13 @@ class Certificate {
  private:
   // Below the distances from the walls.
   Arc<Real> left(const Real& s) const { return {now_.y, now_.w, -bend(x2_, s)}; }
-  Arc<Real> right(const Real& s) const { return {1 - now_.y, -now_.w, -bend(-x2_, s)}; }
+  Arc<Real> right(const Real& s) const { return {clearance_ - now_.y, -now_.w, -bend(-x2_, s)}; }
   Real bend(const Real& towards, const Real& s) const {
     return std::clamp(Real(towards + jerk_ * s / 3), Real(0), most_);
   }
 
   State<Real> now_;
-  Real x2_, jerk_, most_;
+  Real clearance_, x2_, jerk_, most_;
 };
 
 // The pace for what comes next, and for how many steps it is the right one.
@@ -160,7 +160,7 @@ void CemEngine<Real, Observer>::change_pace(const Pace<Real>& pace, const State<
 template <class Real, class Observer>
 State<Real> CemEngine<Real, Observer>::of_scheme(State<Real> s, const Real& time, const Real& h) const {
   const Real own = s.v;
-  s.v = turn(h) * own + lag(s.x, own, time, h);
+  s.v = own_velocity().to_scheme(s.x, own, time, h);
   if (!wall_) s.w += own - s.v;
   return s;
 }
@@ -170,21 +170,8 @@ template <class Real, class Observer>
 State<Real> CemEngine<Real, Observer>::flown(const Real& x, const Real& y, const Real& middle_v,
                                              const Real& middle_w, const Real& time, const Real& h) const {
   const Real v = (middle_v + h / 2 * (forcing(time) - x)) / (1 + h * flight_.zeta);
-  const Real own = (v - lag(x, v, time, h)) / turn(h);
+  const Real own = own_velocity().from_scheme(x, v, time, h);
   return {x, own, y, middle_v + middle_w - own};
-}
-
-template <class Real, class Observer>
-Real CemEngine<Real, Observer>::turn(const Real& h) const {
-  return square_root(1 - stiffness() * h * h / 4);
-}
-
-template <class Real, class Observer>
-Real CemEngine<Real, Observer>::lag(const Real& x, const Real& v, const Real& time, const Real& h) const {
-  const Real zeta = flight_.zeta;
-  if (!forced_ && zeta == 0) return 0;
-  const Real b = stiffness(), bend = b * (forcing(time) - 2 * zeta * v - x);
-  return b * h * h / 6 * (forcing_rate(time) - 2 * zeta * bend);
 }
 
 // The motion's own state within the last step: in flight, where that may be long, by a step that ends there.
@@ -195,11 +182,11 @@ State<Real> CemEngine<Real, Observer>::motion_at(const Real& at) const {
   const Real begin = last_step_begin(), time = begin + at;
   if (wall_) {
     s = refined(s, at);
-    s.v = (s.v - lag(s.x, s.v, time, pace_.h)) / turn(pace_.h);
+    s.v = own_velocity().from_scheme(s.x, s.v, time, pace_.h);
     return s;
   }
   s = state_at(Real(0));
-  const Real own = (s.v - lag(s.x, s.v, begin, pace_.h)) / turn(pace_.h);
+  const Real own = own_velocity().from_scheme(s.x, s.v, begin, pace_.h);
   s.w += s.v - own;
   s.v = own;
   s = of_scheme(s, begin, at);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace impact_damper {
 
@@ -11,9 +12,47 @@ double hypotenuse(double a, double b) {
   if (!(larger > 0 && larger < INFINITY)) return larger;
   return larger * std::sqrt(1 + smaller / larger * (smaller / larger));
 }
+
+// The largest h in (0, most) for which `semidefinite` holds, which ceases to do so once.
+template <class Semidefinite>
+double last_of(double most, Semidefinite&& semidefinite) {
+  double stable = 0, unstable = most;
+  if (semidefinite(unstable)) return unstable;
+  for (;;) {
+    const double middle = stable + (unstable - stable) / 2;
+    if (!(middle > stable && middle < unstable)) return stable;
+    (semidefinite(middle) ? stable : unstable) = middle;
+  }
+}
+
+// (M17.11)
+double stability_limit_of_list(const Scene& scene, Damper damper, Calibration calibration) {
+  std::vector<RegimeEquations<double>> walls;
+  for (const SceneDamper& each : scene.dampers)
+    walls.push_back(regime_equations<double>(with_alone(scene, each), calibration, Regime::contact));
+  return last_of(2, [&](double h) {
+    double all = 0;
+    for (const auto& [nu, zeta, c, omega_2] : walls) {
+      const double b = h * ((damper == Damper::lagged ? 2 * c : 0) + h * omega_2);
+      if (!(b < 4)) return false;
+      all += 4 * nu * b / (4 - b);
+    }
+    return all <= 4 - h * h;
+  });
+}
 }  // namespace
 
+Scene with_alone(const Scene& scene, const SceneDamper& damper) {
+  Scene alone;
+  alone.mass_ratio = damper.mass_ratio;
+  alone.restitution = damper.restitution;
+  alone.damping_ratio = scene.damping_ratio;
+  alone.wall_stiffness = damper.wall_stiffness;
+  return alone;
+}
+
 double fastest_contact_frequency(const Scene& scene) {
+  if (!scene.dampers.empty()) return 2 / stability_limit_of_list(scene, Damper::centred, {});
   const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;
   // (1 + K (1 + nu))^2 - 4 K as a sum of squares: no cancellation for heavy or light secondary masses.
   const double difference = hypotenuse(1 - k_by_nu * (1 - nu), 2 * k_by_nu * std::sqrt(nu));
@@ -21,6 +60,7 @@ double fastest_contact_frequency(const Scene& scene) {
 }
 
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration) {
+  if (!scene.dampers.empty()) return stability_limit_of_list(scene, damper, calibration);
   const double centred = 2 / fastest_contact_frequency(scene);
   if (damper == Damper::centred) return centred;
 
@@ -32,13 +72,7 @@ double stability_limit(const Scene& scene, Damper damper, Calibration calibratio
     const double primary = 4 - h * h - nu * wall, secondary = 4 - wall;
     return primary >= 0 && secondary >= 0 && primary * secondary >= nu * wall * wall;
   };
-  double stable = 0, unstable = centred;
-  if (semidefinite(unstable)) return unstable;
-  for (;;) {
-    const double middle = stable + (unstable - stable) / 2;
-    if (!(middle > stable && middle < unstable)) return stable;
-    (semidefinite(middle) ? stable : unstable) = middle;
-  }
+  return last_of(centred, semidefinite);
 }
 
 }  // namespace impact_damper

@@ -12,8 +12,11 @@
 // h < 1/zeta would have nothing to do with the wall.
 #pragma once
 
+#include <cstdint>
+
 #include "impact_damper/engine.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/motion/forcing.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/scene.hpp"
 
@@ -97,7 +100,43 @@ struct Pace {
   CemStep<Real> flight{}, contact{}, stuck{};
 };
 
-// The frequency of the fastest undamped mode in contact (M9.3); larger than 1 and sqrt(k/nu).
+template <class Real>
+Real value_of(const Forcing<Real>& force, const Real& time) {
+  return force ? force.amplitude * sin_cos(Real(force.frequency * time)).sin : Real(0);
+}
+template <class Real>
+Real rate_of(const Forcing<Real>& force, const Real& time) {
+  return force ? force.amplitude * force.frequency * sin_cos(Real(force.frequency * time)).cos : Real(0);
+}
+
+// The force at the next step, f_n, by f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n; computed afresh
+// at every 1024th step, before rounding can add up.
+template <class Real>
+struct ForceAtSteps {
+  static constexpr std::int64_t block = 1024;
+
+  ForceAtSteps() = default;
+  // With the next step at that time.
+  ForceAtSteps(const Forcing<Real>& force, const Real& time, const Real& h) {
+    const Real half = force.frequency * h / 2;
+    const Real sin_half = sin_cos(half).sin;
+    f = value_of(force, time);
+    df = 2 * force.amplitude * sin_half * sin_cos(Real(force.frequency * time + half)).cos;
+    curb = 4 * sin_half * sin_half;
+  }
+  void advance() {
+    f += df;
+    df -= curb * f;
+  }
+
+  Real f = 0, df = 0, curb = 0;
+};
+
+// The scene's primary mass with one of its list of dampers alone: all that a wall's equations need.
+Scene with_alone(const Scene& scene, const SceneDamper& damper);
+
+// The frequency of the fastest undamped mode in contact (M9.3), of a list with all its masses in contact;
+// larger than 1 and sqrt(k/nu).
 double fastest_contact_frequency(const Scene& scene);
 
 // The largest step at which no mode grows, in flight or in contact.
@@ -108,7 +147,8 @@ double fastest_contact_frequency(const Scene& scene);
 //     centred: C'' = 0, h = 2 / omega with omega the fastest contact frequency, whatever the damping.
 //     lagged:  the determinant's first root; for a free primary mass it is
 //              2 (sqrt(1 + z^2) - z) / omega_c, z = zeta_m sqrt(1 + nu), omega_c = omega_m sqrt(1 + nu).
-// The limit in flight is 2 and never the lower one, for omega > 1.
+// The limit in flight is 2 and never the lower one, for omega > 1. Of a list it is that of all masses in
+// contact (M17.11): fewer in contact have a higher one.
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration);
 
 }  // namespace impact_damper

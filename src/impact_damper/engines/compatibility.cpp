@@ -9,20 +9,19 @@ namespace impact_damper {
 std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engine) {
   std::vector<Problem> problems;
   if (!scene.dampers.empty()) {
-    if (!std::holds_alternative<Restitution>(engine))
-      problems.push_back({"dampers", "several dampers are for the restitution engine, not for " +
+    if (std::holds_alternative<Exact>(engine))
+      problems.push_back({"dampers", "several dampers are for the restitution engine and cem, not for " +
                                          std::string(name_of(engine))});
-    for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    for (std::size_t i = 0; has_rigid_walls(engine) && i < scene.dampers.size(); ++i) {
       const SceneDamper& damper = scene.dampers[i];
       if (within(0, damper.clearance).allows(damper.y0)) continue;
       problems.push_back({"dampers[" + std::to_string(i) + "].y0",
                           within(0, damper.clearance).describe("must be") +
                               ", its clearance, as walls are rigid, got " + number_text(damper.y0)});
     }
-    return problems;
   }
   if (const Cem* const cem = std::get_if<Cem>(&engine)) problems = problems_of(scene, resolved(scene, *cem));
-  if (has_rigid_walls(engine) && !within(0, 1).allows(scene.y0)) {
+  if (scene.dampers.empty() && has_rigid_walls(engine) && !within(0, 1).allows(scene.y0)) {
     problems.push_back({"y0", within(0, 1).describe("must be") + " with the " + std::string(name_of(engine)) +
                                   " engine, whose walls are rigid, got " + number_text(scene.y0)});
   }

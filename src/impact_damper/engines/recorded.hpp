@@ -3,6 +3,7 @@
 #pragma once
 
 #include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/cem_dampers.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
@@ -19,5 +20,6 @@ extern template Outcome run_restitution(const FreeSystem&, const Scene&, const R
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_cem<double>(const Scene&, const Cem&, Recorder&);
+extern template Outcome run_cem_dampers<double>(const Scene&, const Cem&, Recorder&);
 
 }  // namespace impact_damper

@@ -11,13 +11,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/damper_order.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/math/scalar.hpp"
@@ -27,19 +26,11 @@
 
 namespace impact_damper {
 
-// The secondary masses: number by number in arrays, which the processor moves two at a time. They are in an
-// order of their own (sorted), so that renumbering a scene's dampers changes no bit of any sum.
+// The secondary masses: number by number in arrays, which the processor moves two at a time, and in the order
+// of damper_order.hpp.
 template <class Real>
 struct SecondaryMasses {
-  explicit SecondaryMasses(std::span<const SceneDamper> dampers) : number(dampers.size()) {
-    std::iota(number.begin(), number.end(), 0);
-    std::sort(number.begin(), number.end(), [&](std::int32_t one, std::int32_t other) {
-      const auto key = [&](std::int32_t i) {
-        const SceneDamper& d = dampers[i];
-        return std::tuple(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, i);
-      };
-      return key(one) < key(other);
-    });
+  explicit SecondaryMasses(std::span<const SceneDamper> dampers) : number(damper_order(dampers)) {
     for (const std::int32_t i : number) {
       const SceneDamper& d = dampers[i];
       const bool right = Real(d.y0) > Real(d.clearance) / 2;
