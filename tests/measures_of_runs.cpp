@@ -61,8 +61,8 @@ void add_stuck(Run& run, std::size_t row, double from, double to) {
   run.contacts->wall.push_back(Wall::left);
 }
 
-double measured(const std::string& name, std::map<std::string, double> numbers,
-                const std::vector<Run>& scenes) {
+Spread spread_measured(const std::string& name, std::map<std::string, double> numbers,
+                       const std::vector<Run>& scenes) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("impact-damper-measures-of-runs-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -74,6 +74,11 @@ double measured(const std::string& name, std::map<std::string, double> numbers,
   Runs runs(folder, {.members = 1});
   const Spread spread = measure(runs, call);
   std::filesystem::remove_all(folder);
+  return spread;
+}
+double measured(const std::string& name, std::map<std::string, double> numbers,
+                const std::vector<Run>& scenes) {
+  const Spread spread = spread_measured(name, std::move(numbers), scenes);
   // Of one release there is no spread.
   CHECK((spread.low == spread.median || std::isnan(spread.median)));
   CHECK((spread.high == spread.median || std::isnan(spread.median)));
@@ -409,4 +414,40 @@ TEST_CASE("the paper's stuck regime saves the steps that a run to the same ampli
   const auto with = static_cast<double>(without) * (1 - share / 100);
   CHECK(ends(speed, std::int64_t(1.001 * with)) == StopReason::amplitude);
   CHECK(ends(speed, std::int64_t(0.985 * with)) == StopReason::step_budget);
+}
+
+TEST_CASE("measures of several dampers are what they are for decays of known loss factors") {
+  // eta = 0.02 above A = 1, 0.08 below it, from 6 down to 0.02.
+  const auto two_slopes = [](int i) {
+    const double above = std::log(6.0) / (0.02 * pi / 2);
+    return i <= above ? 6 * std::exp(-0.02 * i * pi / 2) : std::exp(-0.08 * (i - above) * pi / 2);
+  };
+  const Run run = decay(88, two_slopes);
+  const std::map<std::string, double> all{{"from", 0.1}, {"to", 5}};
+  CHECK(measured("loss_ratio", all, {run}) == doctest::Approx(4));
+  CHECK(measured("loss_variation_percent", all, {run}) == doctest::Approx(60));
+  // Constant to a tenth: above 1 to 5 and from 1 down to 0.1, ten times, but for the bin in which 1 lies.
+  CHECK(measured("alike_range", {{"from", 0.1}, {"to", 5}, {"within", 0.1}}, {run}) ==
+        doctest::Approx(10).epsilon(0.25));
+  CHECK(measured("alike_range", {{"from", 0.1}, {"to", 5}, {"within", 0.7}}, {run}) == doctest::Approx(50));
+
+  // 0.03 together; alone eta = 0.01 with nu = 0.02, so that dampers of 0.02 and 0.02 should lose 0.02.
+  Scene scene;
+  scene.until_time = 0.1;
+  scene.dampers = {{.mass_ratio = 0.02, .clearance = 1}, {.mass_ratio = 0.02, .clearance = 3}};
+  Run set = simulate(scene, Restitution{}, Record{});
+  set.half_cycles = decay(300, [](int i) { return 6 * std::exp(-0.03 * i * pi / 2); }).half_cycles;
+  set.end_time = *(set.scene.until_time = 300 * pi);
+  set.half_cycles->impacts_by_damper = {set.half_cycles->impacts, set.half_cycles->impacts};
+  Run alone = decay(800, [](int i) { return 7 * std::exp(-0.01 * i * pi / 2); });
+  alone.scene.mass_ratio = 0.02;
+  alone.scene.until_amplitude = 0.01;
+  // All bins alike.
+  const Spread excess = spread_measured("from_sum", all, {set, alone});
+  CHECK(excess.low == doctest::Approx(0.5));
+  CHECK(excess.median == doctest::Approx(0.5));
+  CHECK(excess.high == doctest::Approx(0.5));
+  // One damper's measure is not taken of a list, nor this of one damper.
+  CHECK_THROWS_AS(measured("largest_loss", {}, {set}), std::invalid_argument);
+  CHECK_THROWS_AS(measured("from_sum", all, {alone, alone}), std::invalid_argument);
 }

@@ -1089,4 +1089,76 @@ TEST_CASE("the table of design charts has the mean of the releases, down to wher
                        doctest::Contains("figure H: charts.csv: must be dimensionless"), InputError);
 }
 
+TEST_CASE("several dampers are drawn by their mass, beside the sum of what each does alone") {
+  // eta down to 5 / sqrt(10), where the seventh of twelve bins begins, and twice as much below. 0.02 of two
+  // releases and 0.06 of a third: the mean of the times is that of 0.18/7. Alone 0.01 with nu = 0.02.
+  const double kink = 5 / std::sqrt(10), wide = std::pow(10, 0.25);
+  const auto decay = [&](double eta, const std::vector<SceneDamper>& dampers) {
+    Run run = exponential_decay(0, 800);
+    const int above = static_cast<int>(std::ceil(std::log(6 / kink) / (eta * pi / 2)));
+    for (int i = 0; i < 800; ++i)
+      run.half_cycles->amplitude[std::size_t(i)] =
+          kink * std::exp(-eta * (i - above) * (i < above ? 1 : 2) * pi / 2);
+    run.engine = Restitution{};
+    run.scene.damping_ratio = 0;
+    run.scene.dampers = dampers;
+    return run;
+  };
+  const std::vector<SceneDamper> dampers{{.mass_ratio = 0.01, .clearance = wide},
+                                         {.mass_ratio = 0.03, .clearance = 1}};
+  Run alone = decay(0.01, {});
+  alone.scene.mass_ratio = 0.02;
+  alone.scene.until_amplitude = 0.02;
+  FigureRuns runs{{"set", {"set.json", decay(0.02, dampers), {decay(0.06, dampers), decay(0.02, dampers)}}},
+                  {"one", {"one.json", alone, {alone}}}};
+  Figure figure;
+  figure.number = "F";
+  figure.table = TableKind::damper_sets;
+  figure.range = {0.5, 5};
+  figure.curves.resize(1);
+  figure.curves[0].run = "set";
+  figure.curves[0].alone = "one";
+  const Table table = figure_table(figure, runs);
+  REQUIRE(table.blocks.size() == 3);
+  const TableBlock &set = block(table, "set-1"), &sum = block(table, "sum-1"),
+                   &list = block(table, "dampers-1");
+  REQUIRE(set.columns.size() == 4);
+  REQUIRE(set.columns[0].values.size() == 12);
+  REQUIRE(sum.columns[0].values.size() == 12);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const double amplitude = 5 * std::pow(10, -(double(i) + 0.5) / 12), more = i < 6 ? 1 : 2;
+    CHECK(set.columns[0].values[i] == doctest::Approx(amplitude));
+    CHECK(set.columns[1].values[i] == doctest::Approx(more * 3 / (2 / 0.02 + 1 / 0.06) / 0.04));
+    CHECK(set.columns[2].values[i] == doctest::Approx(more * 0.5));
+    CHECK(set.columns[3].values[i] == doctest::Approx(more * 1.5));
+    CHECK(sum.columns[0].values[i] == doctest::Approx(amplitude));
+    // The wide one is below its kink from the fourth bin on. Next to the kinks the steps of what is known of
+    // one alone do not end where the bins do.
+    const bool at_kink = i == 2 || i == 3 || i == 5 || i == 6;
+    CHECK(sum.columns[1].values[i] == doctest::Approx(i < 3   ? 0.5
+                                                      : i < 6 ? 0.625
+                                                              : 1)
+                                          .epsilon(at_kink ? 0.15 : 1e-9));
+  }
+  CHECK(list.columns[0].values == std::vector<double>{wide, 1});
+  CHECK(list.columns[1].values[0] == doctest::Approx(0.25));
+  CHECK(list.columns[1].values[1] == doctest::Approx(0.75));
+  CHECK(set.columns[1].heading == "2 dampers");
+
+  const auto rejected = [&](auto change, const std::string& why) {
+    FigureRuns changed = runs;
+    change(changed);
+    CHECK(rejection(figure, changed).find(why) != std::string::npos);
+  };
+  rejected([](FigureRuns& all) { all["set"].run.scene.dampers.clear(); },
+           "set.json: must be of a scene with a list");
+  rejected([&](FigureRuns& all) { all["one"].run.scene.dampers = dampers; },
+           "one.json: must be of a single damper");
+  rejected([](FigureRuns& all) { all["one"].run.scene.until_amplitude.reset(); },
+           "one.json: must stop at an amplitude");
+  rejected([](FigureRuns& all) { all["one"].run.scene.restitution = 0.5; },
+           "one.json: must have the restitution");
+  rejected([](FigureRuns& all) { all["set"].run.half_cycles.reset(); }, "set.json: holds no half_cycles");
+}
+
 }  // namespace impact_damper

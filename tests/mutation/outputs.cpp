@@ -103,7 +103,15 @@ void list_tables(const std::filesystem::path& source) {
   }
   for (Figure figure : catalogue.figures) {
     if (figure.table == TableKind::drawing) continue;
+    for (const std::string& name : runs_of(figure)) {
+      const CatalogueRun& drawn = *find_run(catalogue.runs, name);
+      const auto file = source / "data/scenes" / (drawn.scene + ".json");
+      const Scene scene = changed_scene(drawn, read_scene(file, DamperList::allowed));
+      const std::vector<Run> releases = simulate_ensemble(scene, *drawn.engine, drawn.record, {.members = 2});
+      runs[name] = {file, releases[0], {releases[1]}};
+    }
     for (FigureCurve& curve : figure.curves) {
+      if (curve.scene.empty()) continue;
       curve.ensemble = std::min<std::int64_t>(curve.ensemble, 2);
       FigureRun& drawn = runs.at(curve.scene);
       if (curve.ensemble == 2 && drawn.others.empty())
