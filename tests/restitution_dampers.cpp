@@ -250,6 +250,36 @@ TEST_CASE("sticking masses count to the primary mass, and leave together") {
   CHECK(std::abs(run.energy->residual) < 1e-14);
 }
 
+TEST_CASE("of masses that bounce together none is left behind to bounce for ever") {
+  // At t = 3.38 eight of these chatter on one wall, of which six and seven, but not eight, can join at once.
+  Scene scene;
+  scene.x0 = 1;
+  scene.until_time = 3.4;
+  const double numbers[][3] = {{0.0009760000000000001, 0.5519604290848342, 1.1760412681610501},
+                               {0.0017000000000000001, 0.6725785929029169, 0.8670030363656981},
+                               {0.00049, 0.6781366644382792, 0.668568339180735},
+                               {0.000738, 0.5631642179114158, 0.5629047848367928},
+                               {0.000844, 0.647865797906189, 0.42024820709722255},
+                               {0.0008260000000000001, 0.5772667436655944, 0.3463625126693932},
+                               {0.000722, 0.696065655425152, 0.2668982413599258},
+                               {0.000802, 0.6503643520317268, 0.21480530489251362},
+                               {0.00118, 0.5007035783279944, 0.16526297672595447},
+                               {0.0007620000000000001, 0.6450170331025704, 0.13654707643129765},
+                               {0.0008780000000000001, 0.6691248275219867, 0.1046596739041376},
+                               {0.0007720000000000001, 0.6068733148788801, 0.08283581679942986},
+                               {0.000928, 0.556553327264536, 0.06188953455494517},
+                               {0.001196, 0.5578582117461958, 0.04586664808907617},
+                               {0.0005920000000000001, 0.5770862414949032, 0.03798021654428534},
+                               {0.001018, 0.5407613934192218, 0.03243154497875873},
+                               {0.000786, 0.500600734182527, 0.023701987310484878},
+                               {0.00117, 0.6721063148696672, 0.018828340261876866},
+                               {0.00362, 0.6195497627328963, 0.014725460798971968}};
+  for (const auto& [mass_ratio, restitution, clearance] : numbers)
+    scene.dampers.push_back({.mass_ratio = mass_ratio, .restitution = restitution, .clearance = clearance});
+  const Run run = simulate(scene, Restitution{}, Record{});
+  CHECK(run.stop_reason == StopReason::time);
+}
+
 TEST_CASE("half cycles of many dampers take no more memory than those of one may") {
   Scene scene;
   scene.until_time = 1;

@@ -170,10 +170,6 @@ int design_dampers(Arguments& arguments) {
   const auto output = arguments.file("--output");
   arguments.reject_overwriting("--output", output, {arguments.text("--scene").value_or("")});
   reject_csv_name(arguments, output, "the scene as JSON");
-  if (!has_linear_programmes())
-    arguments.reject(
-        "--dampers",
-        "needs the library Clp (Debian: coinor-libclp-dev), which was not there when the program was built");
   arguments.finish();
   if (const auto problems = problems_of(asked.question); !problems.empty()) reject_question(problems);
   if (output) {

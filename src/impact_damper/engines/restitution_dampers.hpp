@@ -384,16 +384,13 @@ class RestitutionOfDampers {
              !ends_soon(each.lasts);
     });
     // As many as can, those that are over first: what bounces longer, or meets its wall meanwhile, bounces
-    // on.
+    // on. Each number of them is tried: one that is left out, though it could join, would bounce for ever.
     std::sort(chattering_.begin(), chattering_.end(), [](const Chattering& one, const Chattering& other) {
       return one.lasts < other.lasts || (one.lasts == other.lasts && one.index < other.index);
     });
-    Joining joining = joining_now();
-    while (joining.bounces && !limit_holds(joining, a, ends_soon)) {
-      chattering_.resize(chattering_.size() - (1 + chattering_.size() / 8));
-      joining = joining_now();
-    }
-    if (!joining.bounces) return false;
+    const std::optional<Joining> found = most_that_join(a, ends_soon);
+    if (!found) return false;
+    const Joining& joining = *found;
     const Real gained = joining.momentum / (mass_ + joining.mass);
 
     const bool alone = chattering_.size() == 1 && !some_rest_;
@@ -428,42 +425,64 @@ class RestitutionOfDampers {
     Real moves;  // by how much x at most
     Real lasts;
   };
-  // What all of chattering_ amount to.
+  // What the first of chattering_ amount to.
   struct Joining {
     bool bounces = false;  // not all rest
     Real mass{0}, momentum{0}, kick{0}, moves{0}, duration{0};
   };
-  Joining joining_now() const {
-    Joining all;
+  // Leaves in chattering_ as many of its first as can join, of whom one at least bounces.
+  template <class EndsSoon>
+  std::optional<Joining> most_that_join(const Real& a, EndsSoon&& ends_soon) {
+    joining_.assign(1, {});
     for (const Chattering& each : chattering_) {
       const std::size_t i = each.index;
+      Joining all = joining_.back();
       all.bounces = all.bounces || !masses_.rests(i);
       all.mass += masses_.nu[i];
       all.momentum += masses_.nu[i] * masses_.w(i);
       all.kick += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
       all.moves += each.moves;
       all.duration += each.lasts;
+      joining_.push_back(all);
     }
-    return all;
+    std::optional<Real> others_meet;  // a wall, not before this time: who is left out
+    for (std::size_t count = chattering_.size(); count > 0 && joining_[count].bounces; --count) {
+      const Joining& all = joining_[count];
+      if (limit_holds(all, a, ends_soon)) {
+        if (!others_meet) others_meet = first_meeting(2 * joining_.back().duration, count);
+        if (*others_meet >= 2 * all.duration) {
+          chattering_.resize(count);
+          return all;
+        }
+      }
+      // From now on this one is left out, too.
+      if (others_meet && bounds_[chattering_[count - 1].index] < *others_meet)
+        others_meet = bounds_[chattering_[count - 1].index];
+    }
+    return std::nullopt;
   }
-  // (M17.5)
+  // (M17.5) but for those who are left out.
   template <class EndsSoon>
-  bool limit_holds(const Joining& all, const Real& a, EndsSoon&& ends_soon) {
+  bool limit_holds(const Joining& all, const Real& a, EndsSoon&& ends_soon) const {
     const Real epsilon = std::numeric_limits<Real>::epsilon();
     const Real speed = absolute(v_ + all.momentum / (mass_ + all.mass));
     if (!(8 * all.moves <= epsilon * (absolute(x_) + speed * all.duration)) || !ends_soon(all.duration))
       return false;
     const bool may_turn = speed <= all.kick / mass_ + a * all.duration;
-    if (may_turn && !(2 * all.duration <= epsilon * tracker_.now())) return false;
-    return others_fly_on(2 * all.duration);
+    return !may_turn || 2 * all.duration <= epsilon * tracker_.now();
   }
   Real loses(std::size_t i) const { return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]); }
-  // Whether none of the masses that do not chatter can meet a wall within that time (M17.8).
-  bool others_fly_on(const Real& duration) {
+  // Before which time, `until` at most, nobody but the first of chattering_ can meet a wall (M17.8).
+  Real first_meeting(const Real& until, std::size_t first) {
     const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
-    find_lower_bounds(motion.bound(2, duration), duration);
-    for (const Chattering& each : chattering_) bounds_[each.index] = std::numeric_limits<Real>::infinity();
-    return std::all_of(bounds_.begin(), bounds_.end(), [&](const Real& bound) { return bound >= duration; });
+    const Real span = until < tracker_.search().span ? until : tracker_.search().span;
+    find_lower_bounds(motion.bound(2, span), span);
+    std::vector<Real>& bounds = others_bounds_;
+    bounds = bounds_;
+    for (std::size_t k = 0; k < first; ++k)
+      bounds[chattering_[k].index] = std::numeric_limits<Real>::infinity();
+    const Real least = *std::min_element(bounds.begin(), bounds.end());
+    return least < span ? least : span;
   }
 
   double kinetic(std::size_t i) const {
@@ -498,6 +517,8 @@ class RestitutionOfDampers {
   std::vector<Meeting> meeting_;
   std::vector<MassAtWall<Real>> at_walls_, told_;
   std::vector<Chattering> chattering_;
+  std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them
+  std::vector<Real> others_bounds_;
 };
 
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with and in which each secondary

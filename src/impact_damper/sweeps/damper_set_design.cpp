@@ -17,10 +17,6 @@
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/sweeps/sampling.hpp"
 
-#ifdef IMPACT_DAMPER_CLP
-#include <Clp_C_Interface.h>
-#endif
-
 namespace impact_damper {
 namespace {
 
@@ -35,7 +31,7 @@ struct Known {
 
 Engine engine_of_sets() {
   Restitution engine;
-  engine.budget.max_impacts = 50'000'000;
+  engine.budget.max_impacts = 10'000'000;
   return engine;
 }
 
@@ -44,7 +40,7 @@ LossAlone measured_alone(double mass_ratio, double restitution, double from, con
   scene.mass_ratio = mass_ratio;
   scene.restitution = restitution;
   scene.x0 = from;
-  scene.until_amplitude = fold_amplitude(restitution) / 2;
+  scene.until_amplitude = fold_amplitude(restitution) / 30;  // below its fold a mass still rattles
   scene.until_time = 4e5;
   return loss_alone(simulate_ensemble(scene, engine_of_sets(), Record{}, {.members = 4, .threads = threads}));
 }
@@ -134,17 +130,19 @@ std::vector<Run> runs_of(const DamperSetQuestion& question, const std::vector<Sc
                            {.members = set_releases, .threads = threads});
 }
 
-// Sets whose dampers are each off at random.
+// Sets that are off at random: each clearance by itself, the restitution, which is the material's, of all
+// alike.
 std::vector<Run> varied_runs(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
                              const Threads& threads) {
   std::vector<Scene> scenes;
   for (std::int64_t draw = 0; draw < set_draws; ++draw) {
     std::vector<SceneDamper> off = dampers;
+    const auto random = [&](std::size_t variable) {
+      return 2 * uniform_draw({1, std::uint32_t(variable), draw}) - 1;
+    };
     for (std::size_t j = 0; j < off.size(); ++j) {
-      off[j].clearance *=
-          1 + question.clearance_off * (2 * uniform_draw({1, std::uint32_t(2 * j), draw}) - 1);
-      off[j].restitution +=
-          question.restitution_off * (2 * uniform_draw({1, std::uint32_t(2 * j + 1), draw}) - 1);
+      off[j].clearance *= 1 + question.clearance_off * random(1 + j);
+      off[j].restitution += question.restitution_off * random(0);
     }
     scenes.push_back(scene_of_set(question, off));
   }
@@ -158,52 +156,49 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
 
 }  // namespace
 
-#ifdef IMPACT_DAMPER_CLP
+// With z = x/t it is: least sum of z with sum over j of z_j columns[j][i] >= 1. Its dual, largest sum of w
+// with sum over i of w_i columns[j][i] <= 1, begins feasible at w = 0, and the simplex method's prices at its
+// end are z. Bland's rule, so that it ends.
 Shares best_shares(const std::vector<std::vector<double>>& columns) {
-  // Maximise t, the last column: sum of x_j columns[j][i] - t >= 0 for each row, and the last row, sum of x
-  // = 1.
-  const int rows = int(columns.front().size()), dampers = int(columns.size());
-  std::vector<CoinBigIndex> start;
-  std::vector<int> index;
-  std::vector<double> value, objective(std::size_t(dampers) + 1, 0.0);
-  objective.back() = 1;
-  for (int j = 0; j <= dampers; ++j) {
-    start.push_back(CoinBigIndex(index.size()));
-    for (int i = 0; i < rows; ++i) {
-      index.push_back(i);
-      value.push_back(j < dampers ? columns[std::size_t(j)][std::size_t(i)] : -1);
-    }
-    if (j == dampers) continue;
-    index.push_back(rows);
-    value.push_back(1);
+  const std::size_t rows = columns.front().size(), dampers = columns.size(), width = rows + dampers + 1;
+  // A row for each damper: its w, its slack, the right side. The last: what each adds to the sum, negated.
+  std::vector<std::vector<double>> tableau(dampers + 1, std::vector<double>(width, 0.0));
+  std::vector<std::size_t> basis;
+  for (std::size_t j = 0; j < dampers; ++j) {
+    std::ranges::copy(columns[j], tableau[j].begin());
+    tableau[j][rows + j] = tableau[j][width - 1] = 1;
+    basis.push_back(rows + j);
   }
-  start.push_back(CoinBigIndex(index.size()));
-  const std::vector<double> least(objective.size(), 0.0);
-  std::vector<double> lower(std::size_t(rows) + 1, 0.0),
-      upper(lower.size(), std::numeric_limits<double>::max());
-  lower.back() = upper.back() = 1;
-  const std::unique_ptr<Clp_Simplex, decltype(&Clp_deleteModel)> model(Clp_newModel(), Clp_deleteModel);
-  Clp_setLogLevel(model.get(), 0);
-  Clp_loadProblem(model.get(), dampers + 1, rows + 1, start.data(), index.data(), value.data(), least.data(),
-                  nullptr, objective.data(), lower.data(), upper.data());
-  Clp_setOptimizationDirection(model.get(), -1);
-  Clp_primal(model.get(), 0);
-  if (Clp_status(model.get()) != 0) throw std::runtime_error("the linear programme was not solved");
-  const double* const found = Clp_primalColumnSolution(model.get());
-  return {{found, found + dampers}, found[dampers]};
-}
-#else
-Shares best_shares(const std::vector<std::vector<double>>&) {
-  throw std::runtime_error("the program was built without Clp: install coinor-libclp-dev and build it anew");
-}
-#endif
-
-bool has_linear_programmes() {
-#ifdef IMPACT_DAMPER_CLP
-  return true;
-#else
-  return false;
-#endif
+  std::fill_n(tableau[dampers].begin(), rows, -1.0);
+  constexpr double rounding = 1e-11;
+  for (;;) {
+    std::vector<double>& prices = tableau[dampers];
+    const auto enters = std::size_t(
+        std::find_if(prices.begin(), prices.end() - 1, [](double price) { return price < -rounding; }) -
+        prices.begin());
+    if (enters == width - 1) break;
+    std::optional<std::size_t> leaves;
+    const auto ratio = [&](std::size_t j) { return tableau[j][width - 1] / tableau[j][enters]; };
+    for (std::size_t j = 0; j < dampers; ++j)
+      if (tableau[j][enters] > rounding &&
+          (!leaves || ratio(j) < ratio(*leaves) || (ratio(j) == ratio(*leaves) && basis[j] < basis[*leaves])))
+        leaves = j;
+    // No damper loses anything in a row: there is no least above 0.
+    if (!leaves) return {std::vector<double>(dampers, 1.0 / double(dampers)), 0};
+    basis[*leaves] = enters;
+    const double pivot = tableau[*leaves][enters];
+    for (double& entry : tableau[*leaves]) entry /= pivot;
+    for (std::vector<double>& row : tableau) {
+      const double factor = row[enters];
+      if (&row == &tableau[*leaves] || factor == 0) continue;
+      for (std::size_t k = 0; k < width; ++k) row[k] -= factor * tableau[*leaves][k];
+    }
+  }
+  const double sum = tableau[dampers][width - 1];
+  Shares best{{}, 1 / sum};
+  for (std::size_t j = 0; j < dampers; ++j)
+    best.share.push_back(std::max(0.0, tableau[dampers][rows + j]) / sum);
+  return best;
 }
 
 std::vector<Problem> problems_of(const DamperSetQuestion& question) {

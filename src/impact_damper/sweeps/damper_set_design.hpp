@@ -21,7 +21,7 @@ struct DamperSetQuestion {
   std::int64_t count = 0;    // of dampers, 1 to most_set_dampers
   double restitution = 0.6;  // 0.1 to 0.9, with restitution_off to either side too
   double damping_ratio = 0;
-  // How far each damper may be off, either way.
+  // How far dampers may be off, either way: each clearance by itself, the restitution of all alike.
   double clearance_off = 0.1;    // relative, 0 to 0.5
   double restitution_off = 0.1;  // absolute
 };
@@ -36,22 +36,19 @@ struct DamperSet {
   std::vector<double> edges;            // of the bins, descending from `upper` to `to`
   std::vector<double> expected, worst;  // eta if they add; with each damper off to its worst
   LossSpread run;                       // of releases of the set itself, by the restitution engine
-  LossSpread varied;                    // of sets whose dampers are off at random, uniformly
+  LossSpread varied;                    // of sets that are off at random, uniformly
   double least_of_one = 0;  // of one damper of that mass, with the clearance best for it: expected
 };
 // How many of each are run.
 inline constexpr std::int64_t set_releases = 8, set_draws = 32;
 
-// Whether the program has the library for linear programmes that this needs (Clp).
-bool has_linear_programmes();
-// Throws InvalidArguments if the question is not valid, std::runtime_error without that library. The same
-// with any number of threads.
+// Throws InvalidArguments if the question is not valid. The same with any number of threads.
 DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& threads,
                           const std::function<void(const std::string& doing)>& tell);
 // Parts of it. The scene that is run, in units of the release.
 Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers);
 // Shares x >= 0 whose sum is 1 that make the least of the sums over j of x_j columns[j][i] largest, and that
-// least: (M17.14). Columns not empty and of equal length.
+// least: (M17.14). Columns not empty, of equal length and of numbers >= 0.
 struct Shares {
   std::vector<double> share;
   double least = 0;
