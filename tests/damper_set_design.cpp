@@ -31,7 +31,7 @@ double least(const std::vector<double>& values) { return *std::ranges::min_eleme
 
 }  // namespace
 
-TEST_CASE("damper_set_design: a question out of range is rejected, with its fields") {
+TEST_CASE("a question out of range is rejected, with its fields") {
   DamperSetQuestion asked = question(3);
   CHECK(problems_of(asked).empty());
   asked.upper = 55, asked.to = 40, asked.mass_ratio = 0.3, asked.count = 41, asked.restitution = 0.95;
@@ -43,7 +43,7 @@ TEST_CASE("damper_set_design: a question out of range is rejected, with its fiel
   CHECK_THROWS_AS(answer(asked), InvalidArguments);
 }
 
-TEST_CASE("damper_set_design: the dampers are those asked for, and what is said of them is a run's") {
+TEST_CASE("the dampers are those asked for, and what is said of them is a run's") {
   const DamperSetQuestion asked = question(4);
   const DamperSet set = answer(asked);
   REQUIRE(!set.dampers.empty());
@@ -75,7 +75,7 @@ TEST_CASE("damper_set_design: the dampers are those asked for, and what is said 
   }
 }
 
-TEST_CASE("damper_set_design: no shares have a larger least than those of the linear programme") {
+TEST_CASE("no shares have a larger least than those of the linear programme") {
   for (std::uint32_t problem = 0; problem < 20; ++problem) {
     std::vector<std::vector<double>> columns(3);
     for (std::uint32_t j = 0; j < 3; ++j)
@@ -103,7 +103,7 @@ TEST_CASE("damper_set_design: no shares have a larger least than those of the li
   }
 }
 
-TEST_CASE("damper_set_design: the linear programme's odd cases") {
+TEST_CASE("the linear programme's odd cases") {
   // A row in which nothing is lost, one damper, equal ones, one that is never worth its mass.
   CHECK(best_shares({{1, 0}, {2, 0}}).least == 0);
   CHECK(best_shares({{3, 2, 4}}).least == doctest::Approx(2));
@@ -114,7 +114,7 @@ TEST_CASE("damper_set_design: the linear programme's odd cases") {
   CHECK(best.share[2] == doctest::Approx(0));
 }
 
-TEST_CASE("damper_set_design: one damper is what is said of one") {
+TEST_CASE("one damper is what is said of one") {
   DamperSetQuestion asked = question(2);
   asked.clearance_off = asked.restitution_off = 0;
   const DamperSet two = answer(asked);
@@ -125,7 +125,7 @@ TEST_CASE("damper_set_design: one damper is what is said of one") {
   CHECK(least(one.expected) == doctest::Approx(two.least_of_one).epsilon(0.01));
 }
 
-TEST_CASE("damper_set_design: more dampers damp a wide range better than one, in runs too") {
+TEST_CASE("more dampers damp a wide range better than one, in runs too") {
   DamperSetQuestion asked = question(5);
   asked.to = 1;
   const DamperSet set = answer(asked);
@@ -133,7 +133,7 @@ TEST_CASE("damper_set_design: more dampers damp a wide range better than one, in
   CHECK(least(set.varied.mean) > 1.3 * set.least_of_one);
 }
 
-TEST_CASE("damper_set_design: viscous damping adds to all, and the number of threads changes nothing") {
+TEST_CASE("viscous damping adds to all, and the number of threads changes nothing") {
   DamperSetQuestion asked = question(3);
   const DamperSet set = answer(asked, 1), again = answer(asked, 2);
   CHECK(set.run.mean == again.run.mean);

@@ -41,7 +41,7 @@ Run decay_of(double mass_ratio, double x0, double until) {
 
 }  // namespace
 
-TEST_CASE("damper_sets: amplitudes descend in equal ratios and are at least as many as asked for") {
+TEST_CASE("amplitudes descend in equal ratios and are at least as many as asked for") {
   const std::vector<double> edges = descending_amplitudes(9, 0.09, 12);
   REQUIRE(edges.size() == 25);
   CHECK(edges.front() == 9);
@@ -52,7 +52,7 @@ TEST_CASE("damper_sets: amplitudes descend in equal ratios and are at least as m
   CHECK(descending_amplitudes(20, 1, 1).size() == 3);
 }
 
-TEST_CASE("damper_sets: the loss factor between two amplitudes is exact on an exponential decay") {
+TEST_CASE("the loss factor between two amplitudes is exact on an exponential decay") {
   const Run run = exponential_decay(400, 3, 0.02);
   for (const double loss : losses_between(*run.half_cycles, {2.9, 2.89, 1, 0.3, 0.29}))
     CHECK(relative(loss, 0.02) < 1e-11);
@@ -69,7 +69,7 @@ TEST_CASE(
   CHECK(losses[4] == 0);
 }
 
-TEST_CASE("damper_sets: a peak above one before it takes no time back") {
+TEST_CASE("a peak above one before it takes no time back") {
   Run run = exponential_decay(100, 3, 0.02);
   const std::vector<double> before = losses_between(*run.half_cycles, {2, 1});
   // Row 40 is at 0.86: above 1, where the decay has been.
@@ -77,7 +77,7 @@ TEST_CASE("damper_sets: a peak above one before it takes no time back") {
   CHECK(losses_between(*run.half_cycles, {2, 1}) == before);
 }
 
-TEST_CASE("damper_sets: several releases take the mean of their times") {
+TEST_CASE("several releases take the mean of their times") {
   const LossSpread losses =
       losses_between({exponential_decay(400, 3, 0.02), exponential_decay(400, 3, 0.06)}, {2, 1});
   CHECK(relative(losses.low[0], 0.02) < 1e-11);
@@ -85,7 +85,7 @@ TEST_CASE("damper_sets: several releases take the mean of their times") {
   CHECK(relative(losses.mean[0], 0.03) < 1e-11);  // half of 1/0.02 + 1/0.06 is 1/0.03
 }
 
-TEST_CASE("damper_sets: what a damper does alone is known from its release down to where its run ends") {
+TEST_CASE("what a damper does alone is known from its release down to where its run ends") {
   const LossAlone alone = loss_alone({exponential_decay(700, 3, 0.02)});  // to 8e-10
   CHECK(relative(alone.at(2.5), 2) < 1e-11);
   CHECK(relative(alone.at(3), 2) < 0.05);  // from the release itself, whose peak is at its time
@@ -101,7 +101,7 @@ TEST_CASE("damper_sets: what a damper does alone is known from its release down 
   CHECK_THROWS_AS(loss_alone({several}), std::invalid_argument);
 }
 
-TEST_CASE("damper_sets: dampers add by their masses, each at its amplitude in its own clearance") {
+TEST_CASE("dampers add by their masses, each at its amplitude in its own clearance") {
   // eta/nu = 1 above an amplitude of 1, 4 from there to 0.1, nothing below.
   LossAlone alone{{100, 1, 0.1}, {1, 4}};
   const std::vector<SceneDamper> dampers{{.mass_ratio = 0.01, .clearance = 1},
@@ -117,7 +117,7 @@ TEST_CASE("damper_sets: dampers add by their masses, each at its amplitude in it
   CHECK(std::isnan(sum_of_losses(dampers, alone, {2000, 200})[0]));
 }
 
-TEST_CASE("damper_sets: the sum of one damper is that damper, in clearances of its own") {
+TEST_CASE("the sum of one damper is that damper, in clearances of its own") {
   const Run run = decay_of(0.02, 6, 0.05);
   const LossAlone alone = loss_alone({run});
   const std::vector<double> edges = descending_amplitudes(5, 0.1, 12);
@@ -132,7 +132,7 @@ TEST_CASE("damper_sets: the sum of one damper is that damper, in clearances of i
   }
 }
 
-TEST_CASE("damper_sets: two dampers that strike regularly lose what each does alone") {
+TEST_CASE("two dampers that strike regularly lose what each does alone") {
   // Clearances of 1 and 1.5 at amplitudes of 0.11 to 0.2: one impact in each half cycle of both (Figure 5).
   Scene scene;
   scene.x0 = 6;

@@ -155,7 +155,8 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
        {"restitution_off", "--tolerance"}}};
   std::vector<Problem> named;
   for (const Problem& problem : problems) {
-    const auto found = std::ranges::find(options, problem.field, [](const auto& each) { return each.first; });
+    const auto* const found =
+        std::ranges::find(options, problem.field, [](const auto& each) { return each.first; });
     named.push_back(found == options.end() ? Problem{"--scene", problem.field + ' ' + problem.message}
                                            : Problem{std::string(found->second), problem.message});
   }
