@@ -36,9 +36,11 @@ int list_scenes(const fs::path& folder) {
   std::vector<std::string> problems;
   for (const fs::path& file : scene_files(folder)) {
     try {
-      const Scene scene = read_scene(file);
+      const Scene scene = read_scene(file, DamperList::allowed);
       Row row{file.stem().string()};
-      for (const SceneField& field : scene_fields) row.push_back(number_text(scene.*field.member));
+      for (const SceneField& field : scene_fields)
+        row.push_back(!scene.dampers.empty() && is_of_one_damper(field) ? "-"
+                                                                        : number_text(scene.*field.member));
       for (const auto& stop : {scene.until_time, scene.until_amplitude}) {
         row.push_back(stop ? number_text(*stop) : "-");
       }
@@ -59,7 +61,7 @@ Command scenes_command() {
   command.options = {{"FOLDER", "", "folder of scene files (*.json); default data/scenes"}};
   command.footer =
       "Columns are the keys of a dimensionless scene file; a scene in units is listed as what it makes\n"
-      "(impact-damper run --help).\n\n"
+      "(impact-damper run --help). With a list of dampers \"-\" stands for the numbers that each has.\n\n"
       "Examples:\n"
       "  impact-damper scenes\n"
       "  impact-damper scenes my/scenes";

@@ -62,8 +62,9 @@ def make_tree(folder, program, figures=None):
         catalogue = json.loads(file.read_text())
         catalogue["figures"] = [each for each in catalogue["figures"] if each["figure"] in figures]
         drawn = {curve["scene"] for each in catalogue["figures"] for curve in each.get("curves", [])}
+        others = {each["scene"] for each in catalogue["scenes"]} - drawn  # not those that are of no list
         for runs in ("scenes", "runs", "responses"):
-            catalogue[runs] = [each for each in catalogue[runs] if each["scene"] in drawn]
+            catalogue[runs] = [each for each in catalogue[runs] if each["scene"] not in others]
         file.write_text(json.dumps(catalogue))
     (folder / "build" / "src").mkdir(parents=True)
     shutil.copy(program, folder / "build" / "src" / "impact-damper")

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -23,6 +22,9 @@ namespace {
 // A mass at rest anywhere in its cavity is met by a wall if the primary mass moves farther than the
 // clearance, twice the release; the first half cycle of company shortens that.
 constexpr double widest = 1.8;
+
+// base^exponent, base > 0, with bits that depend on no C library.
+double power_of(double base, double exponent) { return exponential(exponent * logarithm(base)); }
 
 // What one damper does with three restitutions: as it should be, and off either way.
 struct Known {
@@ -61,7 +63,7 @@ std::vector<double> column_of(const Known& known, double clearance, const std::v
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
     double sum = 0;
     for (int part = 0; part < parts; ++part)
-      sum += least_within(known, edges[k] * std::pow(edges[k + 1] / edges[k], (part + 0.5) / parts),
+      sum += least_within(known, edges[k] * power_of(edges[k + 1] / edges[k], (part + 0.5) / parts),
                           clearance, off);
     column.push_back(sum / parts);
   }
@@ -74,7 +76,7 @@ std::vector<double> clearances_between(double least, double most, std::int64_t c
   std::vector<double> clearances;
   for (std::int64_t j = 0; j < count; ++j)
     clearances.push_back(
-        rounded(count == 1 ? least : most * std::pow(least / most, double(j) / double(count - 1)), 3));
+        rounded(count == 1 ? least : most * power_of(least / most, double(j) / double(count - 1)), 3));
   return clearances;
 }
 
@@ -93,9 +95,9 @@ Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count
   for (int narrow = 0; narrow < narrow_steps; ++narrow) {
     // From where the fold is just below `to` to where it is half of it; one damper may need it wider.
     const double c = std::min(
-        most, question.to / fold * std::pow(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
+        most, question.to / fold * power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
     for (int wide = 0; wide < (count == 1 ? 1 : wide_steps); ++wide) {
-      const double end = most * std::pow(0.3, double(wide) / wide_steps);
+      const double end = most * power_of(0.3, double(wide) / wide_steps);
       if (count > 1 && !(end > c)) continue;
       Clearances tried{clearances_between(c, end, count), {}, 0};
       for (const double clearance : tried.values)
@@ -137,12 +139,12 @@ std::vector<Run> varied_runs(const DamperSetQuestion& question, const std::vecto
   std::vector<Scene> scenes;
   for (std::int64_t draw = 0; draw < set_draws; ++draw) {
     std::vector<SceneDamper> off = dampers;
-    const auto random = [&](std::size_t variable) {
+    const auto deviation = [&](std::size_t variable) {
       return 2 * uniform_draw({1, std::uint32_t(variable), draw}) - 1;
     };
     for (std::size_t j = 0; j < off.size(); ++j) {
-      off[j].clearance *= 1 + question.clearance_off * random(1 + j);
-      off[j].restitution += question.restitution_off * random(0);
+      off[j].clearance *= 1 + question.clearance_off * deviation(1 + j);
+      off[j].restitution += question.restitution_off * deviation(0);
     }
     scenes.push_back(scene_of_set(question, off));
   }
