@@ -107,7 +107,7 @@ wanted(f", commit {commit}, \\texttt{{swh:1:dir:{tree}}}}},\n" in without_breaks
        f"commit {commit}, tree {tree}: {cite()}")
 version = manifest["software"]["version"]
 figures = {figure["figure"]: figure for figure in manifest["figures"]}
-wanted(set(figures) == {*"ABCDEH", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
+wanted(set(figures) == {*"ABCDEFGH", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
 for number, figure in figures.items():
     table, script = figure["tables"][:1], figure["script"]["file"]
     stamped = options.new / table[0]["file"] if table else SOURCE / script
