@@ -205,7 +205,7 @@ class TheAppendix(unittest.TestCase):
         from values import Mistake
         copy, text = copied(), MATHEMATICS.read_text(encoding="utf-8")
         stated = json.loads((SOURCE / "data/claims.json").read_text(encoding="utf-8"))["claims"]
-        values = argparse.Namespace(source=copy, claims={each["id"]: each for each in stated}, figures={"B": {}, "12": {}})
+        values = argparse.Namespace(source=copy, claims={each["id"]: each for each in stated}, figures={"B": {}, "F": {}, "9": {}, "12": {}})
         self.assertIn("::: {#M2.1 .equation}", appendix(values, Html(values)))
         for old, new, said in ((r" \tag{M4.1}", "", "has no number"), (r"\tag{M2.2}", r"\tag{M2.1}", "M2.1 stands twice"),
                                ("by (M3.2)", "by (M3.9)", "M3.9 leads nowhere"), ("Lemma L1.", "Lemma L7.", "L7 leads nowhere"),
