@@ -1,5 +1,7 @@
 // How much several dampers lose together: the loss factor between two amplitudes, and the sum of what each
-// damper would lose alone (docs/mathematics.md, 17.6). Amplitudes are divided by the scene's epsilon.
+// damper would lose alone (docs/mathematics.md, 17.6). Amplitudes are peaks |x|, divided by the scene's
+// epsilon, as the clearances of its dampers are; any other length for both gives the same numbers. nu is a
+// damper's mass divided by the primary mass, eta the loss factor per radian, of viscous damping 2 zeta.
 #pragma once
 
 #include <vector>
@@ -8,19 +10,22 @@
 
 namespace impact_damper {
 
-// Amplitudes from `from` down to `to`, equally spaced in the logarithm, at least `in_decade` of them in each
-// decade; from > to > 0.
+// Amplitudes from `from` down to `to`, both among them, equally spaced in the logarithm, at least `in_decade`
+// intervals to a decade. Nothing is checked: from > to > 0, in_decade >= 1.
 std::vector<double> descending_amplitudes(double from, double to, int in_decade);
-
-// In the bins of figures and claims several half cycles of each decay lie.
+// The intervals that figures and claims average over: at the loss factors there, up to a tenth, each takes
+// some half cycles.
 inline constexpr int set_bins_in_decade = 12;
 
-// The loss factor eta between each two neighbours of `edges`, which descend and are > 0, one entry less than
-// edges (M17.12): from the time that the peaks take from the one to the other. 0 where they do not come down
-// to the lower one before the run ends, NaN where they begin below the upper one.
+// eta between each two neighbours of `edges` (M17.12), one entry less than edges, which descend and are > 0:
+// that of the viscous damping with which the peaks would take the same time from the one to the other. All
+// that takes energy counts, viscous damping, too. Between peaks the logarithm of the amplitude is linear in
+// time. 0 where the peaks have not come down to the lower edge when the run ends, whether it is short or
+// nothing is lost; NaN where the first peak is below the upper edge.
 std::vector<double> losses_between(const HalfCycles& half_cycles, const std::vector<double>& edges);
-// The same from the mean of the times that several runs take, entry by entry, and the least and greatest of
-// single runs. Each needs half_cycles.
+// The same of several runs, entry by entry: from the mean of their times, and the least and greatest of
+// single runs. One 0 makes the mean 0, one NaN makes all three NaN. Throws std::invalid_argument if there is
+// no run or one did not record half_cycles.
 struct LossSpread {
   std::vector<double> mean, low, high;
 };
@@ -29,19 +34,20 @@ LossSpread losses_between(const std::vector<Run>& runs, const std::vector<double
 // What one damper does alone: eta/nu over the amplitude divided by its clearance, constant between two edges.
 struct LossAlone {
   std::vector<double> edges;     // descending
-  std::vector<double> specific;  // eta/nu, one entry less
+  std::vector<double> specific;  // eta/nu, one entry less; an edge belongs to the interval above it
 
-  // 0 below the last edge, NaN above the first.
+  // 0 below the last edge, where nothing was measured; NaN above the first.
   double at(double amplitude) const;
 };
-// From releases of one scene with one damper, by the mean of their times. Its edges are at most a
-// forty-eighth of a decade apart, from the release down to the scene's until_amplitude. Throws
-// std::invalid_argument if `runs` is empty, of several dampers or without that amplitude, or lacks
-// half_cycles.
+// From runs of one scene with one damper and slightly different releases, which is not checked: eta/nu by the
+// mean of their times. The edges are at most a forty-eighth of a decade apart, from the least of the first
+// peaks down to the until_amplitude of the first run's scene. Throws std::invalid_argument if `runs` is
+// empty, if the first is of several dampers or its scene has no until_amplitude, or if one lacks half_cycles.
 LossAlone loss_alone(const std::vector<Run>& runs);
 
-// eta between each two neighbours of `edges` if these dampers add: (M17.13). NaN where an amplitude is above
-// the first edge of `alone`, 0 where nothing is lost.
+// eta between each two neighbours of `edges`, which descend, if these dampers do not disturb each other:
+// (M17.13), without viscous damping. NaN where any amplitude divided by a clearance is above the first edge
+// of `alone`, else 0 where none of them loses anything at an amplitude between the two edges.
 std::vector<double> sum_of_losses(const std::vector<SceneDamper>& dampers, const LossAlone& alone,
                                   const std::vector<double>& edges);
 
