@@ -177,7 +177,7 @@ epsilon Omega_n, forces by K epsilon.
   add("until_amplitude",
       "stop at the end of the first half cycle below it; one of the two must be given, or both");
   add("dampers",
-      "several, with restitution or cem: a list of dicts of the numbers of one, and clearance; what a\n" +
+      "several: a list of dicts of the numbers of one, and clearance; what a\n" +
           std::string(24, ' ') + "run has of each is history[\"dampers\"][\"1\"][\"y\"] and so on, from 1");
   text +=
       "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "

@@ -158,10 +158,6 @@ int run_scene(Arguments& arguments) {
   const std::optional<Scales>& scales = scene_file.scales;
   const Engine engine = engine_of(arguments);
   const Record record = record_of(arguments, scene_file);
-  const bool several = !scene.dampers.empty();
-  if (several && std::holds_alternative<Exact>(engine))
-    arguments.reject("--engine", "must be restitution or cem, as the scene has a list of dampers, got " +
-                                     std::string(name_of(engine)));
   const std::optional<std::string> file = arguments.file("--output");
   arguments.reject_overwriting("--output", file, {arguments.text("--scene").value_or("")});
   const Format format = format_of(arguments, file, {Format::json, Format::csv});
@@ -255,7 +251,7 @@ Command run_command() {
       "mass and secondary_mass in kg, stiffness in N/m, clearance in mm, with initial_displacement,\n"
       "until_millimetres and others; it is made dimensionless when it is read (all keys:\n"
       "data/schema/scene.schema.json). A list, \"dampers\", gives a scene file several cavities on the\n"
-      "same primary mass, for --engine restitution. A run file is dimensionless as well, and says in\n"
+      "same primary mass. A run file is dimensionless as well, and says in\n"
       "\"units\" what one unit of length, time, velocity, mass, force and energy is in SI; --format csv\n"
       "--si writes the columns in SI.\n\n"
       "Examples:\n"

@@ -45,6 +45,17 @@ std::string damper_field(std::size_t damper, std::string_view name) {
   return "dampers[" + std::to_string(damper) + "]." + std::string(name);
 }
 
+Scene with_alone(const Scene& scene, const SceneDamper& damper) {
+  Scene alone;
+  alone.mass_ratio = damper.mass_ratio;
+  alone.restitution = damper.restitution;
+  alone.damping_ratio = scene.damping_ratio;
+  alone.wall_stiffness = damper.wall_stiffness;
+  alone.force_amplitude = scene.force_amplitude;
+  alone.force_frequency = scene.force_frequency;
+  return alone;
+}
+
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range) {
@@ -52,9 +63,7 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
-    problems.push_back(
-        {"dampers",
-         "a list is for run with the restitution engine or cem only: give one damper without a list"});
+    problems.push_back({"dampers", "a list is for run only: give one damper without a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {

@@ -43,7 +43,7 @@ struct Scene {
   // Initial distance of the secondary mass from the left wall, divided by epsilon: 0 at the left, 1 at the
   // right wall. Outside them it begins by pressing a wall together, which needs compliant walls.
   double y0 = 0.0;
-  double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  double w0 = 0.0;               // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
   // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12. (The
@@ -82,6 +82,9 @@ extern const std::array<SceneDamperField, 6> scene_damper_fields;
 bool is_of_one_damper(const SceneField& field);
 // How a damper's field is named in a Problem: "dampers[2].clearance", counted from 0.
 std::string damper_field(std::size_t damper, std::string_view name);
+
+// The scene's primary mass and force with one of its list of dampers alone: all that a wall's equations need.
+Scene with_alone(const Scene& scene, const SceneDamper& damper);
 
 // Whether who asks can treat a scene with several dampers.
 enum class DamperList { rejected, allowed };

@@ -11,7 +11,8 @@ namespace impact_damper {
 namespace {
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
-  return run_exact<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_exact<double>(scene, options, recorder)
+                               : run_exact_dampers<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {

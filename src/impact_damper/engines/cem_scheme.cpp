@@ -42,15 +42,6 @@ double stability_limit_of_list(const Scene& scene, Damper damper, Calibration ca
 }
 }  // namespace
 
-Scene with_alone(const Scene& scene, const SceneDamper& damper) {
-  Scene alone;
-  alone.mass_ratio = damper.mass_ratio;
-  alone.restitution = damper.restitution;
-  alone.damping_ratio = scene.damping_ratio;
-  alone.wall_stiffness = damper.wall_stiffness;
-  return alone;
-}
-
 double fastest_contact_frequency(const Scene& scene) {
   if (!scene.dampers.empty()) return 2 / stability_limit_of_list(scene, Damper::centred, {});
   const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;

@@ -132,9 +132,6 @@ struct ForceAtSteps {
   Real f = 0, df = 0, curb = 0;
 };
 
-// The scene's primary mass with one of its list of dampers alone: all that a wall's equations need.
-Scene with_alone(const Scene& scene, const SceneDamper& damper);
-
 // The frequency of the fastest undamped mode in contact (M9.3), of a list with all its masses in contact;
 // larger than 1 and sqrt(k/nu).
 double fastest_contact_frequency(const Scene& scene);

@@ -9,9 +9,6 @@ namespace impact_damper {
 std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engine) {
   std::vector<Problem> problems;
   if (!scene.dampers.empty()) {
-    if (std::holds_alternative<Exact>(engine))
-      problems.push_back({"dampers", "several dampers are for the restitution engine and cem, not for " +
-                                         std::string(name_of(engine))});
     for (std::size_t i = 0; has_rigid_walls(engine) && i < scene.dampers.size(); ++i) {
       const SceneDamper& damper = scene.dampers[i];
       if (within(0, damper.clearance).allows(damper.y0)) continue;

@@ -5,6 +5,7 @@
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/engines/cem_dampers.hpp"
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/engines/restitution_dampers.hpp"
@@ -16,6 +17,7 @@ using ForcedSystem = System<double, Forcing<double>>;
 
 extern template Outcome run_exact(const FreeSystem&, const Scene&, const Exact&, Recorder&);
 extern template Outcome run_exact(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
+extern template Outcome run_exact_dampers<double>(const Scene&, const Exact&, Recorder&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);

@@ -16,47 +16,14 @@
 #include <vector>
 
 #include "impact_damper/base/floating_point.hpp"
-#include "impact_damper/engines/damper_order.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/engines/secondary_masses.hpp"
 #include "impact_damper/math/scalar.hpp"
-#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/motion/sticking.hpp"
 
 namespace impact_damper {
-
-// The secondary masses: number by number in arrays, which the processor moves two at a time, and in the order
-// of damper_order.hpp.
-template <class Real>
-struct SecondaryMasses {
-  explicit SecondaryMasses(std::span<const SceneDamper> dampers) : number(damper_order(dampers)) {
-    for (const std::int32_t i : number) {
-      const SceneDamper& d = dampers[i];
-      const bool right = Real(d.y0) > Real(d.clearance) / 2;
-      nu.push_back(Real(d.mass_ratio));
-      e.push_back(Real(d.restitution));
-      clearance.push_back(Real(d.clearance));
-      away.push_back(right ? Real(-1) : Real(1));
-      u.push_back(right ? Real(Real(d.clearance) - Real(d.y0)) : Real(d.y0));
-      u1.push_back(away.back() * Real(d.w0));
-    }
-    sticks.resize(size());
-    sticks_since.resize(size());
-  }
-  std::size_t size() const { return number.size(); }
-
-  bool rests(std::size_t i) const { return u[i] == 0 && u1[i] == 0; }
-  Wall wall(std::size_t i) const { return away[i] > 0 ? Wall::left : Wall::right; }
-  Real w(std::size_t i) const { return away[i] * u1[i]; }
-
-  std::vector<std::int32_t> number;  // in the scene
-  std::vector<Real> nu, e, clearance;
-  std::vector<Real> away;   // 1 if the wall that was left last is the left one, -1 if it is the right one
-  std::vector<Real> u, u1;  // distance from that wall, and its derivative
-  std::vector<char> sticks;
-  std::vector<double> sticks_since;
-};
 
 template <class Real, class Force, class Observer>
 class RestitutionOfDampers {
@@ -77,11 +44,11 @@ class RestitutionOfDampers {
     if (observer_.wants_energy()) {
       tracker_.begin(energy_now());
       for (std::size_t i = 0; i < masses_.size(); ++i)
-        energy_[masses_.number[i]].initial_kinetic = kinetic(i);
+        energy_[masses_.number[i]].initial_kinetic = masses_.kinetic(i, v_);
     }
     settle();
     while (!tracker_.stopped()) {
-      Motion motion(*this);
+      Motion motion(oscillator(), force(), tracker_.now(), x_, v_, push_);
       const Event event = next_event(motion);
       pass(motion, event.time);
       if (tracker_.stopped()) break;
@@ -94,7 +61,8 @@ class RestitutionOfDampers {
     }
     for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
     if (observer_.wants_energy()) {
-      for (std::size_t i = 0; i < masses_.size(); ++i) energy_[masses_.number[i]].final_kinetic = kinetic(i);
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        energy_[masses_.number[i]].final_kinetic = masses_.kinetic(i, v_);
       tracker_.finish(energy_now(), losses_);
       observer_.energy_balance().dampers = std::move(energy_);
     }
@@ -103,32 +71,11 @@ class RestitutionOfDampers {
 
  private:
   // The primary mass with what sticks, from now on until the next event.
-  class Motion : public JoinedMasses<Real, Force> {
-   public:
-    explicit Motion(const RestitutionOfDampers& engine)
-        : JoinedMasses<Real, Force>(engine.oscillator(), engine.force(), engine.tracker_.now(), engine.x_,
-                                    engine.v_, engine.push_),
-          engine_(engine) {}
-    // y and y' are another's: of each mass by itself.
-    State<Real> at(const Real& t) const {
-      const auto now = this->primary().at(t);
-      return {now.x, now.v, Real(0), Real(0)};
-    }
-    void tell_sample(Observer& observer, const Real& t) const { engine_.tell_sample(observer, *this, t); }
-
-   private:
-    const RestitutionOfDampers& engine_;
-  };
-  struct Meeting {
-    std::size_t index;
-    Real time;
-    Wall wall;
-    Real slack;  // how much later than another it may seem to be and still be at the same time
-  };
+  using Motion = JoinedMasses<Real, Force>;
   struct Event {
     Real time;
     bool released;
-    std::span<const Meeting> meeting;
+    std::span<const Meeting<Real>> meeting;
   };
 
   const Driven<Real, Force>& oscillator() const { return joined_ ? *joined_ : system_.free; }
@@ -143,113 +90,48 @@ class RestitutionOfDampers {
       const auto release = motion.release(not_followed_, event.time, tracker_.search());
       if (release) event = {*release, true, {}};
     }
-    const Real span = event.time < tracker_.search().span ? event.time : tracker_.search().span;
-    const Real most = motion.primary().bound(2, span);
-    find_lower_bounds(most, span);
-    meeting_.clear();
-    Real earliest = event.time;
-    for (;;) {
-      const auto next = std::min_element(bounds_.begin(), bounds_.end());
-      const std::size_t i = next - bounds_.begin();
-      const Real late = 16 * std::numeric_limits<Real>::epsilon() * (earliest + 1);
-      if (!(*next <= earliest + late)) break;
-      *next = std::numeric_limits<Real>::infinity();
-      const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
-          motion.primary(), {masses_.clearance[i]}, start_of_flight(i));
-      const Real until = earliest + late < event.time ? Real(earliest + late) : event.time;
-      const auto met = masses_.rests(i) ? flight.released_meets_wall(until, tracker_.search())
-                                        : flight.next_wall(until, tracker_.search());
-      if (!met) continue;
-      // What rounding leaves of its distance from that wall.
-      const Real from = met->wall == masses_.wall(i) ? masses_.u[i] : masses_.clearance[i];
-      const Real &t = met->time, speed = absolute(met->state.w);
-      const Real way = absolute(from) + (absolute(masses_.u1[i]) + most * t / 2) * t;
-      // But no longer than it keeps its speed.
-      const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed, keeps = speed / (4 * most);
-      meeting_.push_back({i, met->time, met->wall, slack < keeps ? slack : keeps});
-      if (met->time < earliest) earliest = met->time;
-    }
-    if (meeting_.empty()) return event;
-    // At one instant: what rounding cannot tell apart.
-    std::erase_if(meeting_, [&](const Meeting& each) { return each.time - earliest > each.slack; });
-    std::sort(meeting_.begin(), meeting_.end(),
-              [](const Meeting& one, const Meeting& other) { return one.index < other.index; });
-    return {earliest, false, meeting_};
-  }
-  FlightStart<Real> start_of_flight(std::size_t i) const {
-    const Real& away = masses_.away[i];
-    const Real wall = away > 0 ? Real(0) : masses_.clearance[i];
-    return {{x_, v_, wall + away * masses_.u[i], masses_.w(i)}, wall, away, masses_.u[i]};
-  }
-  // Sets bounds_: before these times no wall is met if |x''| <= most (M17.8), which holds for a time `span`.
-  void find_lower_bounds(const Real& most, const Real& span) {
-    bounds_.resize(masses_.size());
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      // Rounding may leave a mass a little beyond a wall that it has just left.
-      const Real &u1 = masses_.u1[i], u = masses_.u[i] > 0 ? masses_.u[i] : Real(0),
-                 beyond = masses_.clearance[i] - u, far = beyond > 0 ? beyond : Real(0);
-      // The roots of u + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
-      const Real near_root = square_root(Real(u1 * u1 + 2 * most * u)),
-                 far_root = square_root(Real(u1 * u1 + 2 * most * far));
-      const Real to_home = near_root - u1, to_far = far_root + u1;
-      const Real home = u1 > 0        ? Real((u1 + near_root) / most)
-                        : to_home > 0 ? Real(2 * u / to_home)
-                                      : Real(0);
-      const Real across = u1 < 0       ? Real((far_root - u1) / most)
-                          : to_far > 0 ? Real(2 * far / to_far)
-                                       : Real(0);
-      const Real first = home < across ? home : across;
-      // What lies after the span is not excluded.
-      bounds_[i] = masses_.sticks[i] ? std::numeric_limits<Real>::infinity() : first < span ? first : span;
-    }
+    const auto meeting = next_meeting_.find(masses_, motion.primary(), x_, v_, event.time, tracker_.search());
+    if (!meeting.empty()) event = {meeting.front().time, false, meeting};
+    return event;
   }
 
   // Lets a time pass in which nothing happens but in the primary mass's half cycles.
   void pass(const Motion& motion, const Real& until) {
     State<Real> end = motion.at(until);
-    tracker_.pass(motion, until, end, Real(0));
+    tracker_.pass(motion, until, end, Real(0), [&](const Real& t) { tell_sample(motion, t); });
     const Real t = tracker_.passed();
     if (t == 0) return;
     const auto now = motion.primary().at(t);
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.sticks[i]) continue;
-      masses_.u[i] += masses_.u1[i] * t - masses_.away[i] * now.dx;
-      masses_.u1[i] -= masses_.away[i] * now.dv;
-    }
+    masses_.fly(t, now.dx, now.dv);
     x_ = now.x;
     v_ = now.v;
     not_followed_ = 0;
   }
-  void tell_sample(Observer& observer, const Motion& motion, const Real& t) const {
+  void tell_sample(const Motion& motion, const Real& t) {
     const auto now = motion.primary().at(t);
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real &away = masses_.away[i], wall = away > 0 ? Real(0) : masses_.clearance[i];
-      const bool sticks = masses_.sticks[i];
+      const Real& away = masses_.away[i];
+      const bool sticks = masses_.held[i];
       const Real u = sticks ? Real(0) : Real(masses_.u[i] + (masses_.u1[i] * t - away * now.dx));
       const Real u1 = sticks ? Real(0) : Real(masses_.u1[i] - away * now.dv);
-      places_[masses_.number[i]] = {double(Real(wall + away * u)), double(Real(away * u1))};
+      places_[masses_.number[i]] = masses_.place(i, u, u1);
     }
-    observer.sample(observer.next_sample(), double(now.x), double(now.v), places_);
+    observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
   }
 
   // The masses that are `meeting` walls do so, and those that rest on one feel it. False: that were too many.
-  bool impacts(std::span<const Meeting> meeting) {
+  bool impacts(std::span<const Meeting<Real>> meeting) {
     if (!tracker_.has_room_for(std::int64_t(meeting.size()))) return false;
     at_walls_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const auto meets = [&](const Meeting& each) { return each.index == i; };
+      const auto meets = [&](const Meeting<Real>& each) { return each.index == i; };
       if (masses_.rests(i) && std::none_of(meeting.begin(), meeting.end(), meets))
         at_walls_.push_back(mass_at_wall(i));
     }
     const std::size_t resting = at_walls_.size();
-    for (const Meeting& each : meeting) {
+    for (const Meeting<Real>& each : meeting) {
       const std::size_t i = each.index;
-      if (each.wall != masses_.wall(i)) {
-        masses_.away[i] = -masses_.away[i];
-        masses_.u1[i] = -masses_.u1[i];
-      }
-      if (masses_.u1[i] > 0) masses_.u1[i] = 0;  // grazed, by rounding
-      masses_.u[i] = 0;
+      masses_.arrive(i, each.wall);
       at_walls_.push_back(mass_at_wall(i));
     }
     told_.assign(at_walls_.begin() + std::ptrdiff_t(resting), at_walls_.end());
@@ -267,7 +149,7 @@ class RestitutionOfDampers {
     for (std::size_t i = 0; i < masses_.size(); ++i) masses_.u1[i] -= masses_.away[i] * jump;
     for (const MassAtWall<Real>& each : at_walls_) {
       masses_.u1[each.index] = speed_after(each, jump);
-      if (masses_.sticks[each.index] && masses_.u1[each.index] > 0) let_go(each.index);
+      if (masses_.held[each.index] && masses_.u1[each.index] > 0) let_go(each.index);
     }
     v_ += jump;
     if (observer_.wants_energy()) {
@@ -303,7 +185,7 @@ class RestitutionOfDampers {
     Real sticking{0};
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.rests(i) && masses_.away[i] == side) {
-        if (!masses_.sticks[i]) stick(i, Real(0));
+        if (!masses_.held[i]) stick(i, Real(0));
         sticking += masses_.nu[i];
         some_rest_ = true;
       } else {
@@ -326,14 +208,14 @@ class RestitutionOfDampers {
     return {force, tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0)};
   }
   void stick(std::size_t i, const Real& later) {
-    masses_.sticks[i] = true;
-    masses_.sticks_since[i] = double(tracker_.now() + later);
+    masses_.held[i] = true;
+    masses_.held_since[i] = double(tracker_.now() + later);
     masses_.u[i] = masses_.u1[i] = 0;
   }
   void let_go(std::size_t i) {
-    if (!masses_.sticks[i]) return;
-    masses_.sticks[i] = false;
-    const double begin = masses_.sticks_since[i],
+    if (!masses_.held[i]) return;
+    masses_.held[i] = false;
+    const double begin = masses_.held_since[i],
                  end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
     if (observer_.wants_contacts() && begin <= end)
       observer_.contact(begin, end, masses_.wall(i), masses_.number[i]);
@@ -366,11 +248,11 @@ class RestitutionOfDampers {
       if (masses_.away[i] != now.side) continue;
       const Real& u1 = masses_.u1[i];
       const Real square =
-          masses_.sticks[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
+          masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
       const Real moves = masses_.nu[i] * square / (2 * a * mass_);
       if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_)))) continue;
       all_lose += loses(i);
-      if (masses_.sticks[i]) continue;
+      if (masses_.held[i]) continue;
       chattering_.push_back({i, square_root(square), moves, Real(0)});
     }
     // The duration (M17.6), and what ends too late for it.
@@ -414,7 +296,7 @@ class RestitutionOfDampers {
       if (not_followed_ < each.lasts) not_followed_ = each.lasts;
     }
     for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (!masses_.sticks[i]) masses_.u1[i] -= masses_.away[i] * gained;
+      if (!masses_.held[i]) masses_.u1[i] -= masses_.away[i] * gained;
     v_ += gained;
     for (const Chattering& each : chattering_) stick(each.index, each.lasts);
     return true;
@@ -476,7 +358,7 @@ class RestitutionOfDampers {
   Real first_meeting(const Real& until, std::size_t first) {
     const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
     const Real span = until < tracker_.search().span ? until : tracker_.search().span;
-    find_lower_bounds(motion.bound(2, span), span);
+    masses_.find_lower_bounds(motion.bound(2, span), span, bounds_);
     std::vector<Real>& bounds = others_bounds_;
     bounds = bounds_;
     for (std::size_t k = 0; k < first; ++k)
@@ -485,10 +367,6 @@ class RestitutionOfDampers {
     return least < span ? least : span;
   }
 
-  double kinetic(std::size_t i) const {
-    const Real z1 = v_ + masses_.w(i);
-    return double(Real(masses_.nu[i] * z1 * z1 / 2));
-  }
   Energy energy_now() const {
     Real kinetic = v_ * v_, paper = v_ * v_;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -512,9 +390,9 @@ class RestitutionOfDampers {
   Real not_followed_{0};  // how long the chattering whose limit has been taken lasts
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene
-  mutable std::vector<PlaceInCavity> places_;
+  std::vector<PlaceInCavity> places_;
+  NextMeeting<Real> next_meeting_;
   std::vector<Real> bounds_;
-  std::vector<Meeting> meeting_;
   std::vector<MassAtWall<Real>> at_walls_, told_;
   std::vector<Chattering> chattering_;
   std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them

@@ -58,10 +58,10 @@ class RunTracker {
   void begin(const Energy& energy) { observer_.energy_balance().initial = energy; }
 
   // Lets `duration` of a motion pass, less if the scene ends in it; `end` is then the state at that time.
-  // Returns the works in it.
-  template <MotionOf<Real> Motion>
+  // Returns the works in it. tell_sample(t) tells the observer the next sample, at the time t of the motion.
+  template <MotionOf<Real> Motion, class TellSample>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
-                                         const Real& wall_damping) {
+                                         const Real& wall_damping, TellSample&& tell_sample) {
     if (search_.exhausted()) {  // the end of the motion may not have been found
       stopped_ = StopReason::step_budget;
       duration = 0;
@@ -83,7 +83,7 @@ class RunTracker {
       }
       duration = followed;
     }
-    tell_samples(motion, duration);
+    tell_samples(duration, tell_sample);
     const Work<Real> works =
         observer_.wants_energy() ? add_work(motion, duration, wall_damping) : Work<Real>{};
     if constexpr (requires { observer_.passed(motion, now(), duration, end); })
@@ -91,6 +91,15 @@ class RunTracker {
     clock_.advance(duration);
     passed_ = duration;
     return works;
+  }
+  // The same of a single damper.
+  template <MotionOf<Real> Motion>
+  [[gnu::always_inline]] Work<Real> pass(const Motion& motion, const Real& duration, State<Real>& end,
+                                         const Real& wall_damping) {
+    return pass(motion, duration, end, wall_damping, [&](const Real& t) {
+      const State<Real> s = motion.at(t);
+      observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
+    });
   }
   // How much of the last motion has passed.
   const Real& passed() const { return passed_; }
@@ -127,20 +136,15 @@ class RunTracker {
   }
 
  private:
-  template <MotionOf<Real> Motion>
-  [[gnu::always_inline]] void tell_samples(const Motion& motion, const Real& duration) {
+  template <class TellSample>
+  [[gnu::always_inline]] void tell_samples(const Real& duration, TellSample&& tell_sample) {
     // Compared in double precision, as times are recorded: a sample asked for at an event's time is given.
     const double until = timed_out_ ? horizon_.end_time : double(clock_.after(duration));
     while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
       if (t < 0) t = 0;
       if (!(t < duration)) t = duration;
-      if constexpr (requires { motion.tell_sample(observer_, t); }) {
-        motion.tell_sample(observer_, t);
-      } else {
-        const State<Real> s = motion.at(t);
-        observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
-      }
+      tell_sample(t);
     }
   }
   template <MotionOf<Real> Motion>

@@ -16,11 +16,16 @@ template <class Real, class Force = Forcing<Real>>
 class Contact {
  public:
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
+      : Contact(system, begin, start, wall, Real(wall == Wall::left ? 0 : 1)) {}
+  // The same with y counted from elsewhere: the wall is at `origin`. From the wall itself, 0, y has all the
+  // digits of q.
+  Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall,
+          const Real& origin)
       : system_(system),
         begin_(begin),
         phase_(system.forcing.phase(begin)),
         start_(copied(start)),
-        wall_(wall == Wall::left ? 0 : 1),
+        wall_(origin),
         inward_(wall == Wall::left ? -1 : 1) {}
 
   State<Real> at(const Real& t) const {
@@ -175,6 +180,8 @@ class Contact {
     return panel_under(system_.forcing, fast < slow ? fast : slow);
   }
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
+  // A bound on |x''| for a time t from the beginning on.
+  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Map::second_of_x); }
 
  private:
   SinCos<Real> phase_at(const Real& t) const {
@@ -198,10 +205,9 @@ class Contact {
       return *known;
     }
   }
-  Wall wall() const { return wall_ == 0 ? Wall::left : Wall::right; }
+  Wall wall() const { return inward_ < 0 ? Wall::left : Wall::right; }
 
   // Bounds for a time t.
-  Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Map::second_of_x); }
   Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Map::third_of_x); }
   template <class OfMap>
   [[gnu::always_inline]] Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {

@@ -13,10 +13,13 @@ class ContactWithoutModes {
   // `system` must have its `coupled`.
   ContactWithoutModes(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start,
                       Wall wall)
+      : ContactWithoutModes(system, begin, start, wall, Real(wall == Wall::left ? 0 : 1)) {}
+  ContactWithoutModes(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start,
+                      Wall wall, const Real& origin)  // as in contact.hpp
       : system_(system),
         exponential_(*system.coupled),
         start_(copied(start)),
-        wall_(wall == Wall::left ? 0 : 1),
+        wall_(origin),
         inward_(wall == Wall::left ? -1 : 1),
         size_of_force_(absolute(forcing().amplitude)) {
     const auto [sin, cos] = sin_cos(Real(forcing().frequency * begin));
@@ -47,7 +50,7 @@ class ContactWithoutModes {
         },
         from, horizon, search, resolution());
     if (!fall) return {};
-    WallEvent<Real> end{*fall, wall_ == 0 ? Wall::left : Wall::right, at(*fall)};
+    WallEvent<Real> end{*fall, inward_ < 0 ? Wall::left : Wall::right, at(*fall)};
     end.state.y = wall_;
     return end;
   }
@@ -85,6 +88,7 @@ class ContactWithoutModes {
     return panel_under(system_.forcing, fast < slow ? fast : slow);
   }
   Real resolution() const { return 1 / exponential_.rate(); }
+  Real second_of_x(const Real& t) const { return bound_of_x(2, t); }
 
  private:
   using Vector = std::array<Real, 6>;

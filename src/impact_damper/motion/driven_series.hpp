@@ -12,6 +12,12 @@
 namespace impact_damper {
 
 inline constexpr std::size_t driven_terms = 24;
+// The first term left out of x'' is driven_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or
+// near critical damping and in resonance up to `terms` times that, which is still below rounding.
+template <class Real>
+inline constexpr double driven_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
+                                         : std::numeric_limits<Real>::digits10 < 20 ? 1.029
+                                                                                    : 0.22;
 template <class Real>
 using DrivenTerms = PairedSeries<Real, driven_terms / 2>;
 
@@ -21,7 +27,7 @@ template <class Real>
 class DrivenSeriesTable {
  public:
   DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency)
-      : reach_(Real(radians) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
+      : reach_(Real(driven_radians<Real>) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
     Real power = 1 / oscillator.root_b();
     for (Real& each : growth_) {
       each = power;
@@ -70,11 +76,6 @@ class DrivenSeriesTable {
   }
 
  private:
-  // The first term left out of x'' is radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or near
-  // critical damping and in resonance up to `terms` times that, which is still below rounding.
-  static constexpr double radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
-                                    : std::numeric_limits<Real>::digits10 < 20 ? 1.029
-                                                                               : 0.22;
   // x and x', f and f' at the beginning.
   static DrivenTerms<Real> column(const Oscillator<Real>& oscillator, const Real& frequency,
                                   const std::array<Real, 2>& start, const std::array<Real, 2>& force) {

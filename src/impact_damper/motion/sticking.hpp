@@ -18,6 +18,11 @@ class JoinedMasses {
       : primary_(oscillator, force, begin, x, v), push_(push) {}
 
   const ForcedMotion<Real, Force>& primary() const { return primary_; }
+  // Of several dampers each has y and y' for itself.
+  State<Real> at(const Real& t) const {
+    const auto now = primary_.at(t);
+    return {now.x, now.v, Real(0), Real(0)};
+  }
   // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
   std::optional<Real> release(const Real& from, const Real& horizon, Search<Real>& search) {
     // The push with which the mass was held is that of the flight before: a rounding error may leave none. To

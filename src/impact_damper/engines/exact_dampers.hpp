@@ -1,0 +1,393 @@
+// The exact engine for several dampers on one primary mass (docs/mathematics.md, 17.5): compliant walls,
+// every event solved for.
+//
+// While all secondary masses fly the primary mass is one oscillator, and who meets a wall next is found as
+// with rigid walls (secondary_masses.hpp). While one pushes its wall it moves as the one damper of exact.hpp
+// does, and the others fly on: most often a bound on x'' shows at once that none of them meets a wall
+// meanwhile (M17.15). While several push their walls, all move by power series (joint_contact.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/observer.hpp"
+#include "impact_damper/engines/run_tracker.hpp"
+#include "impact_damper/engines/secondary_masses.hpp"
+#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/motion/contact_without_modes.hpp"
+#include "impact_damper/motion/contact_work.hpp"
+#include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/sticking.hpp"
+#include "impact_damper/motion/wall.hpp"
+
+namespace impact_damper {
+
+template <class Real, class Force, class Observer>
+class ExactOfDampers {
+ public:
+  ExactOfDampers(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                 Observer& observer)
+      : system_(system),
+        scene_(scene),
+        options_(options),
+        observer_(observer),
+        tracker_(scene, system, options.budget, options.max_steps, observer),
+        masses_(scene.dampers),
+        walls_(scene.dampers.size()),
+        x_(scene.x0),
+        v_(scene.v0),
+        energy_(scene.dampers.size()),
+        places_(scene.dampers.size()) {
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Scene alone = with_alone(scene, scene.dampers[masses_.number[i]]);
+      walls_[i].stiffness = Real(alone.wall_stiffness) / Real(alone.mass_ratio);
+      walls_[i].damping = 2 * zeta_m<Real>(alone, options.calibration) * square_root(walls_[i].stiffness);
+    }
+  }
+
+  Outcome run() {
+    if (observer_.wants_energy()) {
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        energy_[masses_.number[i]].initial_kinetic = masses_.kinetic(i, v_);
+    }
+    begin_contacts();
+    if (observer_.wants_energy()) tracker_.begin(energy_now());
+    while (!tracker_.stopped()) {
+      if (in_contact_.empty()) {
+        fly();
+      } else if (in_contact_.size() > 1) {
+        push_together();
+      } else if (const ContactModes<Real, Force>& modes = modes_of(in_contact_.front()); modes.coupled) {
+        push_alone<ContactWithoutModes<Real, Force>>(modes);
+      } else {
+        push_alone<Contact<Real, Force>>(modes);
+      }
+    }
+    if (observer_.wants_energy()) {
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        energy_[masses_.number[i]].final_kinetic = masses_.kinetic(i, v_);
+      const Energy last = energy_now();
+      while (!in_contact_.empty()) leave(in_contact_.front());
+      tracker_.finish(last, losses_);
+      observer_.energy_balance().dampers = std::move(energy_);
+    } else {
+      while (!in_contact_.empty()) leave(in_contact_.front());
+    }
+    return {*tracker_.stopped(), tracker_.end_time()};
+  }
+
+ private:
+  // What a mass's wall does, and what has happened in the contact that is under way.
+  struct OwnWall {
+    Real stiffness, damping;                                   // K and c of (M2.2)
+    std::unique_ptr<const ContactModes<Real, Force>> modes{};  // made for the first contact
+    std::optional<std::size_t> impact{};                       // that began the contact
+    Real work{0};                                              // of the wall's damper in it
+  };
+  struct Event {
+    std::size_t index;
+    Real time;
+    std::optional<Wall> met;  // else the mass leaves its wall
+  };
+
+  const ContactModes<Real, Force>& modes_of(std::size_t i) {
+    OwnWall& wall = walls_[i];
+    if (!wall.modes) {
+      const Scene alone = with_alone(scene_, scene_.dampers[masses_.number[i]]);
+      wall.modes = std::make_unique<const ContactModes<Real, Force>>(
+          System<Real, Force>(alone), zeta_m<Real>(alone, options_.calibration));
+    }
+    return *wall.modes;
+  }
+
+  // In contact from the beginning: who overlaps, and then who rests on a wall and is pressed against it.
+  void begin_contacts() {
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.u[i] < 0) enter(i);
+    const Real side = side_of_acceleration();
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.rests(i) && masses_.away[i] == side) enter(i);
+  }
+  // The wall's force on the mass i, divided by nu_i, and its rate of change while x'' = bend.
+  struct WallForce {
+    Real force, change;
+  };
+  WallForce wall_force(std::size_t i, const Real& bend) const {
+    const auto& [stiffness, damping, modes, impact, work] = walls_[i];
+    const Real q = masses_.away[i] * masses_.u[i], w = masses_.w(i);
+    const Real force = damping * w + stiffness * q;
+    return {force, damping * (-bend - force) + stiffness * w};
+  }
+  // To which walls x'' leads the masses that rest, 1 for the left ones; where it is zero to rounding, x'''.
+  Real side_of_acceleration() const {
+    const auto f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()));
+    Real bend = f[0] - 2 * system_.zeta * v_ - x_;
+    Real size = absolute(x_) + 2 * system_.zeta * absolute(v_) + absolute(system_.forcing.amplitude);
+    for (const std::size_t i : in_contact_) {
+      const Real pushes = masses_.nu[i] * wall_force(i, Real(0)).force;
+      bend += pushes;
+      size += absolute(pushes);
+    }
+    Real tells = bend;
+    if (absolute(bend) <= 4 * std::numeric_limits<Real>::epsilon() * size) {
+      tells = f[1] - v_ - 2 * system_.zeta * bend;
+      for (const std::size_t i : in_contact_) tells += masses_.nu[i] * wall_force(i, bend).change;
+    }
+    return tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0);
+  }
+
+  // Nobody is in contact until the next wall is met.
+  void fly() {
+    const JoinedMasses<Real, Force> motion(system_.free, system_.forcing, tracker_.now(), x_, v_, Real(0));
+    const ForcedMotion<Real, Force>& primary = motion.primary();
+    const Real remaining = tracker_.remaining(), length = primary.length();
+    Real until = length < remaining ? length : remaining;
+    events_.clear();
+    for (const Meeting<Real>& each : next_meeting_.find(masses_, primary, x_, v_, until, tracker_.search()))
+      consider({each.index, each.time, each.wall}, until);
+    State<Real> end = motion.at(until);
+    pass(
+        motion, until, end, Real(0), [&](const Real& t) { return primary.at(t); },
+        [](std::size_t, const Real&) { return std::array<Real, 2>{}; });
+    take_events();
+  }
+
+  // One mass pushes its wall until it leaves it, or another meets a wall.
+  template <class InContact>
+  void push_alone(const ContactModes<Real, Force>& modes) {
+    const std::size_t i = in_contact_.front();
+    const Real q = masses_.away[i] * masses_.u[i], remaining = tracker_.remaining();
+    const InContact contact(modes, tracker_.now(), {x_, v_, q, masses_.w(i)}, masses_.wall(i), Real(0));
+    const auto leaves = contact.leave(remaining, tracker_.search());
+    Real until = leaves ? leaves->time : remaining;
+    events_.clear();
+    if (leaves) events_.push_back({i, until, {}});
+    if (!nobody_meets(contact.second_of_x(until), until)) {
+      for (std::size_t j = 0; j < masses_.size(); ++j)
+        if (!masses_.held[j])
+          if (const auto met = meets_beside(contact, j, until)) consider(*met, until);
+    }
+    State<Real> end = leaves && until == leaves->time ? leaves->state : contact.at(until);
+    const auto state = [&](const Real& t) { return t == until ? end : contact.at(t); };
+    const Work<Real> works = pass(
+        contact, until, end, masses_.nu[i] * walls_[i].damping,
+        [&](const Real& t) {
+          const State<Real> now = state(t);
+          return typename Piece::Change{now.x, now.v, now.x - (x_ + v_ * t), now.v - v_};
+        },
+        [&](std::size_t, const Real& t) {
+          const State<Real> now = state(t);
+          return std::array{now.y, now.w};
+        });
+    walls_[i].work += works.wall;
+    take_events();
+  }
+  // When another mass meets a wall while one pushes its own.
+  template <class InContact>
+  std::optional<Event> meets_beside(const InContact& contact, std::size_t j, const Real& until) {
+    const Real &away = masses_.away[j], &u = masses_.u[j], &u1 = masses_.u1[j];
+    const auto gaps = [&](const Real& t) {
+      const LocalEnclosure<Real> x = contact.derivative_of_x(0, Real(1), t, tracker_.search().span);
+      const auto near = [&](const Jet<Real>& of_x) {
+        return Jet<Real>{u + (u1 * t - away * (of_x.g - (x_ + v_ * t))), u1 - away * (of_x.g1 - v_),
+                         -away * of_x.g2, of_x.third};
+      };
+      const auto far = [&](const Jet<Real>& gap) {
+        return Jet<Real>{masses_.clearance[j] - gap.g, -gap.g1, -gap.g2, gap.third};
+      };
+      const Jet<Real> whole = near(x.whole), main = near(x.main);
+      return std::array{LocalEnclosure<Real>{whole, main, x.rest},
+                        LocalEnclosure<Real>{far(whole), far(main), x.rest}};
+    };
+    const auto met =
+        first_root<Real>(gaps, Real(0), just_after(until), tracker_.search(), contact.resolution());
+    if (!met) return {};
+    return Event{j, met->time, met->which == 0 ? masses_.wall(j) : opposite(masses_.wall(j))};
+  }
+
+  // Several push their walls, for the length of a series or until one leaves or another meets a wall.
+  void push_together() {
+    pushed_.clear();
+    for (const std::size_t i : in_contact_)
+      pushed_.push_back({masses_.nu[i], walls_[i].stiffness, walls_[i].damping,
+                         masses_.away[i] * masses_.u[i], masses_.w(i)});
+    const Piece piece(system_.zeta, system_.forcing, tracker_.now(), x_, v_, pushed_);
+    Search<Real>& search = tracker_.search();
+    search.steps_left -= std::int64_t(in_contact_.size());
+    const Real remaining = tracker_.remaining();
+    Real until = piece.length() < remaining ? piece.length() : remaining;
+    events_.clear();
+    const auto look_for = [&](std::size_t i, const typename Piece::Function& gap, std::optional<Wall> wall) {
+      if (const auto time = piece.fall(gap, just_after(until), search)) consider({i, *time, wall}, until);
+    };
+    for (std::size_t k = 0; k < in_contact_.size(); ++k)
+      look_for(in_contact_[k], piece.depth(k, masses_.wall(in_contact_[k])), {});
+    if (const Real most = piece.second_of_x(); !nobody_meets(most, until)) {
+      for (std::size_t j = 0; j < masses_.size(); ++j) {
+        if (masses_.held[j] || nobody_meets(most, until, j)) continue;
+        const Real &u = masses_.u[j], &u1 = masses_.u1[j], &away = masses_.away[j];
+        look_for(j, piece.gap(u, u1, away), masses_.wall(j));
+        look_for(j, piece.gap(masses_.clearance[j] - u, -u1, -away), opposite(masses_.wall(j)));
+      }
+    }
+    State<Real> end = piece.at(until);
+    pass(
+        piece, until, end, Real(0), [&](const Real& t) { return piece.change(t); },
+        [&](std::size_t k, const Real& t) { return piece.overlap(k, t); });
+    if (observer_.wants_energy()) {
+      for (std::size_t k = 0; k < in_contact_.size(); ++k)
+        walls_[in_contact_[k]].work += piece.wall_work(k, tracker_.passed());
+    }
+    take_events();
+  }
+
+  // Whether all that fly are proved to meet no wall within a time t in which |x''| <= most (M17.15).
+  bool nobody_meets(const Real& most, const Real& t) const {
+    for (std::size_t j = 0; j < masses_.size(); ++j)
+      if (!masses_.held[j] && !nobody_meets(most, t, j)) return false;
+    return true;
+  }
+  bool nobody_meets(const Real& most, const Real& t, std::size_t j) const {
+    const Real way = masses_.u1[j] * t, off = most * t * t / 2, &u = masses_.u[j];
+    return u + (way < 0 ? way : Real(0)) > off && masses_.clearance[j] - u - (way > 0 ? way : Real(0)) > off;
+  }
+  // So a search finds what is not before an event but with it.
+  static Real just_after(const Real& time) { return time * (1 + 8 * std::numeric_limits<Real>::epsilon()); }
+  static Wall opposite(Wall wall) { return wall == Wall::left ? Wall::right : Wall::left; }
+  // Keeps in events_ those that come first, at `until`.
+  void consider(const Event& event, Real& until) {
+    if (event.time > until) return;
+    if (event.time < until) events_.clear();
+    until = event.time;
+    events_.push_back(event);
+  }
+
+  // Lets a time pass without an event. change(t) tells x and x' at t and what they differ by from a straight
+  // line; overlap(k, t) q and q' of the k-th that pushes its wall.
+  template <class Motion, class ChangeAt, class OverlapAt>
+  Work<Real> pass(const Motion& motion, const Real& until, State<Real>& end, const Real& wall_damping,
+                  ChangeAt&& change, OverlapAt&& overlap) {
+    const Work<Real> works = tracker_.pass(motion, until, end, wall_damping, [&](const Real& t) {
+      const auto now = change(t);
+      for (std::size_t i = 0; i < masses_.size(); ++i) {
+        const Real& away = masses_.away[i];
+        if (!masses_.held[i])
+          tell_place(i, Real(masses_.u[i] + (masses_.u1[i] * t - away * now.dx)),
+                     Real(masses_.u1[i] - away * now.dv));
+      }
+      for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+        const auto [q, w] = overlap(k, t);
+        const Real& away = masses_.away[in_contact_[k]];
+        tell_place(in_contact_[k], Real(away * q), Real(away * w));
+      }
+      observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
+    });
+    const Real t = tracker_.passed();
+    if (t == 0) return works;
+    const auto now = change(t);
+    masses_.fly(t, now.dx, now.dv);
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      const std::size_t i = in_contact_[k];
+      const auto [q, w] = overlap(k, t);
+      masses_.u[i] = masses_.away[i] * q;
+      masses_.u1[i] = masses_.away[i] * w;
+    }
+    x_ = now.x;
+    v_ = now.v;
+    return works;
+  }
+  void tell_place(std::size_t i, const Real& u, const Real& u1) {
+    places_[masses_.number[i]] = masses_.place(i, u, u1);
+  }
+
+  // The events happen, unless the run has stopped: first who leaves a wall, then who meets one.
+  void take_events() {
+    if (tracker_.stopped()) return;
+    const auto meets = [](const Event& event) { return event.met.has_value(); };
+    if (!tracker_.has_room_for(std::ranges::count_if(events_, meets))) return;
+    for (const Event& event : events_)
+      if (!event.met) leave(event.index);
+    std::ranges::sort(events_, {}, [&](const Event& event) { return masses_.number[event.index]; });
+    for (const auto& [i, time, met] : events_) {
+      if (!met) continue;
+      observer_.impact(double(tracker_.now()), *met, double(masses_.w(i)), double(x_), masses_.number[i]);
+      masses_.arrive(i, *met);
+      enter(i);
+      if (!observer_.wants_energy()) continue;
+      walls_[i].impact = observer_.energy_balance().impact_loss.size();
+      observer_.energy_balance().impact_loss.push_back(0);
+    }
+  }
+  void enter(std::size_t i) {
+    masses_.held[i] = true;
+    masses_.held_since[i] = double(tracker_.now());
+    in_contact_.insert(std::ranges::lower_bound(in_contact_, i), i);
+  }
+  void leave(std::size_t i) {
+    const double end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
+    if (observer_.wants_contacts())
+      observer_.contact(masses_.held_since[i], end, masses_.wall(i), masses_.number[i]);
+    OwnWall& wall = walls_[i];
+    if (observer_.wants_energy()) {
+      EnergyBalance& balance = observer_.energy_balance();
+      losses_ += wall.work;
+      if (wall.impact) {
+        balance.impact_loss[*wall.impact] = double(wall.work);
+        energy_[masses_.number[i]].impact_loss += double(wall.work);
+      } else {
+        balance.contact_loss += double(wall.work);
+      }
+    }
+    wall.impact.reset();
+    wall.work = 0;
+    masses_.u[i] = 0;
+    masses_.held[i] = false;
+    std::erase(in_contact_, i);
+  }
+
+  Energy energy_now() const {
+    Real kinetic = v_ * v_, paper = v_ * v_, wall{0};
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Real w = masses_.w(i), z1 = v_ + w;
+      kinetic += masses_.nu[i] * z1 * z1;
+      paper += masses_.nu[i] * (v_ * v_ + w * w);
+      if (masses_.held[i]) wall += masses_.nu[i] * walls_[i].stiffness * (masses_.u[i] * masses_.u[i]);
+    }
+    return {double(Real(kinetic / 2)), double(Real(x_ * x_ / 2)), double(Real(wall / 2)),
+            double(Real((paper + x_ * x_) / 2))};
+  }
+
+  using Piece = JointContact<Real, Force>;
+  const System<Real, Force>& system_;
+  const Scene& scene_;
+  const Exact& options_;
+  Observer& observer_;
+  RunTracker<Real, Force, Observer> tracker_;
+  SecondaryMasses<Real> masses_;
+  std::vector<OwnWall> walls_;           // of each mass
+  std::vector<std::size_t> in_contact_;  // ascending
+  Real x_, v_;
+  Real losses_{0};
+  std::vector<DamperEnergy> energy_;  // by number in the scene
+  std::vector<PlaceInCavity> places_;
+  NextMeeting<Real> next_meeting_;
+  std::vector<Event> events_;
+  std::vector<PushedWall<Real>> pushed_;
+};
+
+// Runs a scene with a list of dampers that problems_of finds nothing wrong with.
+template <Scalar Real, DampersObserver Observer>
+Outcome run_exact_dampers(const Scene& scene, const Exact& options, Observer& observer) {
+  require_arithmetic();
+  return with_system<Real>(scene, [&]<class Force>(const System<Real, Force>& system) {
+    return ExactOfDampers<Real, Force, Observer>(system, scene, options, observer).run();
+  });
+}
+
+}  // namespace impact_damper

@@ -1,0 +1,222 @@
+// Several secondary masses in contact with their walls at once (docs/mathematics.md, 17.5): x and each q as
+// power series in time (M17.16), in pieces so short that what the series leave out is below rounding
+// (M17.17). No modes: a set of masses seldom comes again, and equal dampers have equal modes.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/root_isolation.hpp"
+#include "impact_damper/motion/driven_series.hpp"
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/state.hpp"
+
+namespace impact_damper {
+
+// A wall that is pushed: the mass ratio of who pushes it, its K and c, and q and q' now.
+template <class Real>
+struct PushedWall {
+  Real nu, stiffness, damping;
+  Real q, w;
+};
+
+// One piece. It is a motion (motion.hpp); y and y' in its states mean nothing.
+template <class Real, class Force>
+class JointContact {
+ public:
+  // A series in t / unit, and a bound on the third derivative, by t, of its function in the piece.
+  struct Function {
+    DrivenTerms<Real> terms;
+    Real third;
+  };
+
+  JointContact(const Real& zeta, const Force& forcing, const Real& begin, const Real& x, const Real& v,
+               const std::vector<PushedWall<Real>>& walls)
+      : walls_(walls), q_(walls.size()) {
+    const Real rate = rate_for(zeta, forcing, walls);
+    length_ = Real(driven_radians<Real>) / rate;
+    while (h_ * rate > 2) h_ /= 2;
+    over_h_ = 1 / h_;
+    set(x_, 0, x);
+    set(x_, 1, h_ * v);
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      set(q_[i], 0, walls[i].q);
+      set(q_[i], 1, h_ * walls[i].w);
+    }
+    const auto [sin, cos] = forcing.phase(begin);
+    const Real h_2 = h_ * h_, turn = h_ * forcing.frequency;
+    Real f_now = h_2 * (forcing.amplitude * sin), f_next = h_2 * (forcing.amplitude * (turn * cos));
+    for (std::size_t n = 0; n + 2 < driven_terms; ++n) {
+      const auto& over = reciprocals<Real>;
+      const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
+      Real sum = f_now - 2 * zeta * h_ * next * get(x_, n + 1) - h_2 * get(x_, n);
+      for (std::size_t i = 0; i < walls.size(); ++i) {
+        const auto& [nu, stiffness, damping, q, w] = walls[i];
+        const Real force =
+            damping * h_ * next * get(q_[i], n + 1) + stiffness * h_2 * get(q_[i], n);  // (M17.9)
+        sum += nu * force;
+        set(q_[i], n + 2, force);  // until x is known
+      }
+      set(x_, n + 2, sum * both);
+      for (DrivenTerms<Real>& q : q_) set(q, n + 2, -(sum + get(q, n + 2)) * both);
+      const Real f_after = -turn * turn * f_now * both;
+      f_now = f_next;
+      f_next = f_after;
+    }
+  }
+
+  const Real& length() const { return length_; }
+  // x and x' at t, and what they differ by from x0 + v0 t and v0.
+  struct Change {
+    Real x, v, dx, dv;
+  };
+  Change change(const Real& t) const {
+    const SeriesAt<Real> by = Departure<Real, driven_terms / 2>{x_}.at(t * over_h_);
+    const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
+    return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
+  }
+  State<Real> at(const Real& t) const {
+    const Change now = change(t);
+    return {now.x, now.v, Real(0), Real(0)};
+  }
+  // q and q' of the i-th wall.
+  std::array<Real, 2> overlap(std::size_t i, const Real& t) const {
+    const SeriesAt<Real> now = sum<Real>(q_[i], t * over_h_);
+    return {now.u, over_h_ * now.u1};
+  }
+  // Integral of nu c q'^2 over [0, t].
+  Real wall_work(std::size_t i, const Real& t) const {
+    const Real half = t / 2;
+    Real sum_ww{0};
+    for (const auto& [abscissa, weight] : gauss_16) {
+      for (const double side : {-abscissa, abscissa}) {
+        const Real w = overlap(i, half + half * side)[1];
+        sum_ww += half * weight * (w * w);
+      }
+    }
+    return walls_[i].nu * walls_[i].damping * sum_ww;
+  }
+
+  // What falls through zero where the i-th mass leaves its wall: how deep it is in it.
+  Function depth(std::size_t i, Wall wall) const {
+    return function(q_[i], wall == Wall::left ? Real(-1) : Real(1), 0);
+  }
+  // What falls through zero where a mass that flies meets a wall, u and u' now, which leads away from it if
+  // away is 1: u'' = -away x''.
+  Function gap(const Real& u, const Real& u1, const Real& away) const {
+    Function gap = function(x_, -away, 0);
+    set(gap.terms, 0, u);
+    set(gap.terms, 1, h_ * u1);
+    return gap;
+  }
+  // A bound on |x''|.
+  Real second_of_x() const { return bound(x_, 2); }
+  // When a function first falls through zero, in [0, until).
+  std::optional<Real> fall(const Function& g, const Real& until, Search<Real>& search) const {
+    Real from{0};
+    // At rest on a wall the third derivative may lead alone (M7.4).
+    const Real third = 6 * get(g.terms, 3);
+    if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0 && third > 0)
+      from = h_ * begin_by_third<Real>(third, bound(g.terms, 4), until * over_h_);
+    return fall(g, from, until, search);
+  }
+
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    return side * get(x_, 0) > 0 && side * end.x > 0 && keeps_sign(get(x_, 0), end.x, second_of_x(), t);
+  }
+  bool keeps_course(const Real& best, const State<Real>& end, const Real& t) const {
+    const Real v = over_h_ * get(x_, 1);
+    if (v * end.v > 0 && keeps_sign(v, end.v, bound(x_, 3), t)) return true;
+    const Real off = second_of_x() * t * t / 8;
+    return absolute(get(x_, 0)) + off <= best && absolute(end.x) + off <= best;
+  }
+  Real one_turn_within(const Real&) const { return 0; }
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return absolute(end.v) > second_of_x() * (t - from);
+  }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            Search<Real>& search) const {
+    return fall(function(x_, sign, order), from, until, search);
+  }
+  Real height(const Real& t) const { return absolute(at(t).x); }
+  std::array<Real, 4> leads_of_x() const {
+    return {get(x_, 0), over_h_ * get(x_, 1), 2 * get(x_, 2) * over_h_ * over_h_,
+            6 * get(x_, 3) * over_h_ * over_h_ * over_h_};
+  }
+  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
+                                       const Real&) const {
+    return enclosure(function(x_, sign, order), t);
+  }
+  Real panel(const Real&) const { return length_; }
+  Real resolution() const { return h_; }
+
+ private:
+  // (M17.17)
+  static Real rate_for(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls) {
+    Real all_k{0}, most_k{0}, all_c{0}, most_c{0};
+    for (const auto& [nu, stiffness, damping, q, w] : walls) {
+      all_k += nu * stiffness;
+      all_c += nu * damping;
+      if (stiffness > most_k) most_k = stiffness;
+      if (damping > most_c) most_c = damping;
+    }
+    return square_root(Real(1 + all_k + most_k)) + 2 * zeta + all_c + most_c +
+           (forcing ? forcing.frequency : Real(0));
+  }
+  static Real get(const DrivenTerms<Real>& terms, std::size_t n) { return terms[n / 2][n % 2]; }
+  static void set(DrivenTerms<Real>& terms, std::size_t n, const Real& value) {
+    terms[n / 2] =
+        n % 2 == 0 ? SimdPair<Real>{value, terms[n / 2][1]} : SimdPair<Real>{terms[n / 2][0], value};
+  }
+  // A bound on a derivative by t in the piece: the sum of its terms' sizes at the end.
+  Real bound(const DrivenTerms<Real>& terms, std::size_t order) const {
+    const Real end = length_ * over_h_;
+    Real all{0};
+    for (std::size_t n = driven_terms; n-- > order;) {
+      Real factor{1};
+      for (std::size_t k = 0; k < order; ++k) factor *= Real(double(n - k));
+      all = all * end + factor * absolute(get(terms, n));
+    }
+    for (std::size_t k = 0; k < order; ++k) all *= over_h_;
+    return all;
+  }
+  // Sign times the `order`-th derivative by t, 0 or 1.
+  Function function(const DrivenTerms<Real>& terms, const Real& sign, std::size_t order) const {
+    Function g{};
+    for (std::size_t n = 0; n + order < driven_terms; ++n)
+      set(g.terms, n,
+          order == 0 ? Real(sign * get(terms, n))
+                     : Real(sign * over_h_ * (Real(double(n + 1)) * get(terms, n + 1))));
+    g.third = bound(g.terms, 3);
+    return g;
+  }
+  LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
+    const SeriesAt<Real> now = sum<Real>(g.terms, t * over_h_);
+    return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third},
+            {},
+            std::numeric_limits<Real>::infinity()};
+  }
+  std::optional<Real> fall(const Function& g, const Real& from, const Real& until,
+                           Search<Real>& search) const {
+    if (from == 0 && get(g.terms, 0) >= 0) {
+      const SeriesAt<Real> end = sum<Real>(g.terms, until * over_h_);
+      if (stays_open(get(g.terms, 0), Real(over_h_ * get(g.terms, 1)), end.u, Real(over_h_ * end.u1), until,
+                     bound(g.terms, 4)))
+        return {};
+    }
+    return isolate_fall<Real>([&](const Real& t) { return enclosure(g, t); }, from, until, search, h_);
+  }
+
+  Real length_;
+  // The unit of time of the series, a power of two, so that no number is rounded for it: the rounding would
+  // be the same in every piece, and add up.
+  Real h_{1}, over_h_;
+  std::vector<PushedWall<Real>> walls_;
+  DrivenTerms<Real> x_{};
+  std::vector<DrivenTerms<Real>> q_;
+};
+
+}  // namespace impact_damper
