@@ -308,8 +308,9 @@ TEST_CASE("what is not allowed of a list is said by its field") {
   CHECK(field_of(Restitution{}) == "dampers[1].y0");
   scene.dampers[1].y0 = 2;
   CHECK(field_of(Restitution{}).empty());
-  CHECK(field_of(Exact{}) == "dampers");
-  CHECK(field_of(Cem{}).empty());  // whose walls give way
+  scene.dampers[1].y0 = 3;
+  CHECK(field_of(Exact{}).empty());  // whose walls give way
+  CHECK(field_of(Cem{}).empty());
   scene.dampers[0].clearance = 0;
   CHECK(field_of(Restitution{}) == "dampers[0].clearance");
   scene.dampers.assign(1001, {});
