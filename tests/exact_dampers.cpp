@@ -72,6 +72,29 @@ TEST_CASE("several dampers move as their Taylor series says") {
   }
 }
 
+TEST_CASE("several that press their walls until these ring no more leave them when they should") {
+  Scene scene;
+  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 6;
+  scene.dampers = {damper(0.05, 0.3, 3, 5000, 0, 0), damper(0.02, 0.2, 4, 4000, 0, 0),
+                   damper(0.3, 0.1, 5, 20000, 0, 0), damper(0.1, 0.4, 0.7, 900, 0.2, 0)};
+  Scene shaken = scene;
+  shaken.force_amplitude = 0.7, shaken.force_frequency = 0.9;
+  Scene fast = scene;
+  fast.force_amplitude = 3, fast.force_frequency = 7;
+  for (const Scene& each : {scene, shaken, fast}) {
+    const Run run = run_of(each);
+    const Reference reference(each, run.history->time);
+    const Distance far = distance(run, reference);
+    CHECK(far.x < 1e-13);
+    CHECK(far.y < 1e-12);
+    CHECK(far.viscous < 1e-13);
+    CHECK(far.residual < 1e-14);
+    REQUIRE(run.contacts->end.size() > 3);
+    CHECK(run.contacts->begin.front() == 0);
+    CHECK(run.contacts->end.front() > 0.4);
+  }
+}
+
 TEST_CASE("the parts of a damper, with their shares of its wall, are that damper") {
   constexpr std::array shares{0.5, 0.3, 0.2};
   for (Scene scene : single) {

@@ -4,7 +4,8 @@
 // While all secondary masses fly the primary mass is one oscillator, and who meets a wall next is found as
 // with rigid walls (secondary_masses.hpp). While one pushes its wall it moves as the one damper of exact.hpp
 // does, and the others fly on: most often a bound on x'' shows at once that none of them meets a wall
-// meanwhile (M17.15). While several push their walls, all move by power series (joint_contact.hpp).
+// meanwhile (M17.15). While several push their walls, all move by power series (joint_contact.hpp), and once
+// these walls ring no more, as one oscillator again (joint_slow_mode.hpp).
 #pragma once
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/joint_slow_mode.hpp"
 #include "impact_damper/motion/sticking.hpp"
 #include "impact_damper/motion/wall.hpp"
 
@@ -217,7 +219,10 @@ class ExactOfDampers {
     for (const std::size_t i : in_contact_)
       pushed_.push_back({masses_.nu[i], walls_[i].stiffness, walls_[i].damping,
                          masses_.away[i] * masses_.u[i], masses_.w(i)});
-    const Piece piece(system_.zeta, system_.forcing, tracker_.now(), x_, v_, pushed_);
+    if (ring_no_more()) return press_together();
+    Piece& piece = piece_;
+    if (pieces_together_ == 1) piece.set_walls(system_.zeta, system_.forcing, pushed_);
+    piece.begin(tracker_.now(), x_, v_, pushed_);
     Search<Real>& search = tracker_.search();
     search.steps_left -= std::int64_t(in_contact_.size());
     const Real remaining = tracker_.remaining();
@@ -226,8 +231,11 @@ class ExactOfDampers {
     const auto look_for = [&](std::size_t i, const typename Piece::Function& gap, std::optional<Wall> wall) {
       if (const auto time = piece.fall(gap, just_after(until), search)) consider({i, *time, wall}, until);
     };
-    for (std::size_t k = 0; k < in_contact_.size(); ++k)
-      look_for(in_contact_[k], piece.depth(k, masses_.wall(in_contact_[k])), {});
+    piece.look_until(until);
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      const Wall wall = masses_.wall(in_contact_[k]);
+      if (!piece.stays(k, wall)) look_for(in_contact_[k], piece.depth(k, wall), {});
+    }
     if (const Real most = piece.second_of_x(); !nobody_meets(most, until)) {
       for (std::size_t j = 0; j < masses_.size(); ++j) {
         if (masses_.held[j] || nobody_meets(most, until, j)) continue;
@@ -243,6 +251,55 @@ class ExactOfDampers {
     if (observer_.wants_energy()) {
       for (std::size_t k = 0; k < in_contact_.size(); ++k)
         walls_[in_contact_[k]].work += piece.wall_work(k, tracker_.passed());
+    }
+    take_events();
+  }
+
+  // Whether the walls of those in contact ring no more. They do for some pieces.
+  bool ring_no_more() {
+    constexpr int soonest = 16;
+    if (++pieces_together_ < soonest) return false;
+    if (pieces_together_ == soonest) slow_mode_ = SlowMode::of(system_.zeta, system_.forcing, pushed_);
+    return slow_mode_ && slow_mode_->holds(pushed_, tracker_.now(), x_, v_);
+  }
+  // Several press their walls, until one leaves or another meets a wall.
+  void press_together() {
+    const SlowMode& slow = *slow_mode_;
+    const Real begin = tracker_.now();
+    const JoinedMasses<Real, Force> motion(slow.oscillator(), slow.force(), begin + slow.ahead(), x_, v_,
+                                           Real(0));
+    const ForcedMotion<Real, Force>& primary = motion.primary();
+    Search<Real>& search = tracker_.search();
+    const Real remaining = tracker_.remaining(), length = primary.length();
+    Real until = length < remaining ? length : remaining;
+    events_.clear();
+    for (const Meeting<Real>& each : next_meeting_.find(masses_, primary, x_, v_, until, search))
+      consider({each.index, each.time, each.wall}, until);
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      const std::size_t i = in_contact_[k];
+      const auto depth = [&](const Real& t) {
+        return slow.depth(k, masses_.wall(i), primary, begin, t, search.span);
+      };
+      if (const auto time =
+              isolate_fall<Real>(depth, Real(0), just_after(until), search, motion.resolution()))
+        consider({i, *time, {}}, until);
+    }
+    const auto overlap = [&](std::size_t k, const Real& t) {
+      const auto now = primary.at(t);
+      return slow.overlap(k, begin + t, now.x, now.v);
+    };
+    State<Real> end = motion.at(until);
+    pass(
+        motion, until, end, Real(0), [&](const Real& t) { return primary.at(t); }, overlap);
+    if (observer_.wants_energy()) {
+      const auto panel = [&](const Real& t) { return motion.panel(t); };
+      for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+        OwnWall& wall = walls_[in_contact_[k]];
+        const auto rates = [&](const Real& t) { return std::array{Real(0), overlap(k, t)[1]}; };
+        wall.work += integrated_work(system_, rates, panel, begin, tracker_.passed(),
+                                     Real(masses_.nu[in_contact_[k]] * wall.damping), search)
+                         .wall;
+      }
     }
     take_events();
   }
@@ -328,6 +385,7 @@ class ExactOfDampers {
     masses_.held[i] = true;
     masses_.held_since[i] = double(tracker_.now());
     in_contact_.insert(std::ranges::lower_bound(in_contact_, i), i);
+    pieces_together_ = 0;
   }
   void leave(std::size_t i) {
     const double end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
@@ -349,6 +407,7 @@ class ExactOfDampers {
     masses_.u[i] = 0;
     masses_.held[i] = false;
     std::erase(in_contact_, i);
+    pieces_together_ = 0;
   }
 
   Energy energy_now() const {
@@ -364,6 +423,7 @@ class ExactOfDampers {
   }
 
   using Piece = JointContact<Real, Force>;
+  using SlowMode = JointSlowMode<Real, Force>;
   const System<Real, Force>& system_;
   const Scene& scene_;
   const Exact& options_;
@@ -379,6 +439,9 @@ class ExactOfDampers {
   NextMeeting<Real> next_meeting_;
   std::vector<Event> events_;
   std::vector<PushedWall<Real>> pushed_;
+  Piece piece_;
+  std::optional<SlowMode> slow_mode_;  // of those in contact, after some pieces
+  int pieces_together_ = 0;            // since who is in contact has changed
 };
 
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with.

@@ -15,6 +15,9 @@ class Complex {
   const Real& imag() const { return imag_; }
 
   friend Complex conjugate(const Complex& z) { return Complex(z.real_, -z.imag_); }
+  friend Complex operator+(const Complex& a, const Complex& b) {
+    return Complex(a.real_ + b.real_, a.imag_ + b.imag_);
+  }
   friend Complex operator-(const Complex& a, const Complex& b) {
     return Complex(a.real_ - b.real_, a.imag_ - b.imag_);
   }

@@ -23,7 +23,7 @@ struct PushedWall {
   Real q, w;
 };
 
-// One piece. It is a motion (motion.hpp); y and y' in its states mean nothing.
+// One piece at a time. It is a motion (motion.hpp); y and y' in its states mean nothing.
 template <class Real, class Force>
 class JointContact {
  public:
@@ -33,39 +33,60 @@ class JointContact {
     Real third;
   };
 
-  JointContact(const Real& zeta, const Force& forcing, const Real& begin, const Real& x, const Real& v,
-               const std::vector<PushedWall<Real>>& walls)
-      : walls_(walls), q_(walls.size()) {
+  // The walls are those of the piece that begins next.
+  void set_walls(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls) {
+    zeta_ = zeta;
+    forcing_ = forcing;
     const Real rate = rate_for(zeta, forcing, walls);
     length_ = Real(driven_radians<Real>) / rate;
+    h_ = 1;
     while (h_ * rate > 2) h_ /= 2;
     over_h_ = 1 / h_;
-    set(x_, 0, x);
-    set(x_, 1, h_ * v);
-    for (std::size_t i = 0; i < walls.size(); ++i) {
-      set(q_[i], 0, walls[i].q);
-      set(q_[i], 1, h_ * walls[i].w);
+    nu_.clear();
+    spring_.clear();
+    damping_.clear();
+    for (const auto& [nu, stiffness, damping, q, w] : walls) {
+      nu_.push_back(nu);
+      spring_.push_back(h_ * h_ * stiffness);
+      damping_.push_back(h_ * damping);
     }
-    const auto [sin, cos] = forcing.phase(begin);
-    const Real h_2 = h_ * h_, turn = h_ * forcing.frequency;
-    Real f_now = h_2 * (forcing.amplitude * sin), f_next = h_2 * (forcing.amplitude * (turn * cos));
+    for (std::vector<Real>* each : {&force_, &end_q_, &end_w_, &fourth_}) each->resize(walls.size());
+    q_.resize(driven_terms * walls.size());
+    const Real end = length_ * over_h_;
+    Real power = over_h_ * over_h_ * over_h_ * over_h_;
+    for (std::size_t n = 4; n < driven_terms; ++n) {
+      fourth_weight_[n] = power * double(n * (n - 1) * (n - 2) * (n - 3));
+      power *= end;
+    }
+  }
+  // Begins a piece: the walls are those of set_walls(), with their q and q' now.
+  void begin(const Real& time, const Real& x0, const Real& v0, const std::vector<PushedWall<Real>>& walls) {
+    const std::size_t count = walls.size();
+    std::array<Real, driven_terms> x{x0, h_ * v0};
+    for (std::size_t i = 0; i < count; ++i) {
+      q_[i] = walls[i].q;
+      q_[count + i] = h_ * walls[i].w;
+    }
+    const auto [sin, cos] = forcing_.phase(time);
+    const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
+    Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
+    const auto& over = reciprocals<Real>;
     for (std::size_t n = 0; n + 2 < driven_terms; ++n) {
-      const auto& over = reciprocals<Real>;
       const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
-      Real sum = f_now - 2 * zeta * h_ * next * get(x_, n + 1) - h_2 * get(x_, n);
-      for (std::size_t i = 0; i < walls.size(); ++i) {
-        const auto& [nu, stiffness, damping, q, w] = walls[i];
-        const Real force =
-            damping * h_ * next * get(q_[i], n + 1) + stiffness * h_2 * get(q_[i], n);  // (M17.9)
-        sum += nu * force;
-        set(q_[i], n + 2, force);  // until x is known
-      }
-      set(x_, n + 2, sum * both);
-      for (DrivenTerms<Real>& q : q_) set(q, n + 2, -(sum + get(q, n + 2)) * both);
+      const Real *now = q_.data() + n * count, *rate = now + count;
+      Real* const after = q_.data() + (n + 2) * count;
+      for (std::size_t i = 0; i < count; ++i)
+        force_[i] = next * damping_[i] * rate[i] + spring_[i] * now[i];  // (M17.9)
+      Real sum = f_now - 2 * zeta_ * h_ * next * x[n + 1] - h_2 * x[n];
+      for (std::size_t i = 0; i < count; ++i) sum += nu_[i] * force_[i];
+      x[n + 2] = sum * both;
+      for (std::size_t i = 0; i < count; ++i) after[i] = -(sum + force_[i]) * both;
       const Real f_after = -turn * turn * f_now * both;
       f_now = f_next;
       f_next = f_after;
     }
+    for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = SimdPair<Real>{x[2 * n], x[2 * n + 1]};
+    end_ = -1;
   }
 
   const Real& length() const { return length_; }
@@ -84,25 +105,53 @@ class JointContact {
   }
   // q and q' of the i-th wall.
   std::array<Real, 2> overlap(std::size_t i, const Real& t) const {
-    const SeriesAt<Real> now = sum<Real>(q_[i], t * over_h_);
+    if (t == end_) return {end_q_[i], end_w_[i]};
+    const SeriesAt<Real> now = sum<Real>(terms_of(i), t * over_h_);
     return {now.u, over_h_ * now.u1};
   }
   // Integral of nu c q'^2 over [0, t].
   Real wall_work(std::size_t i, const Real& t) const {
+    const DrivenTerms<Real> q = terms_of(i);
     const Real half = t / 2;
     Real sum_ww{0};
     for (const auto& [abscissa, weight] : gauss_16) {
       for (const double side : {-abscissa, abscissa}) {
-        const Real w = overlap(i, half + half * side)[1];
+        const Real w = over_h_ * sum<Real>(q, Real((half + half * side) * over_h_)).u1;
         sum_ww += half * weight * (w * w);
       }
     }
-    return walls_[i].nu * walls_[i].damping * sum_ww;
+    return nu_[i] * (damping_[i] * over_h_) * sum_ww;
   }
 
+  // Proves of those whose q keeps its sign until t that it does (Lemma L2); stays(i) tells.
+  void look_until(const Real& t) {
+    const std::size_t count = nu_.size();
+    const Real s = t * over_h_;
+    const Real* last = q_.data() + (driven_terms - 1) * count;
+    for (std::size_t i = 0; i < count; ++i) {
+      end_q_[i] = last[i];
+      end_w_[i] = 0;
+      fourth_[i] = fourth_weight_[driven_terms - 1] * absolute(last[i]);
+    }
+    for (std::size_t n = driven_terms - 1; n-- > 0;) {
+      const Real *now = q_.data() + n * count, weight = fourth_weight_[n];
+      for (std::size_t i = 0; i < count; ++i) {
+        end_w_[i] = end_w_[i] * s + end_q_[i];
+        end_q_[i] = end_q_[i] * s + now[i];
+        fourth_[i] += weight * absolute(now[i]);
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) end_w_[i] *= over_h_;
+    end_ = t;
+  }
+  bool stays(std::size_t i, Wall wall) const {
+    const Real inward = wall == Wall::left ? -1 : 1;
+    return stays_open(Real(inward * q_[i]), Real(inward * (over_h_ * q_[nu_.size() + i])),
+                      Real(inward * end_q_[i]), Real(inward * end_w_[i]), end_, fourth_[i]);
+  }
   // What falls through zero where the i-th mass leaves its wall: how deep it is in it.
   Function depth(std::size_t i, Wall wall) const {
-    return function(q_[i], wall == Wall::left ? Real(-1) : Real(1), 0);
+    return function(terms_of(i), wall == Wall::left ? Real(-1) : Real(1), 0);
   }
   // What falls through zero where a mass that flies meets a wall, u and u' now, which leads away from it if
   // away is 1: u'' = -away x''.
@@ -183,6 +232,13 @@ class JointContact {
     for (std::size_t k = 0; k < order; ++k) all *= over_h_;
     return all;
   }
+  DrivenTerms<Real> terms_of(std::size_t i) const {
+    const std::size_t count = nu_.size();
+    DrivenTerms<Real> q;
+    for (std::size_t n = 0; n < q.size(); ++n)
+      q[n] = SimdPair<Real>{q_[2 * n * count + i], q_[(2 * n + 1) * count + i]};
+    return q;
+  }
   // Sign times the `order`-th derivative by t, 0 or 1.
   Function function(const DrivenTerms<Real>& terms, const Real& sign, std::size_t order) const {
     Function g{};
@@ -210,13 +266,20 @@ class JointContact {
     return isolate_fall<Real>([&](const Real& t) { return enclosure(g, t); }, from, until, search, h_);
   }
 
-  Real length_;
+  Real zeta_{0};
+  Force forcing_{};
+  Real length_{0};
   // The unit of time of the series, a power of two, so that no number is rounded for it: the rounding would
   // be the same in every piece, and add up.
-  Real h_{1}, over_h_;
-  std::vector<PushedWall<Real>> walls_;
+  Real h_{1}, over_h_{1};
+  std::vector<Real> nu_, spring_, damping_;  // of each wall; h^2 K and h c
+  std::vector<Real> q_;                      // the terms of order 0 of all walls, then those of order 1 ...
+  std::vector<Real> force_;
   DrivenTerms<Real> x_{};
-  std::vector<DrivenTerms<Real>> q_;
+  std::array<Real, driven_terms>
+      fourth_weight_{};  // the fourth derivative of a q is at most the sum of these times its terms' sizes
+  Real end_{-1};         // where these are known:
+  std::vector<Real> end_q_, end_w_, fourth_;
 };
 
 }  // namespace impact_damper
