@@ -105,7 +105,8 @@ Options options_of_plan() {
       {"--vary", "NAME=FROM:TO:N[:log]",
        "without a plan: the number of the scene that takes N values, both ends\nincluded, equally spaced "
        "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, ...; "
-       "beside a\nscene in units the names and units of its file. Given several times:\nall combinations",
+       "beside a\nscene in units the names and units of its file; clearance_2 is that of\nthe second of "
+       "several dampers. Given several times: all combinations",
        "Sweep", Option::Takes::repeated_value},
       {"--keep", "LIST",
        "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them",
@@ -120,7 +121,7 @@ std::string long_name(const std::string& name) { return name.substr(name.rfind('
 
 Plan plan_of_options(Arguments& arguments) {
   Plan plan;
-  plan.scene = scene_of(arguments);
+  plan.scene = scene_of(arguments, Stops::needed, DamperList::allowed);
   plan.engine = engine_of(arguments);
   reject_options_beside_units(arguments, plan.scene, ", or --vary,");
   for (const std::string& text : arguments.texts("--vary"))

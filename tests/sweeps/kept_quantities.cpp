@@ -214,12 +214,36 @@ TEST_CASE("a motion that still grows has no steady amplitude, alone or among oth
         doctest::Approx(linear_response(0.01, 1, 0.001, 1)).epsilon(1e-3));
 }
 
+TEST_CASE("of several dampers the largest wall force is that of the one that has it") {
+  Scene scene;
+  scene.until_time = 5;
+  Scene list = scene;
+  list.dampers = {{}};
+  const std::vector<std::string> names{"impacts", "largest_impact_speed", "largest_wall_force"};
+  CHECK(kept(list, names).numbers == kept(scene, names).numbers);
+  list.dampers.push_back({.mass_ratio = 0.01, .clearance = 3, .wall_stiffness = 1e5});
+  const Run run = simulate(list, Exact{}, Record{.impacts = true});
+  double largest = 0;
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i)
+    largest = std::max(largest, short_contact(with_alone(list, list.dampers[run.impacts->damper[i]]),
+                                              Calibration::fixed_wall, run.impacts->relative_velocity[i])
+                                    .force);
+  CHECK(only(kept(list, {"largest_wall_force"})) == largest);
+  // One that begins beyond the right wall.
+  list.dampers.push_back({.clearance = 2, .wall_stiffness = 1e6, .y0 = 2.5});
+  list.until_time = 1e-6;
+  CHECK(only(kept(list, {"largest_wall_force"})) == doctest::Approx(0.5e6));
+}
+
 TEST_CASE("without losses there is no loss factor") {
   Scene scene;
   scene.restitution = 1;
   scene.until_time = 100;
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
     CHECK_FALSE(kept(scene, {"largest_loss_factor"}, engine).numbers[0]);
+  Scene list = scene;
+  list.dampers.assign(2, {.mass_ratio = 0.01, .restitution = 1});
+  CHECK_FALSE(kept(list, {"largest_loss_factor"}).numbers[0]);
   scene.damping_ratio = 0.01;
   CHECK(kept(scene, {"largest_loss_factor"}).numbers[0]);
 }

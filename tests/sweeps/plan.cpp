@@ -122,6 +122,31 @@ TEST_CASE("in units what scales the scene may vary, too") {
   CHECK(columns[2].unit == "kg");
 }
 
+TEST_CASE("each of several dampers has numbers of its own that may vary") {
+  const Plan plan = plan_of(
+      R"("scene": {"until_amplitude": 5, "dampers": [{}, {"mass_ratio": 0.01, "clearance": 3}]},
+         "grid": [{"number": "clearance_2", "values": [2, 4]}, {"number": "restitution_1", "values": [0.5]},
+                  {"number": "x0", "values": [5, 7]}])");
+  CHECK(varied_names(plan) == std::vector<std::string>{"clearance_2", "restitution_1", "x0"});
+  Scene scene = plan.scene.scene;
+  scene.dampers[1].clearance = 4, scene.dampers[0].restitution = 0.5, scene.x0 = 5;
+  CHECK(run_of(plan, 2).scene == scene);
+  CHECK(written(parse_plan("plan.json", written(plan))) == written(plan));
+  CHECK(problem_of(R"("scene": {"until_amplitude": 5, "dampers": [{}]},
+                      "grid": [{"number": "mass_ratio", "values": [0.1]}])")
+            .find("did you mean \"mass_ratio_1\"?") != std::string::npos);
+
+  const Plan boxes = plan_of(
+      R"("scene": {"mass": 40, "stiffness": 16000, "initial_displacement": 60, "until_millimetres": 50,
+                   "dampers": [{"secondary_mass": 1.6, "clearance": 10}, {"secondary_mass": 0.8, "clearance": 20}]},
+         "grid": [{"number": "secondary_mass_2", "values": [0.4, 0.8]}, {"number": "clearance_1", "values": [5]}])");
+  const PlannedRun run = run_of(boxes, 0);
+  CHECK(run.scene.dampers[1].mass_ratio == 0.01);
+  CHECK(run.scene.dampers[1].clearance == 4);
+  CHECK(run.scales->length == 5);
+  CHECK(run.scene.x0 == 12);
+}
+
 TEST_CASE("a scene that is not valid has its row, with the reason") {
   const Plan plan = plan_of(
       decay + R"("samples": {"count": 40, "numbers": [{"number": "restitution", "half_width": 1.5}]})");

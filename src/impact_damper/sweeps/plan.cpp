@@ -28,31 +28,16 @@ bool is_in_grid(const Plan& plan, const Variable& variable) {
                              [&](const GridAxis& axis) { return axis.variable.name == variable.name; });
 }
 
-// A scene of the plan, whose numbers are being set.
-struct ChangedScene {
-  Scene scene;
-  std::optional<SceneInUnits> in_units;
-
-  void set(const Variable& variable, double value) {
-    if (in_units) {
-      (*in_units).*variable.number_in_units = value;
-    } else {
-      scene.*variable.number = value;
-    }
+// Of a scene whose numbers have been set.
+void finish(PlannedRun& run, const SceneFile& changed) {
+  if (!changed.in_units) {
+    run.scene = changed.scene;
+    run.problems = problems_of(run.scene, DamperList::allowed);
+  } else if (run.problems = problems_of(*changed.in_units, DamperList::allowed); run.problems.empty()) {
+    run.scene = dimensionless(*changed.in_units);
+    run.scales = scales_of(*changed.in_units);
   }
-  double get(const Variable& variable) const {
-    return in_units ? ((*in_units).*variable.number_in_units).value_or(0) : scene.*variable.number;
-  }
-  void finish(PlannedRun& run) const {
-    if (!in_units) {
-      run.scene = scene;
-      run.problems = problems_of(run.scene);
-    } else if (run.problems = problems_of(*in_units); run.problems.empty()) {
-      run.scene = dimensionless(*in_units);
-      run.scales = scales_of(*in_units);
-    }
-  }
-};
+}
 
 double drawn(const Samples& samples, std::size_t n, std::int64_t i, double otherwise) {
   const SampledNumber& number = samples.numbers[n];
@@ -84,18 +69,62 @@ void append_field(std::string& row, std::string_view text) {
 
 }  // namespace
 
+std::optional<double> Variable::of(const SceneFile& scene) const {
+  if (number) return scene.scene.*number;
+  if (number_of_damper) return scene.scene.dampers[damper].*number_of_damper;
+  if (number_in_units) return (*scene.in_units).*number_in_units;
+  return scene.in_units->dampers[damper].*number_of_damper_in_units;
+}
+
+void Variable::set(SceneFile& scene, double value) const {
+  if (number) {
+    scene.scene.*number = value;
+  } else if (number_of_damper) {
+    scene.scene.dampers[damper].*number_of_damper = value;
+  } else if (number_in_units) {
+    (*scene.in_units).*number_in_units = value;
+  } else {
+    scene.in_units->dampers[damper].*number_of_damper_in_units = value;
+  }
+}
+
 std::vector<Variable> variables_of(const SceneFile& scene) {
   std::vector<Variable> variables;
+  const std::size_t dampers = scene.scene.dampers.size();
+  const auto numbered = [](std::string_view name, std::size_t damper) {
+    return std::string(name) + "_" + std::to_string(damper + 1);
+  };
   if (scene.in_units) {
     for (const UnitField& field : unit_fields) {
       if (field.becomes == "until_time" || field.becomes == "until_amplitude") continue;
-      variables.push_back(
-          {field.name, field.unit, {field.least, field.most, field.least_is_allowed}, nullptr, field.member});
+      Variable variable{.name = std::string(field.name),
+                        .unit = field.unit,
+                        .range = {field.least, field.most, field.least_is_allowed}};
+      const auto* const its = std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name);
+      if (dampers == 0 || its == damper_unit_fields.end()) {
+        variable.number_in_units = field.member;
+        variables.push_back(variable);
+        continue;
+      }
+      variable.number_of_damper_in_units = its->member;
+      for (variable.damper = 0; variable.damper < dampers; ++variable.damper) {
+        variable.name = numbered(field.name, variable.damper);
+        variables.push_back(variable);
+      }
     }
-  } else {
-    for (const SceneField& field : scene_fields)
-      variables.push_back({field.name, "", within(field.least, field.most), field.member, nullptr});
+    return variables;
   }
+  for (const SceneField& field : scene_fields) {
+    if (dampers > 0 && is_of_one_damper(field)) continue;
+    variables.push_back(
+        {.name = std::string(field.name), .range = within(field.least, field.most), .number = field.member});
+  }
+  for (const SceneDamperField& field : scene_damper_fields)
+    for (std::size_t i = 0; i < dampers; ++i)
+      variables.push_back({.name = numbered(field.name, i),
+                           .range = within(field.least, field.most),
+                           .number_of_damper = field.member,
+                           .damper = i});
   return variables;
 }
 
@@ -147,31 +176,31 @@ std::vector<std::string> varied_names(const Plan& plan) {
 
 PlannedRun run_of(const Plan& plan, std::int64_t i) {
   PlannedRun run;
-  ChangedScene changed{plan.scene.scene, plan.scene.in_units};
+  SceneFile changed = plan.scene;
   run.values.resize(plan.grid.size());
   std::int64_t rest = i / samples_of(plan);
   for (std::size_t n = plan.grid.size(); n-- > 0;) {
     const GridAxis& axis = plan.grid[n];
     run.values[n] = axis.value(rest % axis.size());
-    changed.set(axis.variable, run.values[n]);
+    axis.variable.set(changed, run.values[n]);
     rest /= axis.size();
   }
   if (plan.samples) {
     for (std::size_t n = 0; n < plan.samples->numbers.size(); ++n) {
       const Variable& variable = plan.samples->numbers[n].variable;
-      run.values.push_back(drawn(*plan.samples, n, i % samples_of(plan), changed.get(variable)));
-      changed.set(variable, run.values.back());
+      run.values.push_back(drawn(*plan.samples, n, i % samples_of(plan), variable.of(changed).value_or(0)));
+      variable.set(changed, run.values.back());
     }
   }
-  changed.finish(run);
+  finish(run, changed);
   return run;
 }
 
 PlannedRun run_of(const Plan& plan, const std::vector<double>& grid) {
   PlannedRun run{.values = grid, .problems = {}, .scene = {}, .scales = {}};
-  ChangedScene changed{plan.scene.scene, plan.scene.in_units};
-  for (std::size_t n = 0; n < grid.size(); ++n) changed.set(plan.grid[n].variable, grid[n]);
-  changed.finish(run);
+  SceneFile changed = plan.scene;
+  for (std::size_t n = 0; n < grid.size(); ++n) plan.grid[n].variable.set(changed, grid[n]);
+  finish(run, changed);
   return run;
 }
 

@@ -17,12 +17,21 @@
 namespace impact_damper {
 
 // A number of the scene that may take other values: one of a dimensionless scene, or one of a scene in units,
-// whose name and unit are those of its file. The stops are none.
+// whose name and unit are those of its file. Those of several dampers have the damper's number, from 1,
+// behind it: clearance_2. The stops are none.
 struct Variable {
-  std::string_view name{}, unit{};  // unit: "" without one, and in a dimensionless scene
+  std::string name{};
+  std::string_view unit{};          // "" without one, and in a dimensionless scene
   NumberRange range{};              // what the scene allows of it
-  double Scene::*number = nullptr;  // one of the two
+  double Scene::*number = nullptr;  // one of these
   std::optional<double> SceneInUnits::*number_in_units = nullptr;
+  double SceneDamper::*number_of_damper = nullptr;
+  std::optional<double> DamperInUnits::*number_of_damper_in_units = nullptr;
+  std::size_t damper = 0;  // which, from 0
+
+  // Its value; none where a scene in units leaves it out.
+  std::optional<double> of(const SceneFile& scene) const;
+  void set(SceneFile& scene, double value) const;
 };
 std::vector<Variable> variables_of(const SceneFile& scene);
 

@@ -120,14 +120,14 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
     const bool both = object.has("scene");
     if (both) object.reject("scene", "either it or scene_file must be given, got both");
     if (!object.required("scene_file", name, some_text) || both) return {};
-    return read_scene_file(folder / name);
+    return read_scene_file(folder / name, DamperList::allowed);
   }
   if (!object.has("scene")) {
     object.reject("scene", "it or scene_file must be given");
     return {};
   }
   ObjectReader scene = object.required_object("scene");
-  return read_scene_object(scene);
+  return read_scene_object(scene, DamperList::allowed);
 }
 
 Plan finished(JsonDocument document, const std::filesystem::path& folder) {
@@ -262,8 +262,7 @@ std::vector<Problem> problems_of(const Plan& plan) {
             {"samples", in_quotes(name) +
                             " is in the grid: it may vary about its value there, "
                             "by half_width or standard_deviation, not from one number to another"});
-      if (number.law != SampledNumber::Law::between && !in_grid && plan.scene.in_units &&
-          !((*plan.scene.in_units).*number.variable.number_in_units))
+      if (number.law != SampledNumber::Law::between && !in_grid && !number.variable.of(plan.scene))
         problems.push_back({"samples", in_quotes(name) + " has no value in the scene to vary about"});
     }
   }
@@ -282,6 +281,10 @@ std::vector<Problem> problems_of(const Plan& plan) {
     worst = worst || each.quantity->experiment == Experiment::worst;
     forced = forced || each.quantity->experiment != Experiment::run;
   }
+  if (forced && !plan.scene.scene.dampers.empty())
+    problems.push_back(
+        {"quantities",
+         "must be of runs, as the scene has a list of dampers, not of steady motions or exponents"});
   if (worst && !plan.forced.frequencies)
     problems.push_back(
         {"frequencies", "missing, the range must be given in which the worst one is looked for"});
