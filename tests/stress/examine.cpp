@@ -35,6 +35,10 @@ void check_finite(const Run& run, std::string& broken) {
   column("history v", run.history->v);
   column("history y", run.history->y);
   column("history w", run.history->w);
+  for (const auto& damper : run.history->dampers) {
+    column("history y of a damper", damper.y);
+    column("history w of a damper", damper.w);
+  }
   const EnergyBalance& balance = *run.energy;
   column("balance", {balance.initial.total(), balance.final.total(), balance.contact_loss,
                      balance.bounce_down_loss, balance.viscous_work, balance.forcing_work, balance.residual});
@@ -57,40 +61,59 @@ void check_bounds(const Run& run, std::string& broken) {
   // An impact that is found again and again where the state lies within rounding of a wall. (With e = 1
   // bounces too low for the last bit of time go on for ever.)
   const Impacts& impacts = *run.impacts;
-  if (run.scene.restitution == 1) return;
-  for (std::size_t i = 3; i < impacts.time.size(); ++i) {
-    if (impacts.wall[i] == impacts.wall[i - 3] && impacts.time[i] - impacts.time[i - 3] == 0 &&
-        impacts.relative_velocity[i] == impacts.relative_velocity[i - 3] && broken.empty())
-      broken = "the same impact four times, at row " + std::to_string(i);
+  const std::size_t dampers = std::max<std::size_t>(1, run.scene.dampers.size());
+  for (std::size_t n = 0; n < dampers; ++n) {
+    if ((run.scene.dampers.empty() ? run.scene.restitution : run.scene.dampers[n].restitution) == 1) continue;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < impacts.time.size(); ++i)
+      if (impacts.damper.empty() || impacts.damper[i] == std::int32_t(n)) rows.push_back(i);
+    for (std::size_t k = 3; k < rows.size(); ++k) {
+      const std::size_t i = rows[k], j = rows[k - 3];
+      if (impacts.wall[i] == impacts.wall[j] && impacts.time[i] - impacts.time[j] == 0 &&
+          impacts.relative_velocity[i] == impacts.relative_velocity[j] && broken.empty())
+        broken = "the same impact four times, at row " + std::to_string(i);
+    }
   }
 }
 
 // How far y lies beyond its side of a wall, by the rounding of a straight flight less an oscillation. Within
 // a rounding of a contact's ends, in time, either side will do.
-double outside(const Run& run) {
-  Worst worst;
+void take_outside(const Run& run, std::size_t damper, double clearance, const std::vector<double>& y_of,
+                  const std::vector<double>& w_of, Worst& worst) {
   const History& history = *run.history;
   const Contacts& contacts = *run.contacts;
   const bool rigid = std::holds_alternative<Restitution>(run.engine);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < contacts.begin.size(); ++i)
+    if (contacts.damper.empty() || contacts.damper[i] == std::int32_t(damper)) rows.push_back(i);
   std::size_t next = 0;
   for (std::size_t i = 0; i < history.time.size(); ++i) {
-    const double t = history.time[i], y = history.y[i], instant = 4 * epsilon * (1 + t);
-    while (next < contacts.end.size() && contacts.end[next] < t - instant) ++next;
-    double beyond = std::max(-y, y - 1);
-    if (next < contacts.begin.size() && contacts.begin[next] <= t + instant) {
-      const double inwards = contacts.wall[next] == Wall::left ? -y : y - 1;
-      const bool inside = contacts.begin[next] < t - instant && t + instant < contacts.end[next];
+    const double t = history.time[i], y = y_of[i], instant = 4 * epsilon * (1 + t);
+    while (next < rows.size() && contacts.end[rows[next]] < t - instant) ++next;
+    double beyond = std::max(-y, y - clearance);
+    if (next < rows.size() && contacts.begin[rows[next]] <= t + instant) {
+      const std::size_t row = rows[next];
+      const double inwards = contacts.wall[row] == Wall::left ? -y : y - clearance;
+      const bool inside = contacts.begin[row] < t - instant && t + instant < contacts.end[row];
       const double beyond_in_contact = rigid ? std::abs(inwards) : -inwards;
       beyond = inside ? beyond_in_contact : std::min(beyond, beyond_in_contact);
     }
-    const double speed = std::abs(history.w[i]) + std::abs(history.v[i]) + std::abs(history.x[i]) +
-                         run.scene.force_amplitude + 1;
+    const double speed = std::abs(w_of[i]) + std::abs(history.v[i]) + std::abs(history.x[i]) +
+                         run.scene.force_amplitude + std::max(1.0, clearance);
     worst.take(beyond / (epsilon * (1 + t) * speed));
   }
+}
+double outside(const Run& run) {
+  Worst worst;
+  const History& history = *run.history;
+  if (run.scene.dampers.empty()) take_outside(run, 0, 1, history.y, history.w, worst);
+  for (std::size_t n = 0; n < run.scene.dampers.size(); ++n)
+    take_outside(run, n, run.scene.dampers[n].clearance, history.dampers[n].y, history.dampers[n].w, worst);
   return worst;
 }
 
 void check_end(const Run& run, std::string& broken) {
+  if (!run.scene.dampers.empty()) return;  // which contact is whose inconsistencies_of() knows
   const double y = run.history->y.back();  // at the end, if the run came so far
   const bool cut = run.stop_reason == StopReason::time && (y < 0 || y > 1);
   if (cut && std::holds_alternative<Exact>(run.engine) && !run.contacts->end.empty() &&

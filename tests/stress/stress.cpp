@@ -3,10 +3,10 @@
 //   impact-damper-stress [--brief] [--only SUBJECT] [--seed N] [--scenes N] [--threads N] FOLDER
 //
 // Writes FOLDER/stress.md and stress.json (the table, and every miss with what repeats it), and the tables
-// that are drawn; prints the first. Subjects: central-differences, random, aimed, sensitivity; all of them
-// without --only. --brief: the same with smaller counts. --seed: this random scene only (or, with
-// --only aimed, this grazing one). Exit code 1 if anything was missed. Nothing written depends on the number
-// of threads or on time, but for FOLDER/slowest.txt.
+// that are drawn; prints the first. Subjects: central-differences, random, aimed, dampers, sensitivity; all
+// of them without --only. --brief: the same with smaller counts. --seed: this random scene only (or, with
+// --only aimed, this grazing one; with --only dampers, this list). Exit code 1 if anything was missed.
+// Nothing written depends on the number of threads or on time, but for FOLDER/slowest.txt.
 #include "stress.hpp"
 
 #include <cstdio>
@@ -25,9 +25,10 @@ struct Subject {
   std::vector<Check> (*run)(const Options&);
   bool seeded;
 };
-constexpr std::array<Subject, 4> subjects{{{"central-differences", central_differences, false},
+constexpr std::array<Subject, 5> subjects{{{"central-differences", central_differences, false},
                                            {"random", random_scenes_of_all_kinds, true},
                                            {"aimed", aimed_scenes, true},
+                                           {"dampers", several_dampers, true},
                                            {"sensitivity", sensitivity, false}}};
 
 int usage(const std::string& what) {
@@ -88,7 +89,8 @@ int run(const std::vector<std::string>& arguments) {
       checks.push_back(check);
     }
   }
-  if (!known) return usage("--only: must be central-differences, random, aimed or sensitivity, got " + only);
+  if (!known)
+    return usage("--only: must be central-differences, random, aimed, dampers or sensitivity, got " + only);
   const std::string table = markdown(checks);
   impact_damper::write_file(options.folder / "stress.md", table);
   impact_damper::write_file(options.folder / "stress.json", json(checks));

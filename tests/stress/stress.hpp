@@ -23,6 +23,7 @@ struct Options {
 std::vector<Check> central_differences(const Options& options);
 std::vector<Check> random_scenes_of_all_kinds(const Options& options);
 std::vector<Check> aimed_scenes(const Options& options);
+std::vector<Check> several_dampers(const Options& options);
 std::vector<Check> sensitivity(const Options& options);
 
 }  // namespace stress
