@@ -40,7 +40,7 @@ first_axis(name, factor, low, high, is_logarithmic) = \
 labels(name, what, noun, symbol, unit) = \
   sprintf("set %slabel '%s'; name_%s = '%s'; ", name, noun.in_unit(unit), name, strlen(unit) ? noun.in_unit(unit) : symbol).\
   (!strlen(unit) ? "" : sprintf("set %s2label '%s' offset %s; ", name, \
-    what eq "time" ? "dimensionless time t" : what eq "frequency" ? "ω, in units of Ω" : symbol.", in units of the clearance", \
+    what eq "time" ? "dimensionless time t" : what eq "frequency" ? "ω, in units of Ω" : symbol.(has("dampers") ? ", in units of ε" : ", in units of the clearance"), \
     name eq "x" ? "0,-0.5" : "-0.8,0"))
 in_unit(unit) = strlen(unit) ? " in ".unit : ""
 second_axis(name, low, high, is_logarithmic) = \

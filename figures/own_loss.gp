@@ -20,9 +20,11 @@ logarithmic = (is_wide(from, to) ? "x" : "").(STATS_min > 0 ? "y" : "")
 if (STATS_min > 0) {
   set logscale y
   set yrange [STATS_min / 1.5:STATS_max * 3]
+  bottom = STATS_min / 1.4
   eval marks("y", STATS_min / 1.5, STATS_max * 3)
 } else {
   set yrange [STATS_min - 0.1 * STATS_max:1.5 * STATS_max]
+  bottom = STATS_min - 0.07 * STATS_max
 }
 set ylabel "loss factor η, per radian" offset 0.5,0
 eval axis("x", "length", "peak amplitude", "A", from, to, is_wide(from, to))
@@ -35,5 +37,6 @@ if (fold > 0 && fold < to) {
 }
 eval 'plot '.optional("band-1", '($1*unit_x):2:3 with filledcurves lc rgb sky title columnheader(3),').forms.\
   (!is_seen ? "" : optional("failed-1", '($1*unit_x):2 with points pt 7 ps 0.35 lc rgb vermillion title "after impact failure",')).\
+  optional("folds", '($1*unit_x):(bottom) with points pt 9 ps 0.7 lc rgb grey title "a damper'."'".'s impacts fail",').\
   'table index "curve-1" using ($1*unit_x):2 with lines ls 1 title columnheader(2)'
 eval axes(name_x, "η", logarithmic)

@@ -28,7 +28,7 @@ std::string page_of(const Findings& findings, const std::vector<Drawing>& drawin
 }
 
 int report(Arguments& arguments) {
-  const SceneFile file = scene_of(arguments);
+  const SceneFile file = scene_of(arguments, Stops::needed, DamperList::allowed);
   const Engine engine = engine_of(arguments);
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);
@@ -44,6 +44,10 @@ int report(Arguments& arguments) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
+  if (!file.scene.dampers.empty() && file.scene.force_amplitude != 0)
+    throw InputError(scene_name, {{"/dampers",
+                                   "a list under a force is for run and sweep only: report takes "
+                                   "several dampers in free motion"}});
   require_gnuplot();
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 

@@ -43,7 +43,8 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
     const double shift = options.step * (drawn & 1 ? steps : -steps);
     const Scene shifted = scaled(scene, 1 + shift);
     // Beyond the largest number that a scene allows there is none: then the other way.
-    const bool is_beyond = problems_of(shifted).size() > problems_of(scene).size();
+    const bool is_beyond =
+        problems_of(shifted, DamperList::allowed).size() > problems_of(scene, DamperList::allowed).size();
     scenes.push_back(is_beyond ? scaled(scene, 1 - shift) : shifted);
   }
   return scenes;

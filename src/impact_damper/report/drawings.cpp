@@ -40,15 +40,25 @@ void thin(Drawing& drawing) {
   }
 }
 
-Drawing drawing_of(const Findings& findings, const std::string& name, const std::string& title) {
+// of_one: of several dampers this one alone, with lengths divided by its clearance.
+Drawing drawing_of(const Findings& findings, const std::string& name, const std::string& what,
+                   std::optional<std::size_t> of_one = std::nullopt) {
   const Subject& subject = findings.subject;
+  const double unit = of_one ? subject.scene.dampers[*of_one].clearance : 1;
+  const std::string title = of_one ? what + ", damper " + std::to_string(*of_one + 1) : what;
   Drawing drawing{name, "own_" + name + ".gp", title, {}};
   drawing.table.header = {title, "Parameters: ", "Scene: " + scene_text(subject.scene),
                           "Engine: " + std::string(name_of(subject.engine))};
   const auto ratio = [](double value) { return rounded_text(value, 3); };
   std::string& parameters = drawing.table.header[1];
-  parameters += "ν = " + ratio(subject.scene.mass_ratio) + ", e = " + ratio(subject.scene.restitution) +
-                ", ζ = " + ratio(subject.scene.damping_ratio);
+  if (findings.several()) {
+    double mass = 0;
+    for (const SceneDamper& damper : subject.scene.dampers) mass += damper.mass_ratio;
+    parameters += std::to_string(subject.scene.dampers.size()) + " dampers, together ν = " + ratio(mass);
+  } else {
+    parameters += "ν = " + ratio(subject.scene.mass_ratio) + ", e = " + ratio(subject.scene.restitution);
+  }
+  parameters += ", ζ = " + ratio(subject.scene.damping_ratio);
   if (findings.forced())
     parameters +=
         ", f = " + ratio(subject.scene.force_amplitude) + ", ω = " + ratio(subject.scene.force_frequency);
@@ -58,10 +68,18 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
     drawing.table.blocks.push_back(
         {.name = "scales",
          .columns = {{"time", "1/Omega_n in s", {subject.scales->time()}},
-                     {"length", "epsilon in mm", {subject.scales->length}},
+                     {"length", "unit of length in mm", {subject.scales->length * unit}},
                      {"frequency", "Omega_n/(2 pi) in Hz", {subject.scales->frequency()}}}});
   }
+  // Lengths are not divided by a clearance then.
+  if (findings.several() && !of_one)
+    drawing.table.blocks.push_back(
+        {.name = "dampers", .columns = {{"dampers", "how many", {double(subject.scene.dampers.size())}}}});
   return drawing;
+}
+
+std::optional<std::size_t> one_of_several(const Findings& findings, std::size_t number) {
+  return findings.several() ? std::optional(number) : std::nullopt;
 }
 
 std::optional<Drawing> decay(const Findings& findings) {
@@ -218,6 +236,16 @@ std::optional<Drawing> loss(const Findings& findings) {
     block("failed-1", "after impact failure", findings.loss_after_failure);
   if (TableBlock band = loss_band(findings); !band.columns[0].values.empty())
     drawing.table.blocks.push_back(std::move(band));
+  if (findings.several()) {
+    TableBlock folds{
+        .name = "folds",
+        .columns = {{"amplitude", "below it impacts of a damper fail, in units of epsilon", {}}}};
+    for (const SceneDamper& each : findings.subject.scene.dampers)
+      if (each.restitution > 0 && each.restitution < 1)
+        folds.columns[0].values.push_back(fold_amplitude(each.restitution) * each.clearance);
+    if (!folds.columns[0].values.empty()) drawing.table.blocks.push_back(std::move(folds));
+    return drawing;
+  }
   if (const double e = findings.subject.scene.restitution; e > 0 && e < 1)
     drawing.table.blocks.push_back(
         {.name = "fold",
@@ -240,18 +268,19 @@ std::optional<Drawing> loss(const Findings& findings) {
 
 std::optional<Drawing> phase(const Findings& findings) {
   if (findings.run.half_cycles->amplitude.empty()) return std::nullopt;
-  Drawing drawing = drawing_of(findings, "phase", "Phase of the impacts");
-  add_phase_parts(findings.run, drawing.table);
+  Drawing drawing =
+      drawing_of(findings, "phase", "Phase of the impacts", one_of_several(findings, findings.shown));
+  add_phase_parts(findings.run_of(findings.shown), drawing.table);
   if (!is_there(drawing.table, "impacts")) return std::nullopt;
   return drawing;
 }
 
 std::optional<Drawing> motion(const Findings& findings, const std::optional<MotionWindow>& window,
-                              const std::string& name, const std::string& title) {
+                              std::size_t shown, const std::string& name, const std::string& title) {
   if (!window) return std::nullopt;
-  Drawing drawing = drawing_of(findings, name, title);
+  Drawing drawing = drawing_of(findings, name, title, one_of_several(findings, shown));
   drawing.script = "own_motion.gp";
-  add_motion_parts(findings.run, window->first, window->last, drawing.table);
+  add_motion_parts(findings.run_of(shown), window->first, window->last, drawing.table);
   return drawing;
 }
 
@@ -284,8 +313,8 @@ std::vector<Drawing> drawings_of(const Findings& findings) {
   add(decay(findings));
   add(findings.forced() ? response(findings) : loss(findings));
   add(phase(findings));
-  add(motion(findings, findings.begin, "begin", "The motion, from the release on"));
-  add(motion(findings, findings.chosen, "best",
+  add(motion(findings, findings.begin, findings.shown, "begin", "The motion, from the release on"));
+  add(motion(findings, findings.chosen, findings.shown_when_chosen, "best",
              findings.forced() ? "The motion, at the end" : "The motion, where the damping is best"));
   add(prediction(findings));
   return drawings;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "impact_damper/analysis/one_of_several.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -65,8 +66,11 @@ void find_best_damping(Findings& findings) {
   for (const Run& other : findings.others) findings.losses_of_others.push_back(loss_before_failure(other));
   const LossFactor& loss = findings.loss;
   const Scene& scene = findings.subject.scene;
-  if (scene.restitution == 1 && scene.damping_ratio == 0) return;  // energy only goes to and fro
-  if (findings.run.impacts->time.empty()) return;                  // the same at every amplitude
+  const auto keeps_speed = [](const auto& damper) { return damper.restitution == 1; };
+  const bool lossless =
+      scene.dampers.empty() ? keeps_speed(scene) : std::ranges::all_of(scene.dampers, keeps_speed);
+  if (lossless && scene.damping_ratio == 0) return;  // energy only goes to and fro
+  if (findings.run.impacts->time.empty()) return;    // the same at every amplitude
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
   const std::size_t best = best_row(loss);
   const auto over_losses = [&](const std::vector<double> LossFactor::*column) -> std::optional<Spread> {
@@ -81,37 +85,68 @@ void find_best_damping(Findings& findings) {
                    over_losses(&LossFactor::amplitude)};
 }
 
-void find_loads(Findings& findings) {
-  const Impacts& impacts = *findings.run.impacts;
-  const Scene& scene = findings.subject.scene;
-  const Engine& engine = findings.subject.engine;
-  if (impacts.time.empty()) return;
+// Of a run of one damper; of several, without a contact.
+std::optional<Loads> loads_of(const Run& run) {
+  const Impacts& impacts = *run.impacts;
+  const Scene& scene = run.scene;
+  const Engine& engine = run.engine;
+  if (impacts.time.empty()) return std::nullopt;
   Loads loads;
   for (const double speed : impacts.relative_velocity) loads.speed = std::max(loads.speed, std::abs(speed));
-  const double end = findings.run.end_time, from = findings.forced() ? 0.75 * end : 0;
+  const double end = run.end_time, from = scene.force_amplitude != 0 ? 0.75 * end : 0;
   loads.impacts = static_cast<double>(impacts.time.end() - std::ranges::lower_bound(impacts.time, from));
   loads.time = end - from;
-  if (!has_rigid_walls(engine)) {
+  if (scene.dampers.empty() && !has_rigid_walls(engine)) {
     loads.initial_force = initial_wall_force(scene, calibration_of(engine));
     if (nominal_contact_time(scene) <= longest_short_contact)
       loads.contact = short_contact(scene, calibration_of(engine), loads.speed);
   }
-  findings.loads = loads;
+  return loads;
+}
+
+DamperFindings findings_of_damper(const Run& run, std::size_t number) {
+  const Run its = run_of_damper(run, number);
+  const double c = run.scene.dampers[number].clearance;
+  const DamperEnergy& energy = run.energy->dampers[number];
+  DamperFindings found;
+  found.energy = energy.impact_loss + energy.bounce_down_loss;
+  found.impacts = std::ssize(its.impacts->time);
+  found.loads = loads_of(its);
+  if (found.loads) {
+    found.loads->speed *= c;
+    found.loads->initial_force *= c;
+    if (found.loads->contact) found.loads->contact->force *= c;
+  }
+  if (its.half_cycles->amplitude.empty()) return found;
+  const auto scaled = [&](const std::optional<double>& length) {
+    return length ? std::optional(*length * c) : std::nullopt;
+  };
+  found.sticking_ends = scaled(end_of_bounce_down(its));
+  const ImpactFailure failure = impact_failure(its);
+  found.failure = {scaled(failure.first_missed), scaled(failure.for_good)};
+  return found;
+}
+void find_dampers(Findings& findings) {
+  for (std::size_t n = 0; n < findings.subject.scene.dampers.size(); ++n)
+    findings.dampers.push_back(findings_of_damper(findings.run, n));
+  const auto most = std::ranges::max_element(findings.dampers, {}, &DamperFindings::energy);
+  findings.shown = static_cast<std::size_t>(most - findings.dampers.begin());
 }
 
 void find_regimes(Findings& findings) {
   const Run& run = findings.run;
+  findings.failure = impact_failure(run);
+  for (const std::int64_t impacts : run.half_cycles->impacts)
+    findings.most_impacts = std::max(findings.most_impacts, impacts);
+  if (findings.several()) return;
   findings.sticking_ends = end_of_bounce_down(run);
   const Contacts stuck = stuck_contacts(run);
   for (std::size_t i = 0; i < stuck.begin.size(); ++i) findings.stuck_time += stuck.end[i] - stuck.begin[i];
   const std::vector<RegularWindow> windows = regular_windows(run);
-  for (const std::int64_t impacts : run.half_cycles->impacts)
-    findings.most_impacts = std::max(findings.most_impacts, impacts);
   // Windows of many impacts are bounce-downs, in which their number means little.
   constexpr std::int64_t few = 6;
   for (std::int64_t impacts = few; impacts >= 1; --impacts)
     if (const auto window = longest_window(windows, impacts)) findings.windows.push_back(*window);
-  findings.failure = impact_failure(run);
 }
 
 void find_spread(Findings& findings) {
@@ -163,6 +198,8 @@ void simulate_others(Findings& findings, const EnsembleOptions& options, const P
 
 }  // namespace
 
+Run Findings::run_of(std::size_t damper) const { return several() ? run_of_damper(run, damper) : run; }
+
 double Findings::energy_to_impacts() const {
   const EnergyBalance& balance = *run.energy;
   return std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), 0.0) + balance.contact_loss +
@@ -193,7 +230,8 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
     find_regimes(findings);
     find_spread(findings);
   }
-  find_loads(findings);
+  findings.loads = loads_of(findings.run);
+  if (findings.several()) find_dampers(findings);
   if (findings.forced() && findings.first_amplitude) {
     // Central differences cannot go on from period to period: the same walls in closed form.
     Engine engine = subject.engine;
@@ -216,6 +254,14 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   const auto second = static_cast<std::size_t>(std::ranges::lower_bound(time, up_to) - time.begin());
   if (second > 1) findings.begin = {0, second - 1};
   if (second + 1 < time.size()) findings.chosen = {second, time.size() - 1};
+  if (findings.several() && findings.chosen) {
+    std::vector<std::int64_t> strikes(findings.dampers.size());
+    const Impacts& impacts = *findings.run.impacts;
+    for (std::size_t i = 0; i < impacts.time.size(); ++i)
+      if (impacts.time[i] >= time[second]) ++strikes[impacts.damper[i]];
+    findings.shown_when_chosen =
+        static_cast<std::size_t>(std::ranges::max_element(strikes) - strikes.begin());
+  }
   return findings;
 }
 

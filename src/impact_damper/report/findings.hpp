@@ -49,6 +49,15 @@ struct Loads {
   double initial_force = 0;             // of the wall in which the scene begins, divided by K epsilon
 };
 
+// One of several dampers. Lengths and velocities are those of the scene.
+struct DamperFindings {
+  double energy = 0;  // that its impacts took, by K epsilon^2
+  std::int64_t impacts = 0;
+  std::optional<double> sticking_ends;  // as in Findings
+  ImpactFailure failure;
+  std::optional<Loads> loads;  // if it strikes a wall
+};
+
 // A stretch of the recorded history: its samples, both included.
 struct MotionWindow {
   std::size_t first = 0, last = 0;
@@ -77,6 +86,11 @@ struct Findings {
   std::vector<RegularWindow> windows;   // the longest of each number of impacts, most impacts first
   ImpactFailure failure;
   std::int64_t most_impacts = 0;  // in one half cycle
+  // Of several, by number. Of them all together there are no sticking_ends and no windows, and no contact in
+  // `loads`. The one whose motion is drawn took most of the energy; in the window `chosen` it is the one that
+  // strikes most often there.
+  std::vector<DamperFindings> dampers;
+  std::size_t shown = 0, shown_when_chosen = 0;
 
   // Half cycle by half cycle, as far as every release has them: (greatest - least) / median of the amplitude.
   std::vector<double> spread;
@@ -86,6 +100,8 @@ struct Findings {
   std::optional<MotionWindow> chosen;  // about the best damping; of a forced motion, its end
 
   bool forced() const { return subject.scene.force_amplitude != 0; }
+  bool several() const { return !subject.scene.dampers.empty(); }
+  Run run_of(std::size_t damper) const;  // of several, as that one sees it (one_of_several.hpp); else `run`
   double energy_to_impacts()
       const;  // by K epsilon^2, contacts that no impact began and bounce-downs among it
 };

@@ -17,9 +17,13 @@ struct Section {
   std::vector<std::string> drawings;  // names, behind it
 };
 
-std::string caption_of(const std::string& name) {
+std::string caption_of(const std::string& name, bool several) {
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
+  if (name == "loss" && several)
+    return "The loss factor over the amplitude; a decay runs from right to left. Pale: all releases. Marks: "
+           "where "
+           "by the closed form for a light mass the impacts of a damper fail.";
   if (name == "loss")
     return "The loss factor over the amplitude; a decay runs from right to left. "
            "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
@@ -47,8 +51,8 @@ std::string inline_svg(const std::string& svg, const std::string& title, const s
   return R"(<svg role="img" aria-label=")" + escaped(title + ". " + caption) + '"' + svg.substr(begin + 4);
 }
 
-std::string figure_html(const Drawing& drawing, const std::string& svg) {
-  std::string caption = caption_of(drawing.name);
+std::string figure_html(const Drawing& drawing, const std::string& svg, bool several) {
+  std::string caption = caption_of(drawing.name, several);
   if (drawing.every > 1) caption += " One of every " + std::to_string(drawing.every) + " is drawn.";
   return R"(<figure class="plot" id="figure-)" + drawing.name + "\"><div class=\"drawing\">\n" +
          inline_svg(svg, drawing.title, caption) + "</div><figcaption>" + drawing.title + ". " + caption +
@@ -56,12 +60,12 @@ std::string figure_html(const Drawing& drawing, const std::string& svg) {
 }
 
 std::string section_html(const Section& section, const std::vector<Drawing>& drawings,
-                         const std::map<std::string, std::string>& svgs) {
+                         const std::map<std::string, std::string>& svgs, bool several) {
   std::string html = "<section id=\"" + section.id + "\">\n<h2>" + section.title + "</h2>\n" + section.html;
   bool drawn = section.drawings.empty();
   for (const Drawing& drawing : drawings) {
     if (std::ranges::find(section.drawings, drawing.name) == section.drawings.end()) continue;
-    html += figure_html(drawing, svgs.at(drawing.name));
+    html += figure_html(drawing, svgs.at(drawing.name), several);
     drawn = true;
   }
   if (!drawn) html += "<p>There is no picture of it.</p>\n";
@@ -99,12 +103,14 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
       findings.forced()
           ? Section{"response", "Amplitude over frequency", response_html(findings), {"response"}}
           : Section{"loss", "Loss factor", loss_html(findings), {}},
-      {"regimes", "Regimes", regimes_html(findings), {}},
+      findings.several() ? Section{"dampers", "The dampers", dampers_html(findings), {}}
+                         : Section{"regimes", "Regimes", regimes_html(findings), {}},
       {"phase",
        "Phase of the impacts",
        svgs.contains("phase")
-           ? "<p>The same regimes at a glance: branches where the motion is regular, clouds where it is "
-             "chaotic.</p>\n"
+           ? std::string(findings.several() ? "<p>Of the damper that took most of the energy: "
+                                            : "<p>The same regimes at a glance: ") +
+                 "branches where the motion is regular, clouds where it is chaotic.</p>\n"
            : "<p>A phase is counted from zero crossing to zero crossing, and no impact lies between "
              "two.</p>\n",
        {"phase"}},
@@ -124,7 +130,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   for (Section section : sections) {
     // Where there is no loss factor it has been said why.
     if (section.id == "loss" && svgs.contains("loss")) section.drawings = {"loss"};
-    body += section_html(section, drawings, svgs);
+    body += section_html(section, drawings, svgs, findings.several());
   }
   body += "</main>";
 

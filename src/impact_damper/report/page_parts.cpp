@@ -207,8 +207,8 @@ std::string loss_html(const Findings& findings) {
   if (!findings.first_amplitude)
     return paragraph_html("Without half cycles there is no loss factor to read off.");
   if (findings.best)
-    return paragraph_html(best_sentences(findings)) + paragraph_html(theory_sentences(findings)) +
-           clearance_html(findings);
+    return paragraph_html(best_sentences(findings)) +
+           (findings.several() ? "" : paragraph_html(theory_sentences(findings)) + clearance_html(findings));
   const Scene& scene = findings.subject.scene;
   if (findings.run.impacts->time.empty())
     return paragraph_html("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
@@ -219,7 +219,7 @@ std::string loss_html(const Findings& findings) {
         "impacts "
         "fail, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph_html(
-      scene.restitution == 1
+      !findings.several() && scene.restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
           : "The amplitude does not fall: there is no loss factor to speak of.");
 }
@@ -229,7 +229,9 @@ std::string energy_html(const Findings& findings) {
   const double brought = balance.initial.total() + std::max(0.0, balance.forcing_work);
   const double impacts = findings.energy_to_impacts();
   const auto& scales = findings.subject.scales;
-  HtmlTable table{.caption = "The energy of both masses, from the beginning to the end of the run",
+  HtmlTable table{.caption = findings.several()
+                                 ? "The energy of all masses, from the beginning to the end of the run"
+                                 : "The energy of both masses, from the beginning to the end of the run",
                   .heads = {"What"},
                   .rows = {}};
   if (scales) table.heads.emplace_back("J");
@@ -267,13 +269,15 @@ std::string loads_html(const Findings& findings) {
     return paragraph_html("There is no impact in this run, so there is nothing for the walls to bear.");
   const Loads& loads = *findings.loads;
   const auto& scales = findings.subject.scales;
-  HtmlTable table{.caption = "Loads of the box and of the secondary mass in this run",
+  HtmlTable table{.caption = findings.several() ? "Loads of the boxes and of the secondary masses in this run"
+                                                : "Loads of the box and of the secondary mass in this run",
                   .heads = {"What", "how much"},
                   .rows = {}};
   const auto row = [&](const std::string& what, const std::string& value) {
     table.rows.push_back({what, value});
   };
-  row("Largest impact speed, relative", quantities.velocity(loads.speed));
+  row(findings.several() ? "Largest impact speed of a damper, relative" : "Largest impact speed, relative",
+      quantities.velocity(loads.speed));
   constexpr double per_hour = 3600;
   const double rate = loads.impacts / loads.time;
   row(findings.forced() ? "Impacts, in the last quarter of the run" : "Impacts, on average over the run",
@@ -293,6 +297,8 @@ std::string loads_html(const Findings& findings) {
               (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "") +
               ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
               (scales ? "contact_stiffness" : "wall_stiffness") + "</code>) before you use these two. ";
+  } else if (findings.several()) {
+    text = "What each damper has to bear is in the table of the dampers. ";
   } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "

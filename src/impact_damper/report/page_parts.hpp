@@ -17,6 +17,7 @@ std::string response_html(const Findings& findings);  // of a forced one
 std::string response_in_short(const Findings& findings);
 std::string loads_html(const Findings& findings);
 std::string regimes_html(const Findings& findings);
+std::string dampers_html(const Findings& findings);  // of several, in place of the regimes
 std::string motion_html(const Findings& findings);
 std::string energy_html(const Findings& findings);
 std::string prediction_html(const Findings& findings);

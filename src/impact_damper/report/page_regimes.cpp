@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/report/page_parts.hpp"
 #include "impact_damper/report/quantities.hpp"
 
@@ -68,13 +69,15 @@ std::string failure_sentence(const Findings& findings) {
   return "Impacts do not begin to fail within this run. ";
 }
 
-std::string strikes(const Findings& findings, const MotionWindow& window) {
-  const std::vector<double>& time = findings.run.history->time;
-  const std::vector<double>& impacts = findings.run.impacts->time;
+std::string strikes(const Findings& findings, std::size_t damper, const MotionWindow& window) {
+  const Run run = findings.run_of(damper);
+  const std::vector<double>& time = run.history->time;
+  const std::vector<double>& impacts = run.impacts->time;
+  const std::string who = findings.several() ? "damper " + std::to_string(damper + 1) : "the secondary mass";
   const auto count = std::ranges::upper_bound(impacts, time[window.last]) -
                      std::ranges::lower_bound(impacts, time[window.first]);
-  if (count == 0) return "the secondary mass does not strike a wall. ";
-  return "the secondary mass strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
+  if (count == 0) return who + " does not strike a wall. ";
+  return who + " strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
 }
 
 }  // namespace
@@ -83,12 +86,19 @@ std::string motion_html(const Findings& findings) {
   if (!findings.begin) return paragraph_html("The run ends where it begins: there is no motion to show.");
   const Quantities quantities(findings.subject.scales);
   const std::vector<double>& time = findings.run.history->time;
-  std::string text = "In the first " + quantities.time(time[findings.begin->last]) + " " +
-                     strikes(findings, *findings.begin);
+  std::string text;
+  if (findings.several()) {
+    text = "Drawn is the damper that took most of the energy, number " + std::to_string(findings.shown + 1);
+    if (findings.chosen) text += ", and about the best damping the one that strikes most often then";
+    text += "; dimensionless lengths are divided by its clearance. ";
+  }
+  text += "In the first " + quantities.time(time[findings.begin->last]) + " " +
+          strikes(findings, findings.shown, *findings.begin);
   if (findings.chosen)
     text += (findings.forced() ? "At the end, from " : "About the best damping, from ") +
             quantities.time(time[findings.chosen->first]) + " to " +
-            quantities.time(time[findings.chosen->last]) + ", " + strikes(findings, *findings.chosen);
+            quantities.time(time[findings.chosen->last]) + ", " +
+            strikes(findings, findings.shown_when_chosen, *findings.chosen);
   return paragraph_html(text);
 }
 
@@ -108,6 +118,53 @@ std::string regimes_html(const Findings& findings) {
     text += "Their number is nowhere the same for " + count_html(RegimeOptions{}.window_half_cycles) +
             " half cycles in a row. ";
   return paragraph_html(text + failure_sentence(findings)) + regime_table(findings);
+}
+
+std::string dampers_html(const Findings& findings) {
+  const Quantities quantities(findings.subject.scales);
+  const Scene& scene = findings.subject.scene;
+  const double lost = findings.energy_to_impacts() + findings.run.energy->viscous_work;
+  HtmlTable table{.caption = "What each damper did, in the order of the scene file",
+                  .heads = {"Damper", "clearance", "damps best at", "fails at", "failed at", "energy taken",
+                            "impacts", "largest speed"},
+                  .rows = {}};
+  const bool rigid = has_rigid_walls(findings.subject.engine);
+  if (!rigid) table.heads.emplace_back("largest force");
+  for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
+    const SceneDamper& damper = scene.dampers[n];
+    const DamperFindings& found = findings.dampers[n];
+    const double e = damper.restitution, c = damper.clearance;
+    const bool has_form = e > 0 && e < 1;
+    const auto& [missed, for_good] = found.failure;
+    const auto failed = missed ? missed : for_good;
+    table.rows.push_back({std::to_string(n + 1), quantities.length(c),
+                          has_form ? quantities.length(peak_loss_amplitude(e) * c) : "–",
+                          has_form ? quantities.length(fold_amplitude(e) * c) : "–",
+                          failed ? quantities.length(*failed) : "–",
+                          lost > 0 ? percent_html(found.energy / lost) : "–", count_html(found.impacts),
+                          found.loads ? quantities.velocity(found.loads->speed) : "–"});
+    if (rigid) continue;
+    const bool has_force = found.loads && found.loads->contact;
+    table.rows.back().push_back(
+        has_force ? quantities.force(std::max(found.loads->contact->force, found.loads->initial_force))
+                  : "–");
+  }
+  std::string text =
+      "<i>Damps best at</i> and <i>fails at</i> are amplitudes by the closed form for a light mass that "
+      "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. "
+      "<i>Failed at</i> is where its impacts began to fail in this run. The energy is that part of all that "
+      "was lost which its impacts took.";
+  if (const auto& stuck = findings.dampers[findings.shown].sticking_ends)
+    text += " The bounces of damper " + std::to_string(findings.shown + 1) +
+            ", which took most, ended stuck to a wall down to an amplitude of " + quantities.length(*stuck) +
+            ".";
+  const auto has_default = [](const SceneDamper& damper) {
+    return damper.wall_stiffness == SceneDamper{}.wall_stiffness;
+  };
+  if (!rigid && std::ranges::any_of(scene.dampers, has_default))
+    text += " The force goes as √<i>k</i>, and a stiffness of " + number_html(SceneDamper{}.wall_stiffness) +
+            " times the primary one is the program's default, an assumption: give that of your own walls.";
+  return table_html(table) + paragraph_html(text);
 }
 
 }  // namespace impact_damper

@@ -1,4 +1,5 @@
 // What a report's page says of the scene itself.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -50,15 +51,22 @@ std::string scene_table(const Subject& subject) {
   table.scale("Primary mass", "M", scales.mass, "kg");
   table.scale("Stiffness", "K", scales.stiffness, "N/m");
   table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
-  table.scale("Clearance of the secondary mass", "ε", scales.length, "mm");
-  table.row("Secondary mass", "ν", scene.mass_ratio, scales.mass, "kg");
-  table.row("Restitution", "e", scene.restitution, 1, "");
+  const bool several = !scene.dampers.empty();
+  table.scale(several ? "Clearance of the first damper" : "Clearance of the secondary mass", "ε",
+              scales.length, "mm");
+  if (!several) {
+    table.row("Secondary mass", "ν", scene.mass_ratio, scales.mass, "kg");
+    table.row("Restitution", "e", scene.restitution, 1, "");
+  }
   table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
-  if (!rigid) table.row("Stiffness of the walls", "k", scene.wall_stiffness, scales.stiffness, "N/m");
+  if (!several && !rigid)
+    table.row("Stiffness of the walls", "k", scene.wall_stiffness, scales.stiffness, "N/m");
   table.row("Initial displacement", "x", scene.x0, scales.length, "mm");
   table.row("Initial velocity", "x′", scene.v0, scales.velocity(), "mm/s");
-  table.row("Secondary mass, from the left wall", "y", scene.y0, scales.length, "mm");
-  table.row("Its velocity in the cavity", "y′", scene.w0, scales.velocity(), "mm/s");
+  if (!several) {
+    table.row("Secondary mass, from the left wall", "y", scene.y0, scales.length, "mm");
+    table.row("Its velocity in the cavity", "y′", scene.w0, scales.velocity(), "mm/s");
+  }
   if (scene.force_amplitude != 0) {
     table.row("Exciting force, amplitude", "f", scene.force_amplitude, scales.force(), "N");
     table.row("Its frequency", "ω", scene.force_frequency, scales.frequency(), "Hz");
@@ -70,9 +78,46 @@ std::string scene_table(const Subject& subject) {
                                    : "The scene, as it is computed");
 }
 
+// What each of several dampers is, in units if they are known.
+std::string dampers_table(const Subject& subject) {
+  const bool rigid = has_rigid_walls(subject.engine), in_units = subject.scales.has_value();
+  const Scales scales = subject.scales.value_or(Scales{});
+  HtmlTable table{
+      .caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}, .rows = {}};
+  const auto head = [&](const std::string& what, const std::string& symbol, const std::string& unit) {
+    table.heads.push_back(in_units && !unit.empty() ? what + ", " + unit : what + ", <i>" + symbol + "</i>");
+  };
+  head("secondary mass", "ν", "kg");
+  head("clearance", "c", "mm");
+  head("restitution", "e", "");
+  if (!rigid) head("stiffness of the walls", "k", "N/m");
+  head("place at first", "y", "mm");
+  head("velocity at first", "y′", "mm/s");
+  for (std::size_t n = 0; n < subject.scene.dampers.size(); ++n) {
+    const SceneDamper& damper = subject.scene.dampers[n];
+    const auto number = [&](double value, double scale) {
+      return number_html(in_units ? value * scale : value, 4);
+    };
+    table.rows.push_back({std::to_string(n + 1), number(damper.mass_ratio, scales.mass),
+                          number(damper.clearance, scales.length), number(damper.restitution, 1)});
+    std::vector<std::string>& row = table.rows.back();
+    if (!rigid) row.push_back(number(damper.wall_stiffness, scales.stiffness));
+    row.push_back(number(damper.y0, scales.length));
+    row.push_back(number(damper.w0, scales.velocity()));
+  }
+  return table_html(table);
+}
+
 // How the engine goes about it; of the options of the run, which are filled in.
 struct Method {
+  bool several;
   std::string operator()(const Exact&) const {
+    if (several)
+      return "The walls are springs with dampers, and each stretch of the motion is a closed form or, where "
+             "several "
+             "walls are pushed at once, a power series that is as good: there is no time step, and no impact "
+             "is "
+             "missed.";
     return "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
            "time step, and no impact is missed.";
   }
@@ -88,7 +133,7 @@ struct Method {
 
 std::string engine_sentence(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
-  std::string text = "<p>" + std::visit(Method{}, findings.run.engine);
+  std::string text = "<p>" + std::visit(Method{findings.several()}, findings.run.engine);
   text += " It was followed for " + quantities.time(findings.run.end_time) + ", ";
   switch (findings.run.stop_reason) {
     case StopReason::time:
@@ -131,9 +176,11 @@ std::string warnings_html(const Findings& findings) {
   if (quantities.in_units() && reach > 0 && reach < 1e-3)
     looks.push_back("The clearance is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
-  if (scene.wall_stiffness < 100 && !has_rigid_walls(findings.subject.engine))
+  double softest = findings.several() ? scene.dampers.front().wall_stiffness : scene.wall_stiffness;
+  for (const SceneDamper& damper : scene.dampers) softest = std::min(softest, damper.wall_stiffness);
+  if (softest < 100 && !has_rigid_walls(findings.subject.engine))
     looks.push_back(
-        "The walls are only " + number_html(scene.wall_stiffness) +
+        (findings.several() ? "The softest walls are only " : "The walls are only ") + number_html(softest) +
         " times as stiff as the primary spring: an impact takes as long as a good part of a period.");
   if (scene.damping_ratio >= 1)
     looks.push_back("The primary mass is damped " + number_html(scene.damping_ratio) +
@@ -148,18 +195,23 @@ std::string scene_html(const Findings& findings) {
   const std::string scales =
       findings.subject.scales
           ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths in units of the "
-            "clearance ε, times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
-            "εΩ, "
-            "energies in units of Kε².</p>\n"
-          : "<p>Lengths are in units of the clearance ε of the secondary mass, times <i>t</i> in units of "
-            "1/Ω, Ω "
-            "= √(K/M) "
-            "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
-            "Kε². A "
-            "scene file may give masses in kilograms and lengths in millimetres instead; this page then "
-            "gives "
-            "both.</p>\n";
-  return scene_table(findings.subject) + scales + engine_sentence(findings);
+            "clearance ε" +
+                std::string(findings.several() ? " of the first damper" : "") +
+                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
+                "εΩ, "
+                "energies in units of Kε².</p>\n"
+          : "<p>Lengths are in units of " +
+                std::string(findings.several() ? "one length ε" : "the clearance ε of the secondary mass") +
+                ", times <i>t</i> in units of "
+                "1/Ω, Ω "
+                "= √(K/M) "
+                "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
+                "Kε². A "
+                "scene file may give masses in kilograms and lengths in millimetres instead; this page then "
+                "gives "
+                "both.</p>\n";
+  return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
+         scales + engine_sentence(findings);
 }
 
 }  // namespace impact_damper
