@@ -1,12 +1,13 @@
 // The program of the oracle for several dampers.
 //
-//   impact-damper-several [--kind random|round] [--seed N] [--count M] [--begin-tolerance T] [--growth G]
+//   impact-damper-several [--walls rigid|compliant] [--kind random|round] [--seed N] [--count M]
+//   [--begin-tolerance T] [--growth G]
 //                         [--scene FILE] [--failures K] [--verbose 1]
 //
 // compares the scenes of seeds N to N + M - 1, of both kinds if none is given, or the scene of FILE, with
-// what the restitution engine makes of them. Prints the first scene that differs, with all that does, and a
-// line of totals. Exit code 0: all agrees; 1: a scene differs, or less than half of the time could be
-// compared; 2: usage.
+// what the restitution engine, or with compliant walls the exact one, makes of them. Prints the first scene
+// that differs, with all that does, and a line of totals. Exit code 0: all agrees; 1: a scene differs, or
+// less than half of the time could be compared; 2: usage.
 #include <cstdio>
 #include <iostream>
 
@@ -47,7 +48,10 @@ int compare_all(const Options& options) {
     double share = 0;
     for (std::int64_t i = 0; i < options.count && failures < options.most_failures; ++i) {
       const auto seed = std::uint64_t(options.first + i);
-      const Scene scene = kind == "random" ? random_scene(seed) : round_scene(seed);
+      const bool random = kind == "random";
+      const Scene scene = options.tolerances.walls == Walls::rigid
+                              ? (random ? random_scene(seed) : round_scene(seed))
+                              : (random ? random_compliant_scene(seed) : round_compliant_scene(seed));
       const Comparison result = compare(scene, options.tolerances);
       if (options.verbose && !result.ended_by.empty())
         std::cout << kind << " seed " << seed << ": compared until " << oracle::text(result.until, 8)
@@ -94,7 +98,8 @@ int compare_one(const Options& options) {
 
 int usage(const std::string& what) {
   std::cerr << "impact-damper-several: " << what
-            << "\nusage: impact-damper-several [--kind random|round] [--seed N] [--count M] [--failures K]"
+            << "\nusage: impact-damper-several [--walls rigid|compliant] [--kind random|round] [--seed N] "
+               "[--count M] [--failures K]"
                " [--begin-tolerance T] [--growth G] [--scene FILE]\n";
   return 2;
 }
@@ -109,6 +114,8 @@ int run(const std::vector<std::string>& words) {
     const std::optional<double> number = parse_number(value);
     if (word == "--kind" && (value == "random" || value == "round"))
       options.kinds = {value};
+    else if (word == "--walls" && (value == "rigid" || value == "compliant"))
+      options.tolerances.walls = value == "rigid" ? Walls::rigid : Walls::compliant;
     else if (word == "--seed" && whole)
       options.first = *whole;
     else if (word == "--count" && whole && *whole > 0)

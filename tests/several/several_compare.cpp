@@ -43,8 +43,11 @@ Answer answer_of(const Run& run) {
     answer.samples.push_back(sample);
   }
   const EnergyBalance& energy = *run.energy;
-  answer.initial_kinetic = energy.initial.kinetic, answer.initial_spring = energy.initial.spring;
-  answer.final_kinetic = energy.final.kinetic, answer.final_spring = energy.final.spring;
+  const auto quad = [](const Energy& now) {
+    return oracle::Energy{now.kinetic, now.spring, now.wall, now.paper};
+  };
+  answer.initial = quad(energy.initial), answer.final = quad(energy.final);
+  answer.contact_loss = energy.contact_loss;
   for (const DamperEnergy& each : energy.dampers) {
     answer.damper_initial.push_back(each.initial_kinetic);
     answer.damper_final.push_back(each.final_kinetic);
@@ -87,13 +90,19 @@ std::string said(const std::vector<T>& all, std::size_t i) {
   return i < all.size() ? said(all[i]) : "none";
 }
 
-// A damper's contacts: those that are apart by nothing are one, and those that last nothing are none.
-// `nested`: others come shortly before, so that its begin depends on what is called nothing.
+// A damper's contacts; with rigid walls those that are apart by nothing are one, and those that last nothing
+// are none. `nested`: others come shortly before, so that its begin depends on what is called nothing.
 struct Sticking : Contact {
   bool nested = false;
 };
-std::vector<Sticking> contacts_of(const Answer& answer, int damper, double tolerance) {
+std::vector<Sticking> contacts_of(const Answer& answer, int damper, const Tolerances& tolerances) {
+  const double tolerance = tolerances.begin;
   std::vector<Sticking> contacts;
+  if (tolerances.walls == Walls::compliant) {
+    for (const Contact& each : answer.contacts)
+      if (each.damper == damper) contacts.push_back({each});
+    return contacts;
+  }
   std::optional<Contact> last;
   for (const Contact& each : answer.contacts) {
     if (each.damper != damper) continue;
@@ -114,7 +123,7 @@ std::vector<Sticking> contacts_of(const Answer& answer, int damper, double toler
 }
 
 void walk_impacts(Walk& walk, const Answer& a, const Answer& b, int damper, const Tolerances& tolerances) {
-  const auto contacts = contacts_of(a, damper, tolerances.begin);
+  const auto contacts = contacts_of(a, damper, tolerances);
   const auto of_damper = [&](const Answer& answer) {
     std::vector<Impact> impacts;
     for (const Impact& each : answer.impacts)
@@ -123,6 +132,7 @@ void walk_impacts(Walk& walk, const Answer& a, const Answer& b, int damper, cons
   };
   const std::vector<Impact> mine = of_damper(a), its = of_damper(b);
   const auto omitted = [&](const Impact& each) {
+    if (tolerances.walls == Walls::compliant) return false;
     if (!each.impulse) return true;
     // The end of a chattering that is cut short by another damper's.
     if (&each != mine.data() && &each != its.data() && magnitude(each.relative_velocity) <= Quad(1e-7L)) {
@@ -186,7 +196,8 @@ void walk_impacts(Walk& walk, const Answer& a, const Answer& b, int damper, cons
 }
 
 void walk_contacts(Walk& walk, const Answer& a, const Answer& b, int damper, const Tolerances& tolerances) {
-  const auto mine = contacts_of(a, damper, tolerances.begin), its = contacts_of(b, damper, tolerances.begin);
+  const bool rigid = tolerances.walls == Walls::rigid;
+  const auto mine = contacts_of(a, damper, tolerances), its = contacts_of(b, damper, tolerances);
   for (std::size_t n = 0; n < std::max(mine.size(), its.size()); ++n) {
     const std::string name = "damper " + std::to_string(damper) + " contact " + std::to_string(n);
     const std::string why = name + ": " + said(its, n) + " where the oracle has " + said(mine, n);
@@ -196,8 +207,8 @@ void walk_contacts(Walk& walk, const Answer& a, const Answer& b, int damper, con
     if (mine[n].wall != its[n].wall || !near(mine[n].begin, its[n].begin))
       return walk.fail(std::min(mine[n].begin, its[n].begin), why);
     const Quad uncertain = mine[n].nested || its[n].nested ? 30 : 3;
-    walk.pairs.push_back(
-        {name + " begin", mine[n].begin, mine[n].begin, its[n].begin, Kind::begin, uncertain});
+    walk.pairs.push_back({name + " begin", mine[n].begin, mine[n].begin, its[n].begin,
+                          rigid ? Kind::begin : Kind::time, rigid ? uncertain : Quad(0)});
     if (!near(mine[n].end, its[n].end)) return walk.fail(std::min(mine[n].end, its[n].end), why);
     walk.pairs.push_back({name + " end", mine[n].end, mine[n].end, its[n].end, Kind::time});
     ++walk.contacts;
@@ -248,7 +259,8 @@ Walk walk(const Scene& scene, const Answer& a, const Answer& b, const Tolerances
     const auto coincides = [&](const Impact& each) {
       return magnitude(each.time - t) <= Quad(tolerances.begin) * (1 + t);
     };
-    const bool velocities = std::none_of(a.impacts.begin(), a.impacts.end(), coincides);
+    const bool rigid = tolerances.walls == Walls::rigid;
+    const bool velocities = !rigid || std::none_of(a.impacts.begin(), a.impacts.end(), coincides);
     if (velocities) walk.pairs.push_back({"v" + where, t, p.v, q.v});
     for (int n = 0; n < count; ++n) {
       const std::string which = std::to_string(n) + where;
@@ -257,20 +269,25 @@ Walk walk(const Scene& scene, const Answer& a, const Answer& b, const Tolerances
         return each.damper == n && each.begin >= t &&
                each.begin - t <= Quad(tolerances.chattering_time) * (1 + t);
       };
-      if (std::any_of(a.contacts.begin(), a.contacts.end(), chatters)) continue;
+      if (rigid && std::any_of(a.contacts.begin(), a.contacts.end(), chatters)) continue;
       walk.pairs.push_back({"y" + which, t, p.y.at(n), q.y.at(n), Kind::state, scene.dampers[n].clearance});
       if (velocities) walk.pairs.push_back({"w" + which, t, p.w.at(n), q.w.at(n)});
     }
   }
   // Energies add up whatever was there.
-  Quad all = a.initial_kinetic + a.initial_spring + a.turnover;
+  Quad all = a.initial.total() + a.turnover;
   const auto energy = [&](const std::string& what, Quad mine, Quad its, bool first = false) {
     walk.pairs.push_back({what, first ? Quad(0) : a.end_time, mine, its, Kind::energy, all});
   };
-  energy("initial kinetic energy", a.initial_kinetic, b.initial_kinetic, true);
-  energy("initial spring energy", a.initial_spring, b.initial_spring, true);
-  energy("final kinetic energy", a.final_kinetic, b.final_kinetic);
-  energy("final spring energy", a.final_spring, b.final_spring);
+  for (const bool first : {true, false}) {
+    const oracle::Energy &p = first ? a.initial : a.final, &q = first ? b.initial : b.final;
+    const std::string when = first ? "initial " : "final ";
+    energy(when + "kinetic energy", p.kinetic, q.kinetic, first);
+    energy(when + "spring energy", p.spring, q.spring, first);
+    energy(when + "energy in walls", p.wall, q.wall, first);
+    energy(when + "energy of the paper", p.paper, q.paper, first);
+  }
+  energy("loss in contacts without impact", a.contact_loss, b.contact_loss);
   energy("viscous work", a.viscous_work, b.viscous_work);
   energy("forcing work", a.forcing_work, b.forcing_work);
   for (int n = 0; n < count; ++n) {
@@ -313,6 +330,8 @@ struct Prediction {
 Prediction predict(const Scene& scene, const Tolerances& tolerances) {
   Question question;
   question.scene = scene;
+  question.walls = tolerances.walls;
+  if (question.walls == Walls::compliant) question.most_steps = tolerances.most_steps;
   question.samples = sample_times(*scene.until_time);
   Prediction result{answer_to(question), {}, {}, {}};
   const auto end_at = [&](Quad t, const std::string& why) {
@@ -326,7 +345,7 @@ Prediction predict(const Scene& scene, const Tolerances& tolerances) {
   // rests on its wall when the next one comes, or is a hair from it, is then no property of the scene in
   // double precision.
   const auto& impacts = result.answer.impacts;
-  for (std::size_t i = 1; i < impacts.size(); ++i) {
+  for (std::size_t i = 1; tolerances.walls == Walls::rigid && i < impacts.size(); ++i) {
     const Quad t = impacts[i].time;
     if (impacts[i].wall != impacts[i - 1].wall && t > impacts[i - 1].time &&
         t - impacts[i - 1].time <= Quad(4 * rounding) * (1 + t))
@@ -350,7 +369,7 @@ Prediction predict(const Scene& scene, const Tolerances& tolerances) {
 }
 
 // What must hold in a run by itself.
-void judge_order(const Run& run, const Answer& answer, std::vector<std::string>& differences) {
+void judge_order(const Run& run, const Answer& answer, Walls walls, std::vector<std::string>& differences) {
   const Impacts& impacts = *run.impacts;
   const std::size_t count = run.scene.dampers.size();
   const auto one_instant = [&](std::size_t i, std::size_t j) {
@@ -372,8 +391,9 @@ void judge_order(const Run& run, const Answer& answer, std::vector<std::string>&
     differences.push_back("impacts " + std::to_string(i) + " and the next are not in order: damper " +
                           std::to_string(impacts.damper[i]) + " at " + text(t, 17));
   }
-  // Impacts that the oracle has at one instant, and that are far from all others, have one time.
-  for (std::size_t i = 0; i + 1 < answer.impacts.size(); ++i) {
+  // Impacts on rigid walls that the oracle has at one instant, and that are far from all others, have one
+  // time.
+  for (std::size_t i = 0; walls == Walls::rigid && i + 1 < answer.impacts.size(); ++i) {
     const Impact &p = answer.impacts[i], &q = answer.impacts[i + 1];
     if (p.time != q.time || p.wall != q.wall || magnitude(p.relative_velocity) < Quad(1e-4L)) continue;
     std::vector<double> times;
@@ -429,7 +449,7 @@ void judge(const Run& run, const Prediction& prediction, const Tolerances& toler
   if (both.mismatch) differences.push_back(both.why);
   result.impacts = both.impacts, result.joint_impacts = both.joint_impacts;
   result.contacts = both.contacts, result.joint_contacts = both.joint_contacts;
-  const Quad size = 1 + answer.initial_kinetic + answer.initial_spring + answer.turnover;
+  const Quad size = 1 + answer.initial.total() + answer.turnover;
   const auto speed_near = [&](Quad t) {
     Quad least = 1;
     for (const Impact& each : answer.impacts)
@@ -457,7 +477,7 @@ void judge(const Run& run, const Prediction& prediction, const Tolerances& toler
       differences.push_back(each.what + " is " + text(each.its, 17) + ", true " + text(each.mine, 20) +
                             ", off by " + text(error, 3) + ", predicted " + text(unit, 3));
   }
-  judge_order(run, answer, differences);
+  judge_order(run, answer, tolerances.walls, differences);
   if (!(std::fabs(run.energy->residual) <= 1e-12))
     differences.push_back("residual " + text(run.energy->residual, 3));
 }
@@ -471,7 +491,8 @@ Record everything(double end) {
 
 }  // namespace
 
-Run simulated(const Scene& scene) {
+Run simulated(const Scene& scene, Walls walls) {
+  if (walls == Walls::compliant) return simulate(scene, Exact{}, everything(*scene.until_time));
   Restitution engine;
   engine.max_steps = 1'000'000;  // far more than any of these scenes needs
   return simulate(scene, engine, everything(*scene.until_time));
@@ -491,17 +512,18 @@ Comparison compare(const Scene& asked, const Tolerances& tolerances, const Progr
   if (prediction.ends) return result;
   result.until = *scene.until_time;
   try {
-    judge(program(scene), prediction, tolerances, result);
+    judge(program ? program(scene) : simulated(scene, tolerances.walls), prediction, tolerances, result);
   } catch (const std::exception& error) {
     result.differences.push_back(std::string("throws: ") + error.what());
   }
   return result;
 }
 
-Run run_of_oracle(const Scene& scene, Fault fault) {
+Run run_of_oracle(const Scene& scene, Fault fault, Walls walls) {
   Question question;
   question.scene = scene;
   question.fault = fault;
+  question.walls = walls;
   question.samples = sample_times(*scene.until_time);
   Answer answer = answer_to(question);
   std::stable_sort(answer.impacts.begin(), answer.impacts.end(), [](const Impact& a, const Impact& b) {
@@ -553,9 +575,11 @@ Run run_of_oracle(const Scene& scene, Fault fault) {
       run.history->dampers[n].w.push_back(double(each.w[n]));
     }
   }
-  energy.initial.kinetic = double(answer.initial_kinetic),
-  energy.initial.spring = double(answer.initial_spring);
-  energy.final.kinetic = double(answer.final_kinetic), energy.final.spring = double(answer.final_spring);
+  const auto rounded = [](const oracle::Energy& now) {
+    return Energy{double(now.kinetic), double(now.spring), double(now.wall), double(now.paper)};
+  };
+  energy.initial = rounded(answer.initial), energy.final = rounded(answer.final);
+  energy.contact_loss = double(answer.contact_loss);
   energy.viscous_work = double(answer.viscous_work), energy.forcing_work = double(answer.forcing_work);
   for (std::size_t n = 0; n < count; ++n)
     energy.dampers.push_back({double(answer.damper_initial[n]), double(answer.damper_final[n]),

@@ -1,4 +1,5 @@
-// What the restitution engine records of a scene with several dampers, held against the oracle.
+// What the restitution engine, or between compliant walls the exact one, records of a scene with several
+// dampers, held against the oracle.
 //
 // How large an error may be is measured by the oracle itself, from runs in which all numbers are changed by
 // 1e-16 of themselves: up to an event nothing may differ by more than Tolerances::growth times the largest
@@ -16,10 +17,12 @@
 namespace several {
 
 struct Tolerances {
+  Walls walls = Walls::rigid;
+  std::int64_t most_steps = 5000;  // of the oracle; compliant walls
   double growth = 1000;
   double predictable = 1e-10;
-  // Contacts as near to each other, times 1 + t, are one. The begin of sticking may be off by three times
-  // that, in a chattering within another one by thirty times.
+  // Rigid walls: contacts as near to each other, times 1 + t, are one. The begin of sticking may be off by
+  // three times that, in a chattering within another one by thirty times.
   double begin = 1e-7;
   // Impacts so shortly before sticking, times 1 + t, and so slow, need not be listed.
   double chattering_time = 1e-3, chattering_speed = 1e-5;
@@ -35,13 +38,13 @@ struct Comparison {
   double largest = 0;  // the largest error itself, of all but begins of contacts, divided by 1 + |value|
 };
 
-// `program`: impact_damper::simulate by the restitution engine, or a run from elsewhere.
+impact_damper::Run simulated(const impact_damper::Scene& scene, Walls walls = Walls::rigid);
+// `program`: a run from elsewhere; without one that of simulated().
 using Program = std::function<impact_damper::Run(const impact_damper::Scene&)>;
-impact_damper::Run simulated(const impact_damper::Scene& scene);
 Comparison compare(const impact_damper::Scene& scene, const Tolerances& tolerances,
-                   const Program& program = simulated);
+                   const Program& program = {});
 
 // The oracle's answer in the form of a run, for a program with a planted fault.
-impact_damper::Run run_of_oracle(const impact_damper::Scene& scene, Fault fault);
+impact_damper::Run run_of_oracle(const impact_damper::Scene& scene, Fault fault, Walls walls = Walls::rigid);
 
 }  // namespace several

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "reference.hpp"
@@ -11,6 +12,9 @@
 extern "C" {
 oracle::Quad sinq(oracle::Quad);
 oracle::Quad cosq(oracle::Quad);
+oracle::Quad sqrtq(oracle::Quad);
+oracle::Quad logq(oracle::Quad);
+oracle::Quad acosq(oracle::Quad);
 }
 
 namespace several {
@@ -34,8 +38,14 @@ struct Damper {
   int side = 1;       // from which wall d is counted: +1 left, -1 right
   Quad d = 0, s = 0;  // distance from it, velocity away from it
   bool stuck = false;
-  std::size_t contact = 0;  // while stuck: its own
+  std::size_t contact = 0;  // while stuck or in contact: its own
   Polynomial path;          // d in this step
+  // Compliant walls: their force on the damper, away from them, is -nu (damping s + stiffness d) in contact.
+  bool in_contact = false;
+  bool pushes = true;  // the primary mass, too
+  Quad stiffness = 0, damping = 0;
+  std::optional<std::size_t> impact;  // that began the contact
+  Polynomial push;                    // h^2 (damping s + stiffness d) in this step
   Wall wall() const { return side > 0 ? Wall::left : Wall::right; }
 };
 
@@ -59,16 +69,22 @@ std::vector<Root> roots_after_start(const Polynomial& p) {
 
 class Integrator {
  public:
-  explicit Integrator(const Question& question) : question_(question) {}
+  explicit Integrator(const Question& question)
+      : question_(question), compliant_(question.walls == Walls::compliant) {}
 
   Answer run() {
     prepare();
-    energies(answer_.initial_kinetic, answer_.initial_spring, answer_.damper_initial);
+    for (Damper& each : dampers_)
+      if (compliant_ && each.d < 0) open_contact(each), each.in_contact = true;
+    answer_.initial = energy(answer_.damper_initial);
     note_peak(0, x_);
-    impact();  // of those that begin at a wall with a speed into it
+    if (!compliant_) impact();  // of those that begin at a wall with a speed into it
+    if (compliant_)
+      for (Damper& each : dampers_)
+        if (each.d == 0 && each.s < 0) touch(each);
     while (t_ < until_ && answer_.complete) advance();
     answer_.end_time = t_;
-    energies(answer_.final_kinetic, answer_.final_spring, answer_.damper_final);
+    answer_.final = energy(answer_.damper_final);
     for (Damper& each : dampers_) leave(each);
     return std::move(answer_);
   }
@@ -100,6 +116,20 @@ class Integrator {
       damper.side = from_left <= from_right ? 1 : -1;
       damper.d = damper.side > 0 ? from_left : from_right;
       damper.s = damper.side * noisy(each.w0, 10);
+      const auto& first = scene.dampers[0];
+      const bool other_damper = question_.fault == Fault::wall_damper_of_first,
+                 other_stiffness = question_.fault == Fault::stiffness_of_first;
+      damper.stiffness = noisy((other_stiffness ? first : each).wall_stiffness, 11) / damper.nu;
+      const Quad e = other_damper ? Quad(first.restitution) : damper.e;
+      Quad ratio = 1;
+      if (e > 0) {
+        const Quad pi = acosq(-1), log = -logq(e);
+        ratio = log / sqrtq(pi * pi + log * log);
+      }
+      damper.damping = 2 * sqrtq(damper.stiffness) * ratio;
+      damper.pushes = question_.fault == Fault::wall_force_left_out
+                          ? dampers_.size() + 1 < scene.dampers.size()
+                          : question_.fault != Fault::own_contact_only || dampers_.empty();
       dampers_.push_back(damper);
     }
     if (question_.fault == Fault::clearance_ignored) dampers_.back().clearance = dampers_[0].clearance;
@@ -108,14 +138,16 @@ class Integrator {
     if (f0_ != 0) rate_ = std::max(rate_, omega_);
   }
 
-  void energies(Quad& kinetic, Quad& spring, std::vector<Quad>& of_dampers) const {
-    kinetic = v_ * v_ / 2;
-    spring = x_ * x_ / 2;
+  oracle::Energy energy(std::vector<Quad>& of_dampers) const {
+    oracle::Energy now{v_ * v_ / 2, x_ * x_ / 2, 0, (v_ * v_ + x_ * x_) / 2};
     for (const Damper& each : dampers_) {
       const Quad z = v_ + each.side * each.s;
       of_dampers.push_back(each.nu * z * z / 2);
-      kinetic += of_dampers.back();
+      now.kinetic += of_dampers.back();
+      now.paper += each.nu * (v_ * v_ + each.s * each.s) / 2;
+      if (each.in_contact) now.wall += each.nu * each.stiffness * each.d * each.d / 2;
     }
+    return now;
   }
 
   Quad joined_mass() const {
@@ -126,12 +158,30 @@ class Integrator {
   }
 
   // On all that moves together with the primary mass.
-  Quad force() const { return (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_; }
+  Quad force() const {
+    Quad sum = (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_;
+    for (const Damper& each : dampers_)
+      if (each.in_contact) sum += each.side * each.nu * (each.damping * each.s + each.stiffness * each.d);
+    return sum;
+  }
+
+  // An upper bound of how fast the state can change: of the sums of the equations' coefficients with sqrt(K)
+  // d in place of d.
+  Quad rate() const {
+    Quad sum = rate_, most = 0;
+    for (const Damper& each : dampers_) {
+      if (!each.in_contact) continue;
+      const Quad own = sqrtq(each.stiffness) + each.damping;
+      sum += each.nu * own;
+      most = std::max(most, own);
+    }
+    return sum + most;
+  }
 
   // x = x(s), t = t + h s, by Taylor's coefficients up to the order that leaves nothing.
   void expand(Quad h) {
     h_ = h;
-    const double reach = double(h * rate_);
+    const double reach = double(h * rate());
     int order = 4;
     for (double term = std::pow(reach, 4) / 24; term > 1e-36 && order < Polynomial::most - 3; ++order)
       term *= reach / (order + 1);
@@ -144,27 +194,55 @@ class Integrator {
         f[n + 2] = -(omega_ * h) * (omega_ * h) * f[n] / ((n + 1) * (n + 2));
     }
     x[0] = x_, x[1] = v_ * h;
+    for (Damper& each : dampers_) {
+      for (Polynomial* one : {&each.path, &each.push}) one->degree = order, one->at.fill(0);
+      each.path.at[0] = each.d, each.path.at[1] = each.s * h;
+    }
     const Quad mass = joined_mass(), square = h * h / mass, drag = 2 * zeta_ * h / mass;
     for (int n = 0; n <= order; ++n) {
       a[n] = square * (f[n] - x[n]) - drag * ((n + 1) * x[n + 1]);
+      for (Damper& each : dampers_) {
+        if (!each.in_contact) continue;
+        const auto& d = each.path.at;
+        each.push.at[n] = each.damping * h * ((n + 1) * d[n + 1]) + each.stiffness * h * h * d[n];
+        if (each.pushes) a[n] += each.side * each.nu * each.push.at[n];
+      }
       x[n + 2] = a[n] / ((n + 1) * (n + 2));
       v[n] = (n + 1) * x[n + 1] / h;
+      for (Damper& each : dampers_)
+        if (!each.stuck) each.path.at[n + 2] = -(each.side * a[n] + each.push.at[n]) / ((n + 1) * (n + 2));
     }
-    for (Damper& each : dampers_) {
-      Polynomial& path = each.path;
-      path.degree = order;
-      path.at.fill(0);
-      path.at[0] = each.d, path.at[1] = each.s * h;
-      if (!each.stuck)
-        for (int n = 0; n <= order; ++n) path.at[n + 2] = -each.side * a[n] / ((n + 1) * (n + 2));
-      if (each.d == 0) clear_leading(path);
+    for (Damper& each : dampers_)
+      if (each.d == 0) clear_leading(each.path);
+  }
+
+  void open_contact(Damper& each) {
+    each.contact = answer_.contacts.size();
+    answer_.contacts.push_back({t_, t_, int(&each - dampers_.data()), each.wall()});
+  }
+  // A compliant wall is met.
+  void touch(Damper& each) {
+    each.impact.reset();
+    if (each.s < 0) {
+      each.impact = answer_.impacts.size();
+      answer_.impacts.push_back({t_, int(&each - dampers_.data()), each.wall(), each.side * each.s, x_, 0});
     }
+    open_contact(each);
+    each.in_contact = true;
   }
 
   // Those at rest on a wall: do they stick? The sign of x'' from now on does not depend on how many do.
   void decide() {
     const auto rests = [](const Damper& each) { return each.d == 0 && each.s == 0; };
     if (std::none_of(dampers_.begin(), dampers_.end(), rests)) return;
+    if (compliant_) {
+      expand(step_by_rate / rate());
+      for (Damper& each : dampers_) {
+        const int first = rests(each) && !each.in_contact ? leading(each.path) : -1;
+        if (first >= 0 && each.path.at[first] < 0) touch(each);
+      }
+      return;
+    }
     const Quad now = force();
     int push = sign_of(now);
     if (magnitude(now) <= Quad(1e-15L) * (magnitude(x_) + magnitude(v_) + magnitude(f0_))) {
@@ -176,8 +254,7 @@ class Integrator {
       if (!rests(each)) continue;
       const bool sticks = push == each.side;
       if (sticks && !each.stuck) {
-        each.contact = answer_.contacts.size();
-        answer_.contacts.push_back({t_, t_, int(&each - dampers_.data()), each.wall()});
+        open_contact(each);
         each.stuck = true;
       } else if (!sticks) {
         leave(each);
@@ -185,22 +262,21 @@ class Integrator {
     }
   }
   void leave(Damper& each) {
-    if (each.stuck) answer_.contacts[each.contact].end = t_;
-    each.stuck = false;
+    if (each.stuck || each.in_contact) answer_.contacts[each.contact].end = t_;
+    each.stuck = each.in_contact = false;
   }
 
   void advance() {
-    if (std::int64_t(answer_.impacts.size()) > question_.most_impacts ||
-        ++steps_ > 4 * question_.most_impacts) {
+    if (std::int64_t(answer_.impacts.size()) > question_.most_impacts || ++steps_ > question_.most_steps) {
       answer_.complete = false;
       return;
     }
     if (!released_) decide();
     released_ = false;
-    Quad h = step_by_rate / rate_;
+    Quad h = step_by_rate / rate();
     const Quad acceleration = force() / joined_mass();
     for (const Damper& each : dampers_) {  // what will soon be at a wall needs no long step
-      if (each.stuck) continue;
+      if (each.stuck || each.in_contact) continue;
       const double push = double(each.side * acceleration), speed = double(each.s);
       const double way = double(push > 0 ? each.d : each.clearance - each.d),
                    towards = push > 0 ? -speed : speed;
@@ -227,7 +303,16 @@ class Integrator {
         side = each.side;
         continue;
       }
-      near[i] = first(each.path, -1);
+      near[i] = first(each.path, each.in_contact ? +1 : -1);
+      if (each.in_contact) {
+        if (question_.fault == Fault::let_go_by_force) near[i] = std::min(near[i], first(each.push, +1));
+        end = std::min(end, near[i]);
+        continue;
+      }
+      // A speed away from a wall that is rounding of what leads it back.
+      if (const int leads = leading(each.path);
+          compliant_ && each.d == 0 && leads > 0 && each.path.at[leads] < 0)
+        near[i] = 0;
       Polynomial gap = each.path;
       gap.at[0] -= each.clearance;
       far[i] = first(gap, +1);
@@ -246,17 +331,26 @@ class Integrator {
     t_ = last && end == 1 ? until_ : t_ + h * end;
     x_ = px_(end), v_ = pv_(end);
     bool met = false;
+    std::vector<bool> meets(dampers_.size(), false);  // a compliant wall
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
       Damper& each = dampers_[i];
       if (each.stuck) continue;
       each.d = each.path(end);
       each.s = derivative(each.path)(end) / h;
+      if (each.in_contact) {
+        if (near[i] > together) continue;
+        each.d = 0, each.s = std::max(each.s, Quad(0));
+        leave(each);
+        released_ = true;
+        continue;
+      }
       if (!(each.d >= Quad(-1e-12L) && each.d <= each.clearance + Quad(1e-12L)))
         throw std::logic_error("the oracle has lost a damper");
       if (near[i] <= together || far[i] <= together) {
         if (far[i] <= together) each.side = -each.side, each.s = -each.s;
         each.d = 0;
         met = true;
+        meets[i] = compliant_;
       }
     }
     if (release <= together) {
@@ -264,7 +358,11 @@ class Integrator {
       released_ = true;
     }
     if (met || released_) perturb();
-    if (met) {
+    if (compliant_) {
+      for (std::size_t i = 0; i < dampers_.size(); ++i)
+        if (meets[i]) dampers_[i].s = std::min(dampers_[i].s, Quad(0)), touch(dampers_[i]);
+      released_ = false;
+    } else if (met) {
       impact();
       released_ = false;
     }
@@ -276,11 +374,19 @@ class Integrator {
     x_ = noisy(x_, event + 11);
     v_ = noisy(v_, event + 12);
     const Quad shift = noisy(1, event + 16) - 1;
+    if (compliant_) {  // while one is in contact the distances of the others are rounded as x is
+      for (Damper& each : dampers_) {
+        if (each.in_contact || (each.d == 0 && each.s == 0)) continue;
+        if (each.d > Quad(1e-12L) && each.clearance - each.d > Quad(1e-12L))
+          each.d += each.side * shift * magnitude(x_);
+        each.s += each.side * shift * magnitude(v_);
+      }
+    }
     for (Damper& each : dampers_) {
       if (each.stuck) continue;
       each.s = noisy(each.s, event + 13);
       // All in one direction, too, so that those as far from the same wall remain so; not near a wall.
-      if (each.s < 0) each.d = noisy(each.d, event + 14 + (each.side > 0));
+      if (each.s < 0 || each.in_contact) each.d = noisy(each.d, event + 14 + (each.side > 0));
       if (each.d > Quad(1e-3L) && each.clearance - each.d > Quad(1e-3L)) each.d += each.side * shift;
     }
   }
@@ -378,6 +484,14 @@ class Integrator {
   }
 
   void work(Quad end) {
+    for (std::size_t i = 0; i < dampers_.size(); ++i) {
+      const Damper& each = dampers_[i];
+      if (!each.in_contact || each.damping == 0) continue;
+      const Polynomial speed = derivative(each.path);
+      const Quad loss = each.nu * each.damping * integral_of_product(speed, speed, end) / h_;
+      if (each.impact) answer_.damper_loss[i] += loss;
+      (each.impact ? answer_.impacts[*each.impact].loss : answer_.contact_loss) += loss;
+    }
     if (zeta_ != 0) answer_.viscous_work += 2 * zeta_ * h_ * integral_of_product(pv_, pv_, end);
     if (f0_ == 0) return;
     const Quad work = h_ * integral_of_product(pf_, pv_, end);
@@ -426,6 +540,7 @@ class Integrator {
   }
 
   const Question& question_;
+  bool compliant_;
   Quad zeta_ = 0, f0_ = 0, omega_ = 0, until_ = 0, rate_ = 0;
   Quad t_ = 0, x_ = 0, v_ = 0;
   std::vector<Damper> dampers_;

@@ -75,6 +75,68 @@ Scene round_scene(std::uint64_t seed) {
   return scene;
 }
 
+Scene random_compliant_scene(std::uint64_t seed) {
+  Scene scene = random_scene(seed);
+  reference::Random random(seed ^ (std::uint64_t(1) << 40));
+  scene.until_time = random.uniform(3, 20);
+  if (random.chance(0.2)) {  // as many again
+    const auto few = scene.dampers;
+    scene.dampers.insert(scene.dampers.end(), few.begin(), few.begin() + std::ptrdiff_t(few.size() / 2));
+  }
+  const bool crowded = random.chance(0.2), pressed = random.chance(0.25), soft = random.chance(0.3);
+  if (pressed) {
+    scene.x0 = random.uniform(-0.5, 0.5), scene.v0 = random.chance(0.7) ? 0 : random.uniform(-0.2, 0.2);
+    scene.force_amplitude *= random.log_uniform(0.01, 1);
+  }
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    SceneDamper& each = scene.dampers[i];
+    const SceneDamper& first = scene.dampers[0];
+    if (random.chance(0.1)) each.mass_ratio = random.log_uniform(0.5, 5);
+    each.wall_stiffness = i > 0 && random.chance(0.3) ? first.wall_stiffness
+                                                      : random.log_uniform(10, soft || pressed ? 1e4 : 1e7);
+    if (crowded) {
+      const double before = each.clearance;
+      each.clearance = i > 0 && random.chance(0.5) ? first.clearance : 1e-3 * random.log_uniform(1, 10);
+      each.y0 *= each.clearance / before;
+      if (random.chance(0.5)) each.w0 = 0;
+    }
+    if (pressed) {
+      each.restitution = random.chance(0.3) ? 0 : random.uniform(0, 0.4);
+      if (random.chance(0.7)) each.y0 = random.chance(0.5) ? 0 : each.clearance, each.w0 = 0;
+    }
+    if (random.chance(0.15)) {  // inside a wall
+      const double overlap = random.log_uniform(1e-9, 3 / std::sqrt(each.wall_stiffness));
+      each.y0 = random.chance(0.5) ? -overlap : each.clearance + overlap;
+    }
+  }
+  return scene;
+}
+
+Scene round_compliant_scene(std::uint64_t seed) {
+  Scene scene = round_scene(seed);
+  reference::Random random(seed ^ (std::uint64_t(1) << 40));
+  const auto one_of = [&](std::initializer_list<double> values) {
+    return values.begin()[random.bits() % values.size()];
+  };
+  const bool equal_walls = random.chance(0.5), equal = random.chance(0.2);
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    SceneDamper& each = scene.dampers[i];
+    const double nu = each.mass_ratio;
+    if (equal) each = scene.dampers[0];
+    each.wall_stiffness = i > 0 && (equal || equal_walls)
+                              ? scene.dampers[0].wall_stiffness
+                              : one_of({nu, nu / ((1 + nu) * (1 + nu)), 1, 16, 100, 1e4, 1e4, 1e6});
+    const double overlap = !random.chance(0.15) ? 0 : each.wall_stiffness > 100 ? 1e-3 : one_of({0.125, 0.5});
+    if (overlap > 0) each.y0 = random.chance(0.5) ? -overlap : each.clearance + overlap;
+  }
+  if (scene.force_amplitude != 0 && random.chance(0.3)) {
+    const SceneDamper& first = scene.dampers[0];
+    scene.force_frequency = random.chance(0.5) ? std::sqrt(first.wall_stiffness / first.mass_ratio)
+                                               : std::sqrt(1 / (1 + first.mass_ratio));
+  }
+  return scene;
+}
+
 std::string text_of(const Scene& scene) {
   std::ostringstream text;
   text.precision(17);
@@ -85,7 +147,8 @@ std::string text_of(const Scene& scene) {
   for (const SceneDamper& each : scene.dampers)
     text << (&each == scene.dampers.data() ? "\n" : ",\n") << "  {\"mass_ratio\": " << each.mass_ratio
          << ", \"restitution\": " << each.restitution << ", \"clearance\": " << each.clearance
-         << ", \"y0\": " << each.y0 << ", \"w0\": " << each.w0 << "}";
+         << ", \"wall_stiffness\": " << each.wall_stiffness << ", \"y0\": " << each.y0
+         << ", \"w0\": " << each.w0 << "}";
   return text.str() + "]}\n";
 }
 

@@ -10,6 +10,10 @@ namespace several {
 
 impact_damper::Scene random_scene(std::uint64_t seed);
 impact_damper::Scene round_scene(std::uint64_t seed);
+// Between compliant walls. Of the random ones some have small clearances, so that many are in contact at
+// once, and some little motion, so that masses are pressed to their walls for long.
+impact_damper::Scene random_compliant_scene(std::uint64_t seed);
+impact_damper::Scene round_compliant_scene(std::uint64_t seed);
 
 // As it stands in a scene file.
 std::string text_of(const impact_damper::Scene& scene);
