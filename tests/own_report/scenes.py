@@ -53,6 +53,10 @@ SCENES = {
                          ["decay", "loss", "phase", "begin", "prediction"]),
     "released by w0": (["--x0", "0", "--w0", "3", "--until-time", "400"], {"prediction": "releases that differ"},
                        ["decay", "phase", "begin", "prediction"]),
+    "several": (["--scene", "boxes.json"], {"scene": "of the first damper|power series", "dampers": "Failed at|an assumption", "motion": "strikes most often then"},
+                ["decay", "loss", "phase", "begin", "best", "prediction"]),
+    "several, rigid": (["--scene", "pair.json", "--engine", "restitution"], {"scene": "rigid", "dampers": "closed form"},
+                       ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "budget": (["--until-amplitude", "0.1", "--max-impacts", "40"], {"scene": "--max-impacts"},
                ["decay", "phase", "begin", "prediction"]),
 }
@@ -139,9 +143,10 @@ def shifted(scene):
         z ^= z >> 31
         steps = 1.0 + (z >> 1) % 1000
         factor = 1 + 1e-9 * (steps if z & 1 else -steps)
-        numbers = {name: scene[name] * factor for name in MOVING[:-1]}
-        y0 = scene["y0"]
-        numbers["y0"] = y0 * factor if y0 < 0 else 1 + (y0 - 1) * factor if y0 > 1 else y0
+        numbers = {name: scene[name] * factor for name in MOVING[:-1] if name in scene}  # of several, w0 is 0 here
+        if "y0" in scene:
+            y0 = scene["y0"]
+            numbers["y0"] = y0 * factor if y0 < 0 else 1 + (y0 - 1) * factor if y0 > 1 else y0
         yield [f"--{name.replace('_', '-')}={value!r}" for name, value in numbers.items()]
 
 
@@ -162,8 +167,45 @@ def holds(page, section, value, what, digits=1e-9):
           f"{name}: {section} does not have the {what}, {value}: {page.numbers[section]}")
 
 
+def largest_force(damper, speed):
+    """By stepping through the contact."""
+    nu, k, decrement = damper["mass_ratio"], damper["wall_stiffness"], -math.log(damper["restitution"])
+    damping = 2 * math.sqrt(k / nu) * decrement / math.hypot(math.pi, decrement)
+    q, v, largest, h = 0.0, speed, 0.0, 1e-4 * math.sqrt(nu / k)
+    while q >= 0:
+        force = damping * v + k / nu * q
+        largest = max(largest, nu * force)
+        v -= h * (1 + nu) * force
+        q += h * v
+    return largest
+
+
+def of_damper(column, run, number):
+    """Those rows of the impacts that are the damper's, from 0."""
+    return [value for value, its in zip(run["impacts"][column], run["impacts"]["damper"]) if its == number + 1]
+
+
+def dampers(page, run, scales):
+    """What each of several did, and which took most of the energy."""
+    energy, rows = run["energy"], run["half_cycles"]
+    lost = sum(energy["impact_loss"]) + energy["contact_loss"] + energy["bounce_down_loss"] + energy["viscous_work"]
+    taken = [its["impact_loss"] + its["bounce_down_loss"] for its in energy["dampers"]]
+    for number, damper in enumerate(run["scene"]["dampers"]):
+        speed = max(map(abs, of_damper("relative_velocity", run, number)))
+        holds(page, "dampers", len(of_damper("time", run, number)), f"impacts of damper {number + 1}")
+        holds(page, "dampers", 100 * taken[number] / lost, f"energy of damper {number + 1}")
+        holds(page, "dampers", speed * (scales[1] / scales[0] / 1000 if scales else 1), f"speed of damper {number + 1}")
+        if run["engine"]["name"] != "restitution":
+            force = largest_force(damper, speed) * (scales[2] / scales[1] * 1000 if scales else 1)
+            holds(page, "dampers", force, f"force on damper {number + 1}", 1e-3)
+        missed = failure({"impacts": rows["dampers"][number]["impacts"]})
+        if missed < len(rows["amplitude"]):
+            holds(page, "dampers", in_page(rows["amplitude"][missed], scales), f"failure of damper {number + 1}")
+    return max(range(len(taken)), key=lambda number: taken[number])
+
+
 def loads(page, run, scales):
-    """Speed and number of the impacts, and the force of the hardest, by stepping through its contact."""
+    """Speed and number of the impacts, and the force of the hardest."""
     impacts, scene = run["impacts"], run["scene"]
     if not impacts["time"]:
         return
@@ -172,17 +214,9 @@ def loads(page, run, scales):
     rate = sum(time >= since for time in impacts["time"]) / (end - since)
     holds(page, "loads", speed * (scales[1] / scales[0] / 1000 if scales else 1), "largest impact speed")
     holds(page, "loads", rate * (3600 / scales[0] if scales else 2 * math.pi), "number of impacts in an hour or a period")
-    if run["engine"]["name"] == "restitution":
+    if run["engine"]["name"] == "restitution" or "dampers" in scene:
         return
-    nu, k, decrement = scene["mass_ratio"], scene["wall_stiffness"], -math.log(scene["restitution"])
-    damping = 2 * math.sqrt(k / nu) * decrement / math.hypot(math.pi, decrement)
-    q, v, largest, h = 0.0, speed, 0.0, 1e-4 * math.sqrt(nu / k)
-    while q >= 0:
-        force = damping * v + k / nu * q
-        largest = max(largest, nu * force)
-        v -= h * (1 + nu) * force
-        q += h * v
-    holds(page, "loads", largest * (scales[2] / scales[1] * 1000 if scales else 1), "largest force", 1e-3)
+    holds(page, "loads", largest_force(scene, speed) * (scales[2] / scales[1] * 1000 if scales else 1), "largest force", 1e-3)
 
 
 def linear_amplitude(scene, mass, omega):
@@ -317,7 +351,7 @@ def axis(figure, given, noun, symbol, end, margin, scale):
     check(end * factor * (1 - 1e-6) <= high <= end * factor * margin * (1 + 1e-6), f"{figure}: {name} goes to {high}, not {end * factor}")
 
 
-def compare_axes(name, text, run, scales):
+def compare_axes(name, text, run, scales, shown):
     """What the axes of the drawings measure is what the run holds, in units where the scene is."""
     drawn = {figure: json.loads(html.unescape(said))["axes"] for figure, said in re.findall(
         r'id="figure-(\w+)">(?:(?!</figure>).)*?<metadata>(.*?)</metadata>', text, re.S)}
@@ -333,7 +367,8 @@ def compare_axes(name, text, run, scales):
         above, below = drawn["begin"]
         end = min(4 * math.pi if rows["amplitude"] else run["end_time"], run["end_time"])
         axis(f"{name}: motion", above["x"], "time", "t", 0.98 * end, 1.04, seconds)  # the last sample before the end
-        axis(f"{name}: motion", above["y"], "relative displacement", "y", 1.14, 2, millimetres)
+        length = run["scene"]["dampers"][shown]["clearance"] if "dampers" in run["scene"] else 1
+        axis(f"{name}: motion", above["y"], "relative displacement", "y", 1.14, 2, millimetres and millimetres * length)
         check(above["x"][:3] == below["x"][:3], f"{name}: motion: two axes of time")
 
 
@@ -355,7 +390,9 @@ def compare(page, text, run, scales):
             holds(page, "energy", value * scales[2], part + " in J", 1e-6)
     first = min(4 * math.pi if amplitudes else run["end_time"], run["end_time"])
     holds(page, "motion", first / (2 * math.pi), "length of the first window")
-    struck = sum(time <= first for time in run["impacts"]["time"])
+    several = "dampers" in run["scene"]
+    shown = dampers(page, run, scales) if several else None
+    struck = sum(time <= first for time in (of_damper("time", run, shown) if several else run["impacts"]["time"]))
     if struck > 1:
         holds(page, "motion", struck, "impacts in the first window")
     else:
@@ -364,7 +401,7 @@ def compare(page, text, run, scales):
         holds(page, "energy", len(energy["impact_loss"]), "number of impacts")
     loads(page, run, scales)
     if not amplitudes:
-        return
+        return shown
     if run["scene"]["force_amplitude"]:
         last = amplitudes[-(len(amplitudes) // 4):]
         shown = [sum(last) / len(last)] + ([min(last), max(last)] if "lies between" in page.words["decay"] else [])
@@ -372,7 +409,7 @@ def compare(page, text, run, scales):
             holds(page, "decay", value * (scales[1] if scales else 1), "amplitude in the last quarter")
         check(len(shown) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
         response(page, text, run, scales)
-        return
+        return shown
     if amplitudes[0] == max(amplitudes[:2]):
         for part in (0.5, 0.1, 0.01):
             below = next((t for t, a in zip(times, amplitudes) if a < part * amplitudes[0]), None)
@@ -387,7 +424,7 @@ def compare(page, text, run, scales):
         eta, amplitude = best_damping(rows)
         holds(page, "loss", eta, "largest loss factor", 1e-6)  # the two ways of fitting round differently
         holds(page, "loss", in_page(amplitude, scales), "its amplitude", 1e-6)
-    if rows["impacts"] and energy["impact_loss"]:
+    if rows["impacts"] and energy["impact_loss"] and not several:
         holds(page, "regimes", max(rows["impacts"]), "most impacts in a half cycle")
         for count, (first, last) in windows(rows["impacts"]).items():
             for value in (count, last - first + 1, amplitudes[first], amplitudes[last]):
@@ -399,6 +436,7 @@ def compare(page, text, run, scales):
     if lost is not None:
         holds(page, "prediction", 100 * last, "last spread", 1e-6)
         holds(page, "prediction", amplitudes[lost - 1], "last amplitude at which the releases agree")
+    return shown
 
 
 shutil.rmtree(folder, ignore_errors=True)
@@ -413,6 +451,12 @@ del forced["until_millimetres"]
 (folder / "forced.json").write_text(json.dumps(forced))
 for wind, newtons in {"wind": 2, "gale": 2.4}.items():
     (folder / f"{wind}.json").write_text(json.dumps({**forced, "exciting_force": newtons, "exciting_frequency": 3.15, "initial_displacement": 0}))
+(folder / "boxes.json").write_text(json.dumps({
+    "mass": 40, "stiffness": 16000, "initial_displacement": 60, "until_millimetres": 0.3, "until_seconds": 300,
+    "dampers": [{"secondary_mass": 0.5, "clearance": 8}, {"secondary_mass": 0.4, "clearance": 20, "contact_stiffness": 1e7},
+                {"secondary_mass": 0.3, "clearance": 50, "restitution": 0.5}]}))
+(folder / "pair.json").write_text(json.dumps({"x0": 8, "until_amplitude": 0.05, "until_time": 3000, "dampers": [
+    {"mass_ratio": 0.02, "y0": 0.5}, {"mass_ratio": 0.01, "restitution": 0.4, "clearance": 6}]}))
 for name in sys.argv[4:] or SCENES:
     options, words, drawn = SCENES[name]
     file = folder / f"{name.replace(' ', '-').replace(chr(39), '')}.html"
@@ -425,7 +469,8 @@ for name in sys.argv[4:] or SCENES:
     for fault in page.faults:
         check(False, f"{name}: {fault}")
     forced = "--force-amplitude" in options or options[-1] in ("forced.json", "wind.json", "gale.json")
-    sections = ["response" if forced and each == "loss" else each for each in SECTIONS]
+    several = options[1] in ("boxes.json", "pair.json")
+    sections = ["response" if forced and each == "loss" else "dampers" if several and each == "regimes" else each for each in SECTIONS]
     check([s for s in page.numbers if s] == sections, f"{name}: sections {list(page.numbers)}")
     check(page.figures == [f"figure-{each}" for each in drawn], f"{name}: figures {page.figures}")
     check(len(page.svgs) == len(drawn), f"{name}: {len(page.svgs)} drawings")
@@ -438,12 +483,11 @@ for name in sys.argv[4:] or SCENES:
         check(page.words[section].count(" ") > 5, f"{name}: {section} is empty")
     run = json.loads(call("run", *options, "--record", "half_cycles,impacts,energy").stdout)
     scales = None
-    if "--scene" in options:
-        scene = json.loads((folder / options[1]).read_text())
-        mass, stiffness, length = scene["mass"], scene["stiffness"], scene["clearance"]
+    if "--scene" in options and "x0" not in (scene := json.loads((folder / options[1]).read_text())):
+        mass, stiffness, length = scene["mass"], scene["stiffness"], scene.get("clearance") or scene["dampers"][0]["clearance"]
         scales = (math.sqrt(mass / stiffness), length, stiffness * length * length * 1e-6)
-    compare(page, text, run, scales)
-    compare_axes(name, text, run, scales)
+    shown = compare(page, text, run, scales)
+    compare_axes(name, text, run, scales, shown)
 
     before = file.stat().st_mtime_ns
     call("report", *options, "--members", MEMBERS, "--threads", "1", "-o", file.name)
