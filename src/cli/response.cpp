@@ -91,9 +91,10 @@ double scale_of(std::string_view unit, const Scales& scales) {
 }
 
 // The numbers of a scene by their names, beside a scene in units also by those of its file.
-Variables variables_of(const std::optional<Scales>& scales) {
+Variables variables_of(const std::optional<Scales>& scales, bool several) {
   Variables variables;
-  for (const SceneField& field : scene_fields) variables[std::string(field.name)] = {field.member};
+  for (const SceneField& field : scene_fields)
+    if (!several || !is_of_one_damper(field)) variables[std::string(field.name)] = {field.member};
   if (!scales) return variables;
   for (const UnitField& field : unit_fields) {
     const auto made = variables.find(field.becomes);
@@ -187,32 +188,38 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
   return range;
 }
 
-// X:V:Y:W in the units of the scene's file.
-std::optional<State<double>> parse_state(std::string_view text, const std::optional<Scales>& scales) {
+// X:V:Y:W in the units of the scene's file; of several dampers X:V, and they begin as the scene says.
+std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file) {
+  const std::optional<Scales>& scales = file.scales;
+  const std::size_t count = file.scene.dampers.empty() ? 4 : 2;
   std::array<double, 4> numbers{};
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::size_t colon = text.find(':');
-    if ((colon == std::string_view::npos) != (i == 3)) return std::nullopt;
+    if ((colon == std::string_view::npos) != (i + 1 == count)) return std::nullopt;
     const auto number = parse_number(text.substr(0, colon));
     if (!number) return std::nullopt;
     const double length = scales ? scales->length : 1, velocity = scales ? scales->velocity() : 1;
     numbers[i] = *number / (i % 2 == 0 ? length : velocity);
     text = colon == std::string_view::npos ? "" : text.substr(colon + 1);
   }
-  return State<double>{numbers[0], numbers[1], numbers[2], numbers[3]};
+  SceneState state = State<double>{numbers[0], numbers[1], numbers[2], numbers[3]};
+  state.dampers = release_of(file.scene).dampers;
+  return state;
 }
 
 // The scene's own release, then those of --start.
-std::vector<State<double>> starts_of(Arguments& arguments, const SceneFile& file) {
-  std::vector<State<double>> starts{release_of(file.scene)};
+std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
+  std::vector<SceneState> starts{release_of(file.scene)};
   for (const std::string& text : arguments.texts("--start")) {
-    const auto start = parse_state(text, file.scales);
+    const auto start = parse_state(text, file);
     if (start) {
       starts.push_back(*start);
-      for (const Problem& problem : problems_of(released_from(file.scene, *start)))
+      for (const Problem& problem : problems_of(released_from(file.scene, *start), DamperList::allowed))
         arguments.reject("--start", problem.field + " " + problem.message);
     } else {
-      arguments.reject("--start", "must be four numbers X0:V0:Y0:W0, got " + in_quotes(text));
+      arguments.reject("--start", (file.scene.dampers.empty() ? "must be four numbers X0:V0:Y0:W0, got "
+                                                              : "must be two numbers X0:V0, got ") +
+                                      in_quotes(text));
     }
   }
   return starts;
@@ -342,7 +349,7 @@ struct Request {
   Engine engine;
   std::vector<Axis> axes;               // sweep: one, basin: two
   std::optional<ParameterRange> range;  // orbits
-  std::vector<State<double>> starts;
+  std::vector<SceneState> starts;
   SteadyRule sweep;
   BasinRule basin;
   BranchRule orbits;
@@ -382,8 +389,9 @@ std::string mapped(const Request& asked) {
 std::string followed(const Request& asked) {
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
-  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
-                                       asked.threads, [&](std::int64_t done) { progress(done); });
+  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits,
+                                       {asked.starts.begin(), asked.starts.end()}, asked.threads,
+                                       [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(found, asked.orbits);
   return asked.format == Format::csv
              ? orbits_csv(*asked.range, found, asked.units)
@@ -428,7 +436,8 @@ int respond(Arguments& arguments) {
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
   Request asked;
   asked.kind = kinds[word.value_or(0)];
-  asked.file = scene_of(arguments, Stops::ignored);
+  asked.file = scene_of(arguments, Stops::ignored,
+                        asked.kind == Kind::sweep ? DamperList::allowed : DamperList::rejected);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
   asked.sweep = rule_of(arguments, SteadyRule{});
@@ -439,7 +448,7 @@ int respond(Arguments& arguments) {
   asked.averaging = averaging_of(arguments);
   if (word) {
     reject_options_of_others(arguments, asked.kind);
-    const Variables variables = variables_of(asked.file.scales);
+    const Variables variables = variables_of(asked.file.scales, !asked.file.scene.dampers.empty());
     if (asked.kind == Kind::orbits) {
       asked.range = range_of(arguments, variables);
     } else if (asked.kind != Kind::lyapunov) {
@@ -491,7 +500,7 @@ Options own_options() {
       "Response", Option::Takes::repeated_value);
   add("--start", "X0:V0:Y0:W0",
       "sweep, orbits: one more that begins there beside the scene's\nrelease, in mm and mm/s beside a "
-      "scene in units; may be repeated",
+      "scene in units; may be repeated. Of several\ndampers X0:V0",
       "Response", Option::Takes::repeated_value);
   add("--tolerance", "X",
       "a motion is periodic when the estimated distance to what it repeats\nis below this; > 0 and <= 0.01, "

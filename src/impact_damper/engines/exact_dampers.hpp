@@ -30,11 +30,24 @@
 
 namespace impact_damper {
 
+// Of each damper's wall, by number in the scene; each made for the first contact, if it is not there.
+template <class Real, class Force>
+using ModesOfDampers = std::vector<std::shared_ptr<const ContactModes<Real, Force>>>;
+
+template <class Real, class Force>
+std::shared_ptr<const ContactModes<Real, Force>> modes_of_damper(const Scene& scene, std::size_t number,
+                                                                 const Exact& options) {
+  const Scene alone = with_alone(scene, scene.dampers[number]);
+  return std::make_shared<const ContactModes<Real, Force>>(System<Real, Force>(alone),
+                                                           zeta_m<Real>(alone, options.calibration));
+}
+
 template <class Real, class Force, class Observer>
 class ExactOfDampers {
  public:
+  // modes: empty, or those that several runs of one scene share.
   ExactOfDampers(const System<Real, Force>& system, const Scene& scene, const Exact& options,
-                 Observer& observer)
+                 Observer& observer, const ModesOfDampers<Real, Force>& modes = {})
       : system_(system),
         scene_(scene),
         options_(options),
@@ -50,6 +63,7 @@ class ExactOfDampers {
       const Scene alone = with_alone(scene, scene.dampers[masses_.number[i]]);
       walls_[i].stiffness = Real(alone.wall_stiffness) / Real(alone.mass_ratio);
       walls_[i].damping = 2 * zeta_m<Real>(alone, options.calibration) * square_root(walls_[i].stiffness);
+      if (!modes.empty()) walls_[i].modes = modes[masses_.number[i]];
     }
   }
 
@@ -87,10 +101,10 @@ class ExactOfDampers {
  private:
   // What a mass's wall does, and what has happened in the contact that is under way.
   struct OwnWall {
-    Real stiffness, damping;                                   // K and c of (M2.2)
-    std::unique_ptr<const ContactModes<Real, Force>> modes{};  // made for the first contact
-    std::optional<std::size_t> impact{};                       // that began the contact
-    Real work{0};                                              // of the wall's damper in it
+    Real stiffness, damping;  // K and c of (M2.2)
+    std::shared_ptr<const ContactModes<Real, Force>> modes{};
+    std::optional<std::size_t> impact{};  // that began the contact
+    Real work{0};                         // of the wall's damper in it
   };
   struct Event {
     std::size_t index;
@@ -100,11 +114,7 @@ class ExactOfDampers {
 
   const ContactModes<Real, Force>& modes_of(std::size_t i) {
     OwnWall& wall = walls_[i];
-    if (!wall.modes) {
-      const Scene alone = with_alone(scene_, scene_.dampers[masses_.number[i]]);
-      wall.modes = std::make_unique<const ContactModes<Real, Force>>(
-          System<Real, Force>(alone), zeta_m<Real>(alone, options_.calibration));
-    }
+    if (!wall.modes) wall.modes = modes_of_damper<Real, Force>(scene_, masses_.number[i], options_);
     return *wall.modes;
   }
 

@@ -166,7 +166,7 @@ Scene parse_scene(const std::string& name, const std::string& text, DamperList d
   return parse_scene_file(name, text, dampers).scene;
 }
 
-void write_scene_fields(JsonWriter& out, const Scene& scene) {
+void write_scene_numbers(JsonWriter& out, const Scene& scene) {
   const bool several = !scene.dampers.empty();
   for (const SceneField& each : scene_fields)
     if (!several || !is_of_one_damper(each)) out.field(each.name, scene.*each.member);
@@ -177,6 +177,10 @@ void write_scene_fields(JsonWriter& out, const Scene& scene) {
     out.close();
   }
   if (several) out.close();
+}
+
+void write_scene_fields(JsonWriter& out, const Scene& scene) {
+  write_scene_numbers(out, scene);
   out.field("until_time", scene.until_time);
   out.field("until_amplitude", scene.until_amplitude);
 }

@@ -62,6 +62,8 @@ Scene read_scene_fields(ObjectReader& object, DamperList dampers = DamperList::r
 // be used.
 SceneFile read_scene_object(ObjectReader& object, DamperList dampers = DamperList::rejected);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
+// The same without the stops.
+void write_scene_numbers(JsonWriter& out, const Scene& scene);
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that it has
 
 // The scene as JSON on one line, every field in the order of Scene, absent stops as null, several dampers in

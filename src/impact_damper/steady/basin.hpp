@@ -11,7 +11,8 @@ namespace impact_damper {
 
 struct BasinRule {
   SteadyRule steady{.tolerance = 1e-6, .max_periods = 1000};
-  // Distance from a state at phase 0 of a known motion within which a point may be captured by it. In (0, 0.5].
+  // Distance from a state at phase 0 of a known motion within which a point may be captured by it. In (0,
+  // 0.5].
   double capture_radius = 1e-3;
 };
 std::vector<Problem> problems_of(const BasinRule& rule);

@@ -66,6 +66,23 @@ RowColumn<SteadyState> impacts_on(std::string_view name) {
       [](SteadyState& s, double value) { s.impacts[wall] = std::int64_t(value); }));
 }
 
+// Of one of several dampers.
+template <std::size_t wall>
+RowColumn<DamperOfSteadyState> of_damper_impacts(std::string_view name) {
+  using D = DamperOfSteadyState;
+  return whole(always<D>(
+      name, ratio, counts,
+      [](const D& d) { return d.has_means ? std::optional(double(d.impacts[wall])) : std::nullopt; },
+      [](D& d, double value) { d.impacts[wall] = std::int64_t(value); }));
+}
+template <auto member>
+RowColumn<DamperOfSteadyState> of_place(std::string_view name, const UnitInSi& unit) {
+  using D = DamperOfSteadyState;
+  return always<D>(
+      name, unit, any, [](const D& d) { return std::optional(d.place.*member); },
+      [](D& d, double value) { d.place.*member = value; });
+}
+
 // A number of an orbit's point.
 template <auto member>
 RowColumn<OrbitPoint> of_point(std::string_view name, const UnitInSi& unit, NumberRange range) {
@@ -107,7 +124,7 @@ std::string_view end_of(const SteadyState& steady) {
   return steady.period ? "periodic" : "not_periodic";
 }
 
-std::span<const RowColumn<SteadyState>> steady_columns() {
+std::span<const RowColumn<SteadyState>> steady_columns(bool several) {
   using S = SteadyState;
   static const std::array table{
       whole(always<S>(
@@ -138,7 +155,26 @@ std::span<const RowColumn<SteadyState>> steady_columns() {
       of_state<S, &State<double>::y>("y", length),
       of_state<S, &State<double>::w>("w", velocity),
   };
+  return std::span(table).first(table.size() - (several ? 2 : 0));
+}
+
+std::span<const RowColumn<DamperOfSteadyState>> damper_columns() {
+  static const std::array table{of_damper_impacts<0>("impacts_left"), of_damper_impacts<1>("impacts_right"),
+                                of_place<&PlaceInCavity::y>("y", length),
+                                of_place<&PlaceInCavity::w>("w", velocity)};
   return table;
+}
+
+std::vector<DamperOfSteadyState> of_damper(const std::vector<SteadyState>& way, std::size_t number) {
+  std::vector<DamperOfSteadyState> rows;
+  rows.reserve(way.size());
+  for (const SteadyState& each : way) {
+    DamperOfSteadyState& row = rows.emplace_back();
+    row.has_means = each.means.has_value();
+    if (number < each.impacts_by_damper.size()) row.impacts = each.impacts_by_damper[number];
+    row.place = each.state.dampers[number];
+  }
+  return rows;
 }
 
 std::span<const RowColumn<OrbitPoint>> orbit_columns() {
@@ -179,7 +215,9 @@ std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
       column.numbers.push_back(std::isfinite(amplitude) ? std::optional(amplitude) : std::nullopt);
     };
     add(empty, 1);
-    add(locked, 1 + there.mass_ratio);
+    double carried = there.dampers.empty() ? there.mass_ratio : 0;
+    for (const SceneDamper& damper : there.dampers) carried += damper.mass_ratio;
+    add(locked, 1 + carried);
   }
   return {empty, locked};
 }

@@ -33,7 +33,16 @@ struct RowColumn {
   std::optional<double> (*get)(const Row&);
   void (*set)(Row&, double);
 };
-std::span<const RowColumn<SteadyState>> steady_columns();
+// Of a scene with several dampers without y and w, which each of them has for itself: damper_columns().
+std::span<const RowColumn<SteadyState>> steady_columns(bool several);
+struct DamperOfSteadyState {
+  bool has_means = false;
+  ImpactCounts impacts{};
+  PlaceInCavity place{};
+};
+std::span<const RowColumn<DamperOfSteadyState>> damper_columns();
+// Of the states of a way those of one damper, by number.
+std::vector<DamperOfSteadyState> of_damper(const std::vector<SteadyState>& way, std::size_t number);
 std::span<const RowColumn<OrbitPoint>> orbit_columns();
 
 // Numbers under a name.
@@ -54,7 +63,7 @@ std::vector<Column> columns_of(std::span<const RowColumn<Row>> table, const std:
   return columns;
 }
 
-// The amplitude without the damper and with its mass locked in, (M12.6), at each value of the axis. Infinite
+// The amplitude without dampers and with their masses locked in, (M12.6), at each value of the axis. Infinite
 // at the resonance of an undamped oscillator: absent.
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis);
 

@@ -38,6 +38,13 @@ class Examination {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const SteadyState& s = states[i];
       const std::string row = '/' + std::to_string(i);
+      for (const std::size_t wall : {0, 1}) {
+        std::int64_t all = s.impacts_by_damper.empty() ? s.impacts[wall] : 0;
+        for (const ImpactCounts& each : s.impacts_by_damper) all += each[wall];
+        require(s.impacts[wall] == all, place(way, wall == 0 ? "impacts_left" : "impacts_right", row),
+                "must be " + std::to_string(all) + ", the sum over the dampers, got " +
+                    std::to_string(s.impacts[wall]));
+      }
       require(!s.contraction || s.period, place(way, "contraction", row),
               "must be null: the motion is not periodic");
       require(s.transient_periods <= response.rule.max_periods, place(way, "transient_periods", row),

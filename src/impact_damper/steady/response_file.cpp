@@ -1,9 +1,11 @@
 #include "impact_damper/steady/response_file.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/steady/response_columns.hpp"
 
 namespace impact_damper {
@@ -84,13 +86,37 @@ void write_state(JsonWriter& out, std::string_view name, const State<double>& s)
   out.object(name, Layout::one_line, "x", s.x, "v", s.v, "y", s.y, "w", s.w);
 }
 
-void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyState>& way) {
+void write_state(JsonWriter& out, std::string_view name, const SceneState& s) {
+  if (s.dampers.empty()) return write_state(out, name, static_cast<const State<double>&>(s));
+  out.open_object(name, Layout::one_line);
+  out.fields("x", s.x, "v", s.v);
+  out.open_array("dampers", Layout::one_line);
+  for (const PlaceInCavity& each : s.dampers) {
+    out.open_object(Layout::one_line);
+    out.fields("y", each.y, "w", each.w);
+    out.close();
+  }
+  out.close();
+  out.close();
+}
+
+void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyState>& way,
+               std::size_t dampers) {
   out.open_object(name, Layout::lines);
   std::vector<std::string> ends;
   ends.reserve(way.size());
   for (const SteadyState& each : way) ends.emplace_back(end_of(each));
   out.field("end", ends);
-  for (const Column& column : columns_of(steady_columns(), way)) out.field(column.name, column.numbers);
+  for (const Column& column : columns_of(steady_columns(dampers > 0), way))
+    out.field(column.name, column.numbers);
+  if (dampers > 0) out.open_array("dampers", Layout::lines);
+  for (std::size_t n = 0; n < dampers; ++n) {
+    out.open_object(Layout::lines);
+    for (const Column& column : columns_of(damper_columns(), of_damper(way, n)))
+      out.field(column.name, column.numbers);
+    out.close();
+  }
+  if (dampers > 0) out.close();
   out.close();
 }
 
@@ -118,7 +144,7 @@ void write_branch(JsonWriter& out, const OrbitBranch& branch) {
 // The stops of a scene do not count, and are not written.
 void write_scene(JsonWriter& out, const Scene& scene) {
   out.open_object("scene", Layout::one_line);
-  for (const SceneField& field : scene_fields) out.field(field.name, scene.*field.member);
+  write_scene_numbers(out, scene);
   out.close();
 }
 
@@ -158,8 +184,8 @@ void write_rest(JsonWriter& out, const SweepResponse& response) {
   for (const Sweep& sweep : response.sweeps) {
     out.open_object(Layout::lines);
     write_state(out, "start", sweep.start);
-    write_way(out, "up", sweep.up);
-    write_way(out, "down", sweep.down);
+    write_way(out, "up", sweep.up, response.scene.dampers.size());
+    write_way(out, "down", sweep.down, response.scene.dampers.size());
     out.close();
   }
   out.close();
@@ -271,7 +297,7 @@ std::string_view kind_of(const Response& response) {
 Response found_for(Response asked, const Threads& threads) {
   const auto ignored = [](std::int64_t) {};
   if (auto* const sweeps = std::get_if<SweepResponse>(&asked)) {
-    std::vector<State<double>> starts;
+    std::vector<SceneState> starts;
     for (const Sweep& each : sweeps->sweeps) starts.push_back(each.start);
     sweeps->sweeps =
         sweep(sweeps->scene, sweeps->engine, sweeps->axis, sweeps->rule, starts, threads, ignored);
@@ -325,14 +351,24 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
       out.close();
     });
   };
-  const auto add_start = [&](const std::string& pointer, const State<double>& start) {
+  const auto add_start = [&](const std::string& pointer, const SceneState& start) {
     add(pointer, [&](JsonWriter& out) { write_state(out, "start", start); });
   };
   std::visit(
       [&](const auto& each) {
+        const bool several = !each.scene.dampers.empty();
         for (const SceneField& field : scene_fields)
-          add("/scene/" + std::string(field.name),
-              [&](JsonWriter& out) { out.field(field.name, each.scene.*field.member); });
+          if (!several || !is_of_one_damper(field))
+            add("/scene/" + std::string(field.name),
+                [&](JsonWriter& out) { out.field(field.name, each.scene.*field.member); });
+        Scene dampers_alone;
+        dampers_alone.dampers = each.scene.dampers;
+        if (several)
+          add("/scene/dampers", [&](JsonWriter& out) {
+            out.open_object("scene", Layout::one_line);
+            write_scene_numbers(out, dampers_alone);
+            out.close();
+          });
         add("/engine", [&](JsonWriter& out) { write_engine(out, each.engine); });
         add("/rule", [&](JsonWriter& out) { write_rule(out, each); });
       },
@@ -355,6 +391,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
 std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sweep>& sweeps,
                       const std::optional<SiUnits>& units) {
   std::string text;
+  const std::size_t dampers = scene.dampers.size();
   const std::vector<Column> linear = linear_columns(scene, axis);
   const UnitInSi given = unit_in_si_of(axis.number);
   {
@@ -363,13 +400,18 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     row.word("way");
     row.heading(name_of(axis), given);
     row.word("end");
-    for (const Column& column : columns_of(steady_columns(), std::vector<SteadyState>{}))
+    for (const Column& column : columns_of(steady_columns(dampers > 0), std::vector<SteadyState>{}))
       row.heading(column.name, column.unit);
+    for (std::size_t d = 0; d < dampers; ++d)
+      for (const Column& column : columns_of(damper_columns(), std::vector<DamperOfSteadyState>{}))
+        row.heading(std::string(column.name) + "_" + std::to_string(d + 1), column.unit);
     for (const Column& column : linear) row.heading(column.name, column.unit);
   }
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
     const auto add_way = [&](std::string_view name, const std::vector<SteadyState>& way) {
-      const std::vector<Column> columns = columns_of(steady_columns(), way);
+      std::vector<Column> columns = columns_of(steady_columns(dampers > 0), way);
+      for (std::size_t d = 0; d < dampers; ++d)
+        std::ranges::move(columns_of(damper_columns(), of_damper(way, d)), std::back_inserter(columns));
       for (std::size_t i = 0; i < way.size(); ++i) {
         CsvRow row(text, units);
         row.word(std::to_string(n));

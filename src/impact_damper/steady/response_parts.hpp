@@ -10,7 +10,7 @@
 namespace impact_damper {
 
 // {"x", "v", "y", "w"}.
-State<double> read_state(ObjectReader object);
+SceneState read_state(ObjectReader object, std::size_t dampers = 0);
 // {"number", "from", "to", "count"}, {"number", "from", "to"}; absent if there are problems.
 std::optional<Axis> read_axis(ObjectReader& object);
 std::optional<ParameterRange> read_range(ObjectReader& object);

@@ -24,11 +24,31 @@ std::vector<std::string_view> scene_names() {
 }
 
 // Every number of the scene; the stops do not count, and are not there.
-Scene read_forced_scene(ObjectReader object) {
+Scene read_forced_scene(ObjectReader object, DamperList dampers) {
   Scene scene;
-  for (const SceneField& field : scene_fields)
-    object.required(field.name, scene.*field.member, within(field.least, field.most));
+  const bool several = dampers == DamperList::allowed && object.has("dampers");
+  for (const SceneField& field : scene_fields) {
+    if (!several || !is_of_one_damper(field))
+      object.required(field.name, scene.*field.member, within(field.least, field.most));
+    else if (object.has(field.name))
+      object.reject(field.name, beside_dampers);
+  }
+  if (!several) return scene;
+  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
+    SceneDamper& its = scene.dampers.emplace_back();
+    for (const SceneDamperField& field : scene_damper_fields)
+      damper.required(field.name, its.*field.member, within(field.least, field.most));
+  }
   return scene;
+}
+std::vector<ObjectReader> read_dampers(ObjectReader& object, std::size_t dampers) {
+  if (dampers == 0) return {};
+  std::vector<ObjectReader> objects = object.required_objects("dampers", most_dampers);
+  if (objects.size() != dampers)
+    object.reject("dampers", "must be as many as in the scene, " + std::to_string(dampers) + ", got " +
+                                 std::to_string(objects.size()));
+  while (objects.size() > dampers) objects.pop_back();
+  return objects;
 }
 
 std::optional<std::int64_t> read_index(ObjectReader& object, std::string_view key) {
@@ -69,7 +89,7 @@ void read_columns(ObjectReader& object, std::span<const RowColumn<Row>> table, s
   }
 }
 
-std::vector<SteadyState> read_way(ObjectReader object) {
+std::vector<SteadyState> read_way(ObjectReader object, std::size_t dampers) {
   std::vector<std::string_view> words{"periodic", "not_periodic"};
   for (const StopReason budget : budgets) words.push_back(name_of(budget));
   std::vector<std::size_t> ends;
@@ -83,8 +103,20 @@ std::vector<SteadyState> read_way(ObjectReader object) {
     if (end == 0) steady.period = 1;
     if (end <= 1) steady.means.emplace();
     if (end > 1) steady.stop_reason = budgets[end - 2];
+    steady.state.dampers.resize(dampers);
+    if (steady.means) steady.impacts_by_damper.resize(dampers);
   }
-  read_columns(object, steady_columns(), way);
+  read_columns(object, steady_columns(dampers > 0), way);
+  std::size_t n = 0;
+  for (ObjectReader& damper : read_dampers(object, dampers)) {
+    std::vector<DamperOfSteadyState> rows = of_damper(way, n);
+    read_columns(damper, damper_columns(), rows);
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      if (way[i].means) way[i].impacts_by_damper[n] = rows[i].impacts;
+      way[i].state.dampers[n] = rows[i].place;
+    }
+    ++n;
+  }
   return way;
 }
 
@@ -117,7 +149,7 @@ void check_column(ObjectReader& object, std::string_view name,
 // Whether the scene is valid at both ends of the axis; says so if it is not.
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
-    for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {
+    for (const Problem& problem : problems_of(axis.at(scene, i), engine, DamperList::allowed)) {
       root.reject("scene", "with " + std::string(name_of(axis)) + " = " + number_text(axis.value(i)) + ": " +
                                problem.field + " " + problem.message);
       return false;
@@ -142,9 +174,10 @@ void read_rest(ObjectReader& root, SweepResponse& response) {
   }
   for (ObjectReader item : root.required_objects("sweeps", most_parts)) {
     Sweep& sweep = response.sweeps.emplace_back();
-    sweep.start = read_state(item.required_object("start"));
-    sweep.up = read_way(item.required_object("up"));
-    sweep.down = read_way(item.required_object("down"));
+    const std::size_t dampers = response.scene.dampers.size();
+    sweep.start = read_state(item.required_object("start"), dampers);
+    sweep.up = read_way(item.required_object("up"), dampers);
+    sweep.down = read_way(item.required_object("down"), dampers);
     if (!read) continue;
     require_length(item, "up", sweep.up.size(), read->count);
     require_length(item, "down", sweep.down.size(), read->count);
@@ -266,7 +299,9 @@ template <class Kind>
 Response read_as(JsonDocument& document, ObjectReader& root, bool sealed) {
   Kind response;
   ObjectReader engine = root.required_object("engine");
-  response.scene = read_forced_scene(root.required_object("scene"));
+  response.scene =
+      read_forced_scene(root.required_object("scene"),
+                        std::is_same_v<Kind, SweepResponse> ? DamperList::allowed : DamperList::rejected);
   if (const std::optional<Engine> read = read_engine_of_response(engine)) response.engine = *read;
   if (std::holds_alternative<Cem>(response.engine))
     engine.reject("name", "must be exact or restitution, got cem");
@@ -318,12 +353,21 @@ void reject_all(ObjectReader& object, const std::vector<Problem>& problems) {
 
 }  // namespace
 
-State<double> read_state(ObjectReader object) {
-  State<double> state{};
+SceneState read_state(ObjectReader object, std::size_t dampers) {
+  SceneState state;
   object.required("x", state.x);
   object.required("v", state.v);
-  object.required("y", state.y);
-  object.required("w", state.w);
+  if (dampers == 0) {
+    object.required("y", state.y);
+    object.required("w", state.w);
+    return state;
+  }
+  for (ObjectReader& damper : read_dampers(object, dampers)) {
+    PlaceInCavity& place = state.dampers.emplace_back();
+    damper.required("y", place.y);
+    damper.required("w", place.w);
+  }
+  state.dampers.resize(dampers);
   return state;
 }
 

@@ -10,7 +10,9 @@
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_dampers.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
@@ -24,8 +26,12 @@ constexpr std::int64_t blocks = 10;
 class ForcedScene::Watch {
  public:
   // Until `end`, with so many equally spaced states, the last one there.
-  Watch(double end, std::size_t states, bool measures, Watched& kept)
-      : end_(end), states_(states), measures_(measures), kept_(kept) {}
+  // dampers: how many, of a list.
+  Watch(double end, std::size_t states, bool measures, std::size_t dampers, Watched& kept)
+      : end_(end), states_(states), measures_(measures), kept_(kept) {
+    kept_.by_damper.resize(dampers);
+    kept_.by_damper_until_half_way.resize(dampers);
+  }
 
   bool wants_half_cycles() const { return measures_; }
   static bool wants_contacts() { return false; }
@@ -38,12 +44,26 @@ class ForcedScene::Watch {
     ++kept_.impacts[side];
     if (time < end_ / 2) ++kept_.impacts_until_half_way[side];
   }
+  void impact(double time, Wall wall, double w, double x, std::int32_t damper) {
+    impact(time, wall, w, x);
+    const auto side = static_cast<std::size_t>(wall);
+    ++kept_.by_damper[damper][side];
+    if (time < end_ / 2) ++kept_.by_damper_until_half_way[damper][side];
+  }
   void contact(double, double, Wall) {}
+  void contact(double, double, Wall, std::int32_t) {}
   double next_sample() const {
     if (sampled_ == states_) return std::numeric_limits<double>::infinity();
     return sampled_ + 1 == states_ ? end_ : end_ * (double(sampled_ + 1) / double(states_));
   }
-  void sample(double, double x, double v, double y, double w) { kept_.states[sampled_++] = {x, v, y, w}; }
+  void sample(double, double x, double v, double y, double w) {
+    kept_.states[sampled_++] = State<double>{x, v, y, w};
+  }
+  void sample(double, double x, double v, std::span<const PlaceInCavity> places) {
+    SceneState& state = kept_.states[sampled_++];
+    state = State<double>{x, v, 0, 0};
+    state.dampers.assign(places.begin(), places.end());
+  }
   EnergyBalance& energy_balance() { return kept_.energy; }
 
   double end() const { return end_; }
@@ -61,7 +81,16 @@ namespace {
 // An engine's run of a scene whose numbers, but for release and stops, are always the same.
 template <class Watch>
 std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Exact& options) {
+  using Force = Forcing<double>;
   const System<double> system(scene);
+  if (!scene.dampers.empty()) {
+    ModesOfDampers<double, Force> modes;
+    for (std::size_t n = 0; n < scene.dampers.size(); ++n)
+      modes.push_back(modes_of_damper<double, Force>(scene, n, options));
+    return [system, modes, options](const Scene& from, Watch& watch) {
+      return ExactOfDampers<double, Force, Watch>(system, from, options, watch, modes).run();
+    };
+  }
   const ContactModes<double> walls(system, zeta_m<double>(scene, options.calibration));
   return [system, walls, options](const Scene& from, Watch& watch) {
     return walls.coupled ? run_exact<ContactWithoutModes<double>>(walls, system, from, options, watch)
@@ -70,6 +99,11 @@ std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Ex
 }
 template <class Watch>
 std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Restitution& options) {
+  if (!scene.dampers.empty()) {
+    return [system = System<double>(scene), options](const Scene& from, Watch& watch) {
+      return RestitutionOfDampers<double, Forcing<double>, Watch>(system, from, options, watch).run();
+    };
+  }
   return [system = System<double>(scene), options](const Scene& from, Watch& watch) {
     return run_restitution(system, from, options, watch);
   };
@@ -100,33 +134,58 @@ std::vector<Problem> problems_of(const SteadyRule& rule) {
   return problems;
 }
 
-State<double> release_of(const Scene& scene) { return {scene.x0, scene.v0, scene.y0, scene.w0}; }
+SceneState release_of(const Scene& scene) {
+  SceneState state = State<double>{scene.x0, scene.v0, scene.y0, scene.w0};
+  for (const SceneDamper& damper : scene.dampers) state.dampers.push_back({damper.y0, damper.w0});
+  return state;
+}
 
-Scene released_from(Scene scene, const State<double>& state) {
+Scene released_from(Scene scene, const SceneState& state) {
   scene.x0 = state.x;
   scene.v0 = state.v;
   scene.y0 = state.y;
   scene.w0 = state.w;
+  for (std::size_t n = 0; n < state.dampers.size(); ++n) {
+    scene.dampers[n].y0 = state.dampers[n].y;
+    scene.dampers[n].w0 = state.dampers[n].w;
+  }
   return scene;
 }
 
-double distance(const State<double>& a, const State<double>& b) {
-  return std::max(std::max(std::abs(a.x - b.x), std::abs(a.v - b.v)),
-                  std::max(std::abs(a.y - b.y), std::abs(a.w - b.w)));
+SceneState mirrored(const SceneState& s, const Scene& scene) {
+  SceneState image = mirrored<double>(s);
+  for (std::size_t n = 0; n < s.dampers.size(); ++n)
+    image.dampers.push_back({scene.dampers[n].clearance - s.dampers[n].y, -s.dampers[n].w});
+  return image;
 }
 
-double size_of(const State<double>& s) { return std::max(1.0, distance(s, {0, 0, 0, 0})); }
+double distance(const SceneState& a, const SceneState& b) {
+  double largest = std::max(std::abs(a.x - b.x), std::abs(a.v - b.v));
+  if (a.dampers.empty()) return std::max({largest, std::abs(a.y - b.y), std::abs(a.w - b.w)});
+  for (std::size_t n = 0; n < a.dampers.size(); ++n)
+    largest = std::max(
+        {largest, std::abs(a.dampers[n].y - b.dampers[n].y), std::abs(a.dampers[n].w - b.dampers[n].w)});
+  return largest;
+}
+
+double size_of(const SceneState& s) {
+  double largest = std::max({1.0, std::abs(s.x), std::abs(s.v)});
+  if (s.dampers.empty()) return std::max({largest, std::abs(s.y), std::abs(s.w)});
+  for (const PlaceInCavity& each : s.dampers)
+    largest = std::max({largest, std::abs(each.y), std::abs(each.w)});
+  return largest;
+}
 
 Recurrence::Recurrence(const SteadyRule& rule)
     : tolerance_(rule.tolerance),
       longest_(rule.longest_period),
       states_(static_cast<std::size_t>(differences * rule.longest_period + 1)) {}
 
-const State<double>& Recurrence::before(std::int64_t periods) const {
+const SceneState& Recurrence::before(std::int64_t periods) const {
   return states_[static_cast<std::size_t>((count_ - 1 - periods) % std::int64_t(states_.size()))];
 }
 
-std::optional<Recurrence::Repeats> Recurrence::add(const State<double>& state) {
+std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
   states_[static_cast<std::size_t>(count_ % std::int64_t(states_.size()))] = state;
   ++count_;
   const double size = size_of(state), allowed = tolerance_ * size;
@@ -171,8 +230,8 @@ std::optional<bool> is_balanced(const SteadyState& steady) {
   return std::abs(fed - lost) <= largest_imbalance * std::max(fed, lost);
 }
 
-std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
-  std::vector<Problem> problems = problems_of(without_stops(scene));
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, DamperList dampers) {
+  std::vector<Problem> problems = problems_of(without_stops(scene), dampers);
   for (const Problem& each : problems_of(engine)) problems.push_back(each);
   if (std::holds_alternative<Cem>(engine)) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
@@ -187,7 +246,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
 ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
     : scene_(without_stops(scene)), rigid_(has_rigid_walls(engine)) {
   require_arithmetic();
-  require_none(problems_of(scene, engine));
+  require_none(problems_of(scene, engine, DamperList::allowed));
   period_ = 2 * half_turn<double>() / scene_.force_frequency;
   run_ = std::visit(
       [&](auto options) {
@@ -197,34 +256,37 @@ ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
       engine);
 }
 
-ForcedScene::Watched ForcedScene::pass_periods(const State<double>& state) const {
+ForcedScene::Watched ForcedScene::pass_periods(const SceneState& state) const {
   Watched kept;
-  Watch watch(double(periods_at_once) * period_, periods_at_once, false, kept);
+  Watch watch(double(periods_at_once) * period_, periods_at_once, false, scene_.dampers.size(), kept);
   kept.stop_reason = run_from(state, watch);
   return kept;
 }
 
-ForcedScene::Watched ForcedScene::watch(const State<double>& state, std::int64_t periods) const {
+ForcedScene::Watched ForcedScene::watch(const SceneState& state, std::int64_t periods) const {
   Watched kept;
-  Watch watch(double(periods) * period_, 2, true, kept);
+  Watch watch(double(periods) * period_, 2, true, scene_.dampers.size(), kept);
   kept.stop_reason = run_from(state, watch);
   return kept;
 }
 
-StopReason ForcedScene::run_from(const State<double>& state, Watch& watch) const {
+StopReason ForcedScene::run_from(const SceneState& state, Watch& watch) const {
   Scene from = released_from(scene_, state);
-  if (rigid_) from.y0 = std::clamp(from.y0, 0.0, 1.0);
+  if (rigid_) {
+    from.y0 = std::clamp(from.y0, 0.0, 1.0);
+    for (SceneDamper& damper : from.dampers) damper.y0 = std::clamp(damper.y0, 0.0, damper.clearance);
+  }
   from.until_time = watch.end();
   return run_(from, watch).stop_reason;
 }
 
-SteadyState ForcedScene::settle(const State<double>& state, const SteadyRule& rule) const {
+SteadyState ForcedScene::settle(const SceneState& state, const SteadyRule& rule) const {
   SteadyState steady = follow(state, rule, [](const State<double>&) { return false; });
   if (steady.stop_reason == StopReason::time) measure(steady, rule);
   return steady;
 }
 
-SteadyState ForcedScene::follow(const State<double>& state, const SteadyRule& rule,
+SteadyState ForcedScene::follow(const SceneState& state, const SteadyRule& rule,
                                 const std::function<bool(const State<double>&)>& enough) const {
   SteadyState steady;
   steady.state = state;
@@ -287,11 +349,12 @@ void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) 
   steady.stop_reason = watched.stop_reason;
   if (steady.stop_reason != StopReason::time) return;
   steady.impacts = watched.impacts_until_half_way;
+  steady.impacts_by_damper = watched.by_damper_until_half_way;
   steady.means = means_of(watched, steady.state, 2 * m);
   if (m % 2 == 1) {
     const Watched half = watch(steady.state, m);
     const double near = 100 * rule.tolerance * size_of(steady.state);
-    steady.symmetric = distance(mirrored(half.states[0]), steady.state) <= near;
+    steady.symmetric = distance(mirrored(half.states[0], scene_), steady.state) <= near;
   }
 }
 
@@ -308,7 +371,12 @@ void ForcedScene::measure_blocks(SteadyState& steady, const SteadyRule& rule) co
     steady.stop_reason = watched.stop_reason;
     if (steady.stop_reason != StopReason::time) return;
     means.push_back(means_of(watched, steady.state, periods));
-    for (const std::size_t wall : {0, 1}) steady.impacts[wall] += watched.impacts[wall];
+    steady.impacts_by_damper.resize(watched.by_damper.size());
+    for (const std::size_t wall : {0, 1}) {
+      steady.impacts[wall] += watched.impacts[wall];
+      for (std::size_t n = 0; n < watched.by_damper.size(); ++n)
+        steady.impacts_by_damper[n][wall] += watched.by_damper[n][wall];
+    }
     steady.state = watched.states[1];
     const SteadyMeans& now = means.back();
     const double weight = double(periods) / double(rule.mean_periods);

@@ -14,10 +14,18 @@
 #include <vector>
 
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/engines/observer.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
+
+// The state of a scene: x, x', y, y', or of several dampers y and y' of each, by number in the scene; the two
+// of State mean nothing then.
+struct SceneState : State<double> {
+  SceneState(const State<double>& one = {}) : State<double>(one) {}  // NOLINT(google-explicit-constructor)
+  std::vector<PlaceInCavity> dampers;
+};
 
 // When a motion counts as steady.
 struct SteadyRule {
@@ -57,13 +65,14 @@ struct SteadyState {
   std::int64_t transient_periods = 0;  // until that was known
   // By which the distance to the periodic motion shrinks in m periods; absent: it repeats to rounding.
   std::optional<double> contraction;
-  std::int64_t measured_periods = 0;  // m, or SteadyRule::mean_periods
-  ImpactCounts impacts{};             // in these
-  bool symmetric = false;             // half of an odd number of periods later it is its own mirror image
+  std::int64_t measured_periods = 0;            // m, or SteadyRule::mean_periods
+  ImpactCounts impacts{};                       // in these
+  std::vector<ImpactCounts> impacts_by_damper;  // the same of each of several
+  bool symmetric = false;  // half of an odd number of periods later it is its own mirror image
   std::optional<SteadyMeans> means;
   // Standard deviation of the ten blocks of a motion that is not periodic.
   double amplitude_scatter = 0, power_scatter = 0;
-  State<double> state{};  // at phase 0, at the end
+  SceneState state{};  // at phase 0, at the end
 };
 
 // Whether two largest |x| with their scatter are of different motions: they differ by more than
@@ -77,8 +86,9 @@ std::optional<bool> is_balanced(const SteadyState& steady);
 
 // What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
 // or the engine is not valid, or it is the component element method, whose steps would begin anew with each
-// run.
-std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
+// run. A list of dampers is allowed for steady states alone.
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine,
+                                 DamperList dampers = DamperList::rejected);
 
 // A scene and an engine, with all that does not depend on the state made once. It may be copied, and used by
 // several threads at a time.
@@ -88,10 +98,10 @@ class ForcedScene {
   ForcedScene(const Scene& scene, const Engine& engine);
 
   // Goes on to the steady state by `rule`, and measures it.
-  SteadyState settle(const State<double>& state, const SteadyRule& rule) const;
+  SteadyState settle(const SceneState& state, const SteadyRule& rule) const;
   // The first half of that alone: everything but what is measured. Ends without a period as soon as
   // enough(state) is true of the state at phase 0, the first one included.
-  SteadyState follow(const State<double>& state, const SteadyRule& rule,
+  SteadyState follow(const SceneState& state, const SteadyRule& rule,
                      const std::function<bool(const State<double>&)>& enough) const;
   // The second half.
   void measure(SteadyState& steady, const SteadyRule& rule) const;
@@ -100,20 +110,21 @@ class ForcedScene {
   // A run of some periods of the force.
   struct Watched {
     StopReason stop_reason = StopReason::time;
-    std::array<State<double>, periods_at_once> states{};  // after each period, or half way and at the end
+    std::array<SceneState, periods_at_once> states{};  // after each period, or half way and at the end
     ImpactCounts impacts{}, impacts_until_half_way{};
-    double amplitude = 0;  // of the half cycles that are complete
+    std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // of each of several
+    double amplitude = 0;                                           // of the half cycles that are complete
     EnergyBalance energy;
   };
   // The states at phase 0 after each of the next periods, and no amplitude or energy. Fewer runs cut fewer
   // flights in two.
-  Watched pass_periods(const State<double>& state) const;
+  Watched pass_periods(const SceneState& state) const;
   // All but the states after each period.
-  Watched watch(const State<double>& state, std::int64_t periods) const;
+  Watched watch(const SceneState& state, std::int64_t periods) const;
 
  private:
   class Watch;
-  StopReason run_from(const State<double>& state, Watch& watch) const;
+  StopReason run_from(const SceneState& state, Watch& watch) const;
   SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
   void measure_periodic(SteadyState& steady, const SteadyRule& rule) const;
   void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
@@ -125,18 +136,20 @@ class ForcedScene {
 };
 
 // A scene's initial state, and the scene with another one.
-State<double> release_of(const Scene& scene);
-Scene released_from(Scene scene, const State<double>& state);
+SceneState release_of(const Scene& scene);
+Scene released_from(Scene scene, const SceneState& state);
 
 // The mirror image of a state: left and right exchanged.
 template <class Real>
 State<Real> mirrored(const State<Real>& s) {
   return {-s.x, -s.v, 1 - s.y, -s.w};
 }
+// Of a state of the scene.
+SceneState mirrored(const SceneState& s, const Scene& scene);
 // The largest difference of two states' numbers.
-double distance(const State<double>& a, const State<double>& b);
+double distance(const SceneState& a, const SceneState& b);
 // The larger of 1 and the largest number of a state.
-double size_of(const State<double>& s);
+double size_of(const SceneState& s);
 
 // Finds the smallest number of periods after which states repeat (M14.1, M14.2).
 class Recurrence {
@@ -148,15 +161,15 @@ class Recurrence {
     std::optional<double> contraction;
   };
   // The next state at phase 0; what it shows with those before.
-  std::optional<Repeats> add(const State<double>& state);
+  std::optional<Repeats> add(const SceneState& state);
 
  private:
   static constexpr std::int64_t differences = 8;  // that are looked at
-  const State<double>& before(std::int64_t periods) const;
+  const SceneState& before(std::int64_t periods) const;
 
   double tolerance_;
   std::int64_t longest_, count_ = 0;
-  std::vector<State<double>> states_;  // the last ones, in turn
+  std::vector<SceneState> states_;  // the last ones, in turn
 };
 
 }  // namespace impact_damper

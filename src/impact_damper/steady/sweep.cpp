@@ -16,7 +16,13 @@ std::vector<double> Axis::values() const {
 }
 
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
-  for (std::int64_t i = 0; i < axis.count; ++i) require_none(problems_of(axis.at(scene, i), engine));
+  if (!scene.dampers.empty()) {
+    const auto* const field = std::ranges::find(scene_fields, axis.number, &SceneField::member);
+    if (is_of_one_damper(*field))
+      throw InvalidArguments({{std::string(field->name), "is for one damper: each of several has its own"}});
+  }
+  for (std::int64_t i = 0; i < axis.count; ++i)
+    require_none(problems_of(axis.at(scene, i), engine, DamperList::allowed));
 }
 
 Scene Axis::at(Scene scene, std::int64_t i) const {
@@ -26,7 +32,7 @@ Scene Axis::at(Scene scene, std::int64_t i) const {
 
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
                                              const std::vector<double>& values, const SteadyRule& rule,
-                                             State<double> state, const std::function<void()>& after_each) {
+                                             SceneState state, const std::function<void()>& after_each) {
   std::vector<SteadyState> all;
   Scene there = scene;
   for (const double value : values) {
@@ -39,11 +45,11 @@ std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& e
 }
 
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
-                         const std::vector<State<double>>& starts, const Threads& threads,
+                         const std::vector<SceneState>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress) {
   require_none(problems_of(rule));
   // What is not valid throws here, before anything is simulated.
-  for (const State<double>& start : starts) require_valid(released_from(scene, start), engine, axis);
+  for (const SceneState& start : starts) require_valid(released_from(scene, start), engine, axis);
 
   progress(0);
   const std::vector<double> upwards = axis.values(), downwards(upwards.rbegin(), upwards.rend());
@@ -52,7 +58,7 @@ std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& a
   for_each_index(std::int64_t(starts.size()), threads, [&](std::int64_t n) {
     Sweep& all = sweeps[static_cast<std::size_t>(n)];
     all.start = starts[static_cast<std::size_t>(n)];
-    const auto along = [&](const std::vector<double>& values, const State<double>& from) {
+    const auto along = [&](const std::vector<double>& values, const SceneState& from) {
       return steady_states_along(released_from(scene, all.start), engine, axis.number, values, rule, from,
                                  [&] { progress(++done); });
     };

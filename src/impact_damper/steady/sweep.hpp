@@ -22,7 +22,8 @@ struct Axis {
   Scene at(Scene scene, std::int64_t i) const;  // with that value
 };
 
-// Throws InvalidArguments if the scene is not valid (problems_of) at one of the values.
+// Throws InvalidArguments if the scene is not valid (problems_of) at one of the values, or if the number is
+// that of one damper and the scene has several.
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
@@ -30,11 +31,11 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 // InvalidArguments if the scene is not valid at a value.
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
                                              const std::vector<double>& values, const SteadyRule& rule,
-                                             State<double> state, const std::function<void()>& after_each);
+                                             SceneState state, const std::function<void()>& after_each);
 
 // The values of the axis and what the scene does there.
 struct Sweep {
-  State<double> start{};              // where the way up begins, at the axis's first value
+  SceneState start{};                 // where the way up begins, at the axis's first value
   std::vector<SteadyState> up, down;  // both in the order of the axis; down begins in the last state of up
 };
 
@@ -42,7 +43,7 @@ struct Sweep {
 // with the number of steady states that are done. Throws InvalidArguments if the scene is not valid at one of
 // the values.
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
-                         const std::vector<State<double>>& starts, const Threads& threads,
+                         const std::vector<SceneState>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress);
 
 }  // namespace impact_damper
