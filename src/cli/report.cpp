@@ -44,10 +44,6 @@ int report(Arguments& arguments) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
-  if (!file.scene.dampers.empty() && file.scene.force_amplitude != 0)
-    throw InputError(scene_name, {{"/dampers",
-                                   "a list under a force is for run and sweep only: report takes "
-                                   "several dampers in free motion"}});
   require_gnuplot();
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 

@@ -45,6 +45,13 @@ std::string damper_field(std::size_t damper, std::string_view name) {
   return "dampers[" + std::to_string(damper) + "]." + std::string(name);
 }
 
+double secondary_mass(const Scene& scene) {
+  if (scene.dampers.empty()) return scene.mass_ratio;
+  double all = 0;
+  for (const SceneDamper& damper : scene.dampers) all += damper.mass_ratio;
+  return all;
+}
+
 Scene with_alone(const Scene& scene, const SceneDamper& damper) {
   Scene alone;
   alone.mass_ratio = damper.mass_ratio;

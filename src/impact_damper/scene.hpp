@@ -83,6 +83,8 @@ bool is_of_one_damper(const SceneField& field);
 // How a damper's field is named in a Problem: "dampers[2].clearance", counted from 0.
 std::string damper_field(std::size_t damper, std::string_view name);
 
+// All secondary masses together, divided by the primary one.
+double secondary_mass(const Scene& scene);
 // The scene's primary mass and force with one of its list of dampers alone: all that a wall's equations need.
 Scene with_alone(const Scene& scene, const SceneDamper& damper);
 

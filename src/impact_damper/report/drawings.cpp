@@ -52,9 +52,8 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
   const auto ratio = [](double value) { return rounded_text(value, 3); };
   std::string& parameters = drawing.table.header[1];
   if (findings.several()) {
-    double mass = 0;
-    for (const SceneDamper& damper : subject.scene.dampers) mass += damper.mass_ratio;
-    parameters += std::to_string(subject.scene.dampers.size()) + " dampers, together ν = " + ratio(mass);
+    parameters += std::to_string(subject.scene.dampers.size()) +
+                  " dampers, together ν = " + ratio(secondary_mass(subject.scene));
   } else {
     parameters += "ν = " + ratio(subject.scene.mass_ratio) + ", e = " + ratio(subject.scene.restitution);
   }
@@ -208,8 +207,9 @@ std::optional<Drawing> response(const Findings& findings) {
     }
     drawing.table.blocks.push_back(std::move(block));
   };
-  linear("locked", "secondary mass locked", 1 + scene.mass_ratio);
-  linear("empty", "box empty", 1);
+  linear("locked", findings.several() ? "secondary masses locked" : "secondary mass locked",
+         1 + secondary_mass(scene));
+  linear("empty", findings.several() ? "boxes empty" : "box empty", 1);
   drawing.table.blocks.push_back(
       {.name = "given",
        .columns = {{"frequency", "that the scene gives, in units of Omega_n", {scene.force_frequency}},

@@ -35,7 +35,7 @@ Scene at_frequency(Scene scene, double frequency) {
   return scene;
 }
 
-double locked_resonance(const Scene& scene) { return 1 / square_root(1 + scene.mass_ratio); }
+double locked_resonance(const Scene& scene) { return 1 / square_root(1 + secondary_mass(scene)); }
 
 // Impacts in a period of the force, at the resonances from the release on, where there are more.
 double impacts_in_a_period(const Scene& scene, const Engine& engine) {
@@ -77,7 +77,8 @@ std::vector<double> frequencies_for(const Scene& scene, const Engine& engine) {
   for (const double each : all) {
     const bool near_given = std::abs(each / given - 1) < distinct;
     const bool near_last = !kept.empty() && each < kept.back() * (1 + distinct);
-    if (problems_of(at_frequency(scene, each), engine).empty() && !near_given && !near_last)
+    if (problems_of(at_frequency(scene, each), engine, DamperList::allowed).empty() && !near_given &&
+        !near_last)
       kept.push_back(each);
   }
   kept.insert(std::ranges::lower_bound(kept, given), given);
@@ -168,7 +169,7 @@ class Sweeper {
   }
 
  private:
-  std::vector<SteadyState> along(const std::vector<double>& frequencies, const State<double>& state) {
+  std::vector<SteadyState> along(const std::vector<double>& frequencies, const SceneState& state) {
     return steady_states_along(scene_, engine_, &Scene::force_frequency, frequencies, response_.rule, state,
                                [&] { progress_(++done_); });
   }

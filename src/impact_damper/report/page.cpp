@@ -18,6 +18,12 @@ struct Section {
 };
 
 std::string caption_of(const std::string& name, bool several) {
+  if (name == "response" && several)
+    return "The largest amplitude under the same force over its frequency. Triangles: with the dampers, "
+           "pointing "
+           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
+           "periodic, or not steady yet. Dashed: the secondary masses locked to their boxes, and the boxes "
+           "empty. Upright: the frequency given.";
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss" && several)

@@ -14,6 +14,12 @@ std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
   return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
 }
 
+std::string damper_of(const Findings& findings) { return findings.several() ? "the dampers" : "the damper"; }
+std::string masses_of(const Findings& findings) {
+  return findings.several() ? "the secondary masses" : "the secondary mass";
+}
+std::string boxes_of(const Findings& findings) { return findings.several() ? "their boxes" : "its box"; }
+
 bool is_given_up(const ArrivedMotion& motion) { return !motion.is_known(); }
 bool is_open(const ArrivedMotion& motion) { return motion.is_known() && !motion.is_periodic(); }
 bool is_changing(const ArrivedMotion& motion) { return motion.changes(); }
@@ -29,7 +35,7 @@ std::string reduction_sentence(const Findings& findings) {
   const ArrivedMotion motion = findings.response.largest()->motion;
   const Scene& scene = findings.subject.scene;
   const double locked =
-      worst_linear_response(scene.force_amplitude, 1 + scene.mass_ratio, scene.damping_ratio).amplitude;
+      worst_linear_response(scene.force_amplitude, 1 + secondary_mass(scene), scene.damping_ratio).amplitude;
   if (!std::isfinite(locked) || motion.changes()) return "";
   const double part = motion.amplitude() / locked;
   return "The impacts " +
@@ -112,7 +118,7 @@ std::string method_sentences(const Findings& findings) {
   const std::int64_t open = count_of(response, is_open), changing = count_of(response, is_changing),
                      ended = count_of(response, is_given_up);
   const std::int64_t motions = 2 * std::ssize(response.points);
-  std::string text = "With the damper the frequency rises through " +
+  std::string text = "With " + damper_of(findings) + " the frequency rises through " +
                      count_html(std::ssize(response.points)) + " values from " +
                      quantities.frequency(response.points.front().frequency) + " to " +
                      quantities.frequency(response.points.back().frequency) +
@@ -157,17 +163,18 @@ std::string response_in_short(const Findings& findings) {
   if (!largest) return "";
   const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
-  const double force = scene.force_amplitude, zeta = scene.damping_ratio, locked = 1 + scene.mass_ratio;
+  const double force = scene.force_amplitude, zeta = scene.damping_ratio, locked = 1 + secondary_mass(scene);
   const double amplitude = largest->motion.amplitude();
   const double worst_locked = worst_linear_response(force, locked, zeta).amplitude;
+  const std::string masses = masses_of(findings);
   std::string text =
-      "With the secondary mass locked to its box it would be " +
+      "With " + masses + " locked to " + boxes_of(findings) + " it would be " +
       amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) +
       ". At its worst frequency, " + quantities.frequency(largest->frequency) +
       ", the same force drives the "
       "damped mass to " +
       quantities.length(amplitude) + (largest->motion.changes() ? ", which is not steady yet" : "") +
-      "; with the secondary mass locked the worst is " + amplitude_or_none(quantities, worst_locked) + ". " +
+      "; with " + masses + " locked the worst is " + amplitude_or_none(quantities, worst_locked) + ". " +
       reduction_sentence(findings);
   if (!response.two_motions().empty())
     text += "Two steady motions are possible " + ranges_in_words(quantities, response) + ". ";
@@ -196,23 +203,25 @@ std::string response_html(const Findings& findings) {
                           worst ? amplitude_cell(quantities, worst->motion) : "given up",
                           worst ? quantities.frequency(worst->frequency) : ""});
   };
-  damped("with the damper, the frequency rising", &ResponsePoint::rising);
-  damped("with the damper, the frequency falling", &ResponsePoint::falling);
+  damped("with " + damper_of(findings) + ", the frequency rising", &ResponsePoint::rising);
+  damped("with " + damper_of(findings) + ", the frequency falling", &ResponsePoint::falling);
   if (findings.steady)
-    table.rows.push_back(
-        {"with the damper, at the end of this run", quantities.length(findings.steady->greatest), "", ""});
+    table.rows.push_back({"with " + damper_of(findings) + ", at the end of this run",
+                          quantities.length(findings.steady->greatest), "", ""});
   const auto linear = [&](const std::string& what, double mass) {
     const WorstResponse most = worst_linear_response(force, mass, zeta);
     table.rows.push_back({what, amplitude_or_none(quantities, linear_response(force, mass, zeta, given)),
                           amplitude_or_none(quantities, most.amplitude),
                           quantities.frequency(most.frequency)});
   };
-  linear("the secondary mass locked to its box", 1 + scene.mass_ratio);
-  linear("the box empty", 1);
+  linear(masses_of(findings) + " locked to " + boxes_of(findings), 1 + secondary_mass(scene));
+  linear(findings.several() ? "the boxes empty" : "the box empty", 1);
   const std::string text =
-      "The secondary mass also weighs on the primary one and shifts its resonance. What the impacts do is "
-      "the difference to the secondary mass locked to its box, over all frequencies; at a single frequency "
-      "most of it may be the shift. " +
+      std::string(findings.several()
+                      ? "The secondary masses also weigh on the primary one and shift its resonance. "
+                      : "The secondary mass also weighs on the primary one and shifts its resonance. ") +
+      "What the impacts do is the difference to " + masses_of(findings) + " locked to " + boxes_of(findings) +
+      ", over all frequencies; at a single frequency most of it may be the shift. " +
       reduction_sentence(findings);
   return paragraph_html(text) + table_html(table) + paragraph_html(two_motions_sentences(findings)) +
          paragraph_html(method_sentences(findings) + largest_sentence(findings));

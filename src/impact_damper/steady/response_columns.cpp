@@ -215,9 +215,7 @@ std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
       column.numbers.push_back(std::isfinite(amplitude) ? std::optional(amplitude) : std::nullopt);
     };
     add(empty, 1);
-    double carried = there.dampers.empty() ? there.mass_ratio : 0;
-    for (const SceneDamper& damper : there.dampers) carried += damper.mass_ratio;
-    add(locked, 1 + carried);
+    add(locked, 1 + secondary_mass(there));
   }
   return {empty, locked};
 }
