@@ -193,7 +193,8 @@ class ExactOfDampers {
         contact, until, end, masses_.nu[i] * walls_[i].damping,
         [&](const Real& t) {
           const State<Real> now = state(t);
-          return typename Piece::Change{now.x, now.v, now.x - (x_ + v_ * t), now.v - v_};
+          const auto [dx, dv] = change_of_x(contact, t, now.x, now.v);
+          return typename Piece::Change{now.x, now.v, dx, dv};
         },
         [&](std::size_t, const Real& t) {
           const State<Real> now = state(t);
@@ -202,20 +203,30 @@ class ExactOfDampers {
     walls_[i].work += works.wall;
     take_events();
   }
+  // What x differs by from a straight line, and x' from its beginning, while one pushes its wall.
+  template <class InContact>
+  std::array<Real, 2> change_of_x(const InContact& contact, const Real& t, const Real& x,
+                                  const Real& v) const {
+    if (const auto change = contact.change_of_x(t)) return *change;
+    return {Real(x - (x_ + v_ * t)), Real(v - v_)};
+  }
   // When another mass meets a wall while one pushes its own.
   template <class InContact>
   std::optional<Event> meets_beside(const InContact& contact, std::size_t j, const Real& until) {
     const Real &away = masses_.away[j], &u = masses_.u[j], &u1 = masses_.u1[j];
     const auto gaps = [&](const Real& t) {
       const LocalEnclosure<Real> x = contact.derivative_of_x(0, Real(1), t, tracker_.search().span);
-      const auto near = [&](const Jet<Real>& of_x) {
-        return Jet<Real>{u + (u1 * t - away * (of_x.g - (x_ + v_ * t))), u1 - away * (of_x.g1 - v_),
-                         -away * of_x.g2, of_x.third};
+      const auto change = contact.change_of_x(t);
+      const auto near = [&](const Jet<Real>& of_x, bool whole) {
+        const bool known = whole && change;
+        const Real dx = known ? (*change)[0] : Real(of_x.g - (x_ + v_ * t)),
+                   dv = known ? (*change)[1] : Real(of_x.g1 - v_);
+        return Jet<Real>{u + (u1 * t - away * dx), u1 - away * dv, -away * of_x.g2, of_x.third};
       };
       const auto far = [&](const Jet<Real>& gap) {
         return Jet<Real>{masses_.clearance[j] - gap.g, -gap.g1, -gap.g2, gap.third};
       };
-      const Jet<Real> whole = near(x.whole), main = near(x.main);
+      const Jet<Real> whole = near(x.whole, true), main = near(x.main, false);
       return std::array{LocalEnclosure<Real>{whole, main, x.rest},
                         LocalEnclosure<Real>{far(whole), far(main), x.rest}};
     };
