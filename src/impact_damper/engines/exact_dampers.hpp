@@ -106,27 +106,17 @@ class ExactOfDampers {
     return *wall.modes;
   }
 
-  // In contact from the beginning: who overlaps, and who moves into the wall at which it is.
+  // In contact from the beginning: who overlaps a wall, or moves into the one at which it is; and then who
+  // rests on a wall and is pressed against it.
   void begin_contacts() {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.u[i] < 0) enter(i);
       if (masses_.u[i] == 0 && masses_.u1[i] < 0) events_.push_back({i, Real(0), masses_.wall(i)});
-      someone_rests_ = someone_rests_ || masses_.rests(i);
     }
     take_events();
-  }
-  // Who rests on a wall, and is pressed against it by what those in contact do. A mass rests until x'' is not
-  // zero.
-  void press_those_at_rest() {
     const Real side = side_of_acceleration();
-    someone_rests_ = false;
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.held[i] || !masses_.rests(i)) continue;
-      if (masses_.away[i] == side)
-        enter(i);
-      else
-        someone_rests_ = true;
-    }
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.rests(i) && !masses_.held[i] && masses_.away[i] == side) enter(i);
   }
   // The wall's force on the mass i, divided by nu_i, and its rate of change while x'' = bend.
   struct WallForce {
@@ -348,7 +338,6 @@ class ExactOfDampers {
       walls_[i].impact = observer_.energy_balance().impact_loss.size();
       observer_.energy_balance().impact_loss.push_back(0);
     }
-    if (someone_rests_) press_those_at_rest();
   }
   void enter(std::size_t i) {
     masses_.held[i] = true;
@@ -398,7 +387,6 @@ class ExactOfDampers {
   SecondaryMasses<Real> masses_;
   std::vector<OwnWall> walls_;           // of each mass
   std::vector<std::size_t> in_contact_;  // ascending
-  bool someone_rests_ = false;           // on a wall, and is not pressed against it
   Real x_, v_;
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene
