@@ -281,7 +281,7 @@ TEST_CASE("scenes in which the exact engine was wrong once") {
   // One at rest that the wall force of another's impact at the beginning presses to its wall; or takes off.
   agrees(0.5, {damper(0.1, 0, 0), damper(0.2, 1, 1)});
   agrees(0.5, {damper(0.1, 1, 0), damper(0.2, 1, 1)});
-  // One that rests on its wall until another's impact presses it there.
+  // One that rests on its wall until another's impact presses it there: with an impact of no speed.
   agrees(0, {damper(0.1, 0, 0), damper(0.2, 0.5, 1)});
   // Small bounces of one while another is in contact: to the digits of the distance, not of x.
   SceneDamper stiff = damper(0.05, 0, 0), soft = damper(2, 0, 0);

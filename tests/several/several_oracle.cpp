@@ -223,7 +223,7 @@ class Integrator {
   // A compliant wall is met.
   void touch(Damper& each) {
     each.impact.reset();
-    if (each.s < 0) {
+    if (each.s < 0 || t_ > 0) {  // only at the beginning a contact needs no impact
       each.impact = answer_.impacts.size();
       answer_.impacts.push_back({t_, int(&each - dampers_.data()), each.wall(), each.side * each.s, x_, 0});
     }
