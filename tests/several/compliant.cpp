@@ -20,6 +20,7 @@ Answer answer_for(const Scene& scene) {
   Question question;
   question.scene = scene;
   question.walls = Walls::compliant;
+  question.most_steps = 4000;
   question.samples = {0, *scene.until_time / 3, *scene.until_time};
   return answer_to(question);
 }
@@ -115,10 +116,12 @@ TEST_CASE("energy is kept between compliant walls, and no order of the dampers c
 
 TEST_CASE(
     "the comparison finds no difference of the oracle's own run, and every fault planted in its walls") {
-  const auto found = [](Fault fault) {
+  Tolerances quick = compliant;
+  quick.most_steps = 800;
+  const auto found = [&](Fault fault) {
     int count = 0;
     for (const Scene& scene : scenes(1, 4, 2))
-      count += !compare(scene, compliant, [fault](const Scene& asked) {
+      count += !compare(scene, quick, [fault](const Scene& asked) {
                   return run_of_oracle(asked, fault, Walls::compliant);
                 }).differences.empty();
     return count;
@@ -255,29 +258,34 @@ TEST_CASE("a list of one damper is the scene without a list") {
 }
 
 TEST_CASE("scenes in which the exact engine was wrong once") {
-  const auto agrees = [](double x0, const std::vector<SceneDamper>& dampers) {
+  const auto agrees = [](double x0, const std::vector<SceneDamper>& dampers, double end = 1) {
     Scene scene;
-    scene.x0 = x0, scene.until_time = 1;
+    scene.x0 = x0, scene.until_time = end;
     scene.dampers = dampers;
     for (int order = 0; order < 2; ++order) {
       CAPTURE(text_of(scene));
       const Comparison result = compare(scene, compliant);
-      CHECK(result.until == 1);
+      CHECK(result.until == end);
       CHECK(result.differences.size() == 0);
       if (!result.differences.empty()) MESSAGE(result.differences[0]);
       std::ranges::reverse(scene.dampers);
     }
   };
   const auto damper = [](double nu, double y0, double w0) {
-    SceneDamper damper;
-    damper.mass_ratio = nu, damper.y0 = y0, damper.w0 = w0;
-    return damper;
+    SceneDamper one;
+    one.mass_ratio = nu, one.y0 = y0, one.w0 = w0;
+    return one;
   };
   // Two that begin with impacts, while a third is pressed against its wall.
   agrees(1, {damper(0.1, 1, 0), damper(0.2, 0, -1), damper(0.3, 0, -1)});
   // One at rest that the wall force of another's impact at the beginning presses to its wall; or takes off.
   agrees(0.5, {damper(0.1, 0, 0), damper(0.2, 1, 1)});
   agrees(0.5, {damper(0.1, 1, 0), damper(0.2, 1, 1)});
-  // One that rests on its wall until another's impact presses it there.
+  // One that rests on its wall until another's impact presses it there: with an impact of no speed.
   agrees(0, {damper(0.1, 0, 0), damper(0.2, 0.5, 1)});
+  // Small bounces of one while another is in contact: to the digits of the distance, not of x.
+  SceneDamper stiff = damper(0.05, 0, 0), soft = damper(2, 0, 0);
+  stiff.restitution = soft.restitution = 1;
+  stiff.wall_stiffness = 150'000, soft.wall_stiffness = 50;
+  agrees(-4, {stiff, soft}, 0.1);
 }

@@ -136,9 +136,9 @@ TEST_CASE("energy is kept, and no order of the dampers changes anything") {
       ++compared;
       Quad losses = 0;
       for (const Quad each : a.damper_loss) losses += each;
-      const Quad all = a.initial_kinetic + a.initial_spring + a.turnover;
-      CHECK(off(a.initial_kinetic + a.initial_spring + a.forcing_work,
-                a.final_kinetic + a.final_spring + losses + a.viscous_work) <= 1e-20 * double(1 + all));
+      const Quad all = a.initial.total() + a.turnover;
+      CHECK(off(a.initial.total() + a.forcing_work, a.final.total() + losses + a.viscous_work) <=
+            1e-20 * double(1 + all));
       for (const auto& each : a.samples)
         for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
           CHECK(each.y[n] >= Quad(-1e-25L));

@@ -223,7 +223,7 @@ class Integrator {
   // A compliant wall is met.
   void touch(Damper& each) {
     each.impact.reset();
-    if (each.s < 0) {
+    if (each.s < 0 || t_ > 0) {  // only at the beginning a contact needs no impact
       each.impact = answer_.impacts.size();
       answer_.impacts.push_back({t_, int(&each - dampers_.data()), each.wall(), each.side * each.s, x_, 0});
     }
@@ -374,14 +374,6 @@ class Integrator {
     x_ = noisy(x_, event + 11);
     v_ = noisy(v_, event + 12);
     const Quad shift = noisy(1, event + 16) - 1;
-    if (compliant_) {  // while one is in contact the distances of the others are rounded as x is
-      for (Damper& each : dampers_) {
-        if (each.in_contact || (each.d == 0 && each.s == 0)) continue;
-        if (each.d > Quad(1e-12L) && each.clearance - each.d > Quad(1e-12L))
-          each.d += each.side * shift * magnitude(x_);
-        each.s += each.side * shift * magnitude(v_);
-      }
-    }
     for (Damper& each : dampers_) {
       if (each.stuck) continue;
       each.s = noisy(each.s, event + 13);

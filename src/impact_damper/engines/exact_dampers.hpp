@@ -118,27 +118,17 @@ class ExactOfDampers {
     return *wall.modes;
   }
 
-  // In contact from the beginning: who overlaps, and who moves into the wall at which it is.
+  // In contact from the beginning: who overlaps a wall, or moves into the one at which it is; and then who
+  // rests on a wall and is pressed against it.
   void begin_contacts() {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.u[i] < 0) enter(i);
       if (masses_.u[i] == 0 && masses_.u1[i] < 0) events_.push_back({i, Real(0), masses_.wall(i)});
-      someone_rests_ = someone_rests_ || masses_.rests(i);
     }
     take_events();
-  }
-  // Who rests on a wall, and is pressed against it by what those in contact do. A mass rests until x'' is not
-  // zero.
-  void press_those_at_rest() {
     const Real side = side_of_acceleration();
-    someone_rests_ = false;
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.held[i] || !masses_.rests(i)) continue;
-      if (masses_.away[i] == side)
-        enter(i);
-      else
-        someone_rests_ = true;
-    }
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.rests(i) && !masses_.held[i] && masses_.away[i] == side) enter(i);
   }
   // The wall's force on the mass i, divided by nu_i, and its rate of change while x'' = bend.
   struct WallForce {
@@ -205,7 +195,8 @@ class ExactOfDampers {
         contact, until, end, masses_.nu[i] * walls_[i].damping,
         [&](const Real& t) {
           const State<Real> now = state(t);
-          return typename Piece::Change{now.x, now.v, now.x - (x_ + v_ * t), now.v - v_};
+          const auto [dx, dv] = change_of_x(contact, t, now.x, now.v);
+          return typename Piece::Change{now.x, now.v, dx, dv};
         },
         [&](std::size_t, const Real& t) {
           const State<Real> now = state(t);
@@ -214,20 +205,30 @@ class ExactOfDampers {
     walls_[i].work += works.wall;
     take_events();
   }
+  // What x differs by from a straight line, and x' from its beginning, while one pushes its wall.
+  template <class InContact>
+  std::array<Real, 2> change_of_x(const InContact& contact, const Real& t, const Real& x,
+                                  const Real& v) const {
+    if (const auto change = contact.change_of_x(t)) return *change;
+    return {Real(x - (x_ + v_ * t)), Real(v - v_)};
+  }
   // When another mass meets a wall while one pushes its own.
   template <class InContact>
   std::optional<Event> meets_beside(const InContact& contact, std::size_t j, const Real& until) {
     const Real &away = masses_.away[j], &u = masses_.u[j], &u1 = masses_.u1[j];
     const auto gaps = [&](const Real& t) {
       const LocalEnclosure<Real> x = contact.derivative_of_x(0, Real(1), t, tracker_.search().span);
-      const auto near = [&](const Jet<Real>& of_x) {
-        return Jet<Real>{u + (u1 * t - away * (of_x.g - (x_ + v_ * t))), u1 - away * (of_x.g1 - v_),
-                         -away * of_x.g2, of_x.third};
+      const auto change = contact.change_of_x(t);
+      const auto near = [&](const Jet<Real>& of_x, bool whole) {
+        const bool known = whole && change;
+        const Real dx = known ? (*change)[0] : Real(of_x.g - (x_ + v_ * t)),
+                   dv = known ? (*change)[1] : Real(of_x.g1 - v_);
+        return Jet<Real>{u + (u1 * t - away * dx), u1 - away * dv, -away * of_x.g2, of_x.third};
       };
       const auto far = [&](const Jet<Real>& gap) {
         return Jet<Real>{masses_.clearance[j] - gap.g, -gap.g1, -gap.g2, gap.third};
       };
-      const Jet<Real> whole = near(x.whole), main = near(x.main);
+      const Jet<Real> whole = near(x.whole, true), main = near(x.main, false);
       return std::array{LocalEnclosure<Real>{whole, main, x.rest},
                         LocalEnclosure<Real>{far(whole), far(main), x.rest}};
     };
@@ -404,7 +405,6 @@ class ExactOfDampers {
       walls_[i].impact = observer_.energy_balance().impact_loss.size();
       observer_.energy_balance().impact_loss.push_back(0);
     }
-    if (someone_rests_) press_those_at_rest();
   }
   void enter(std::size_t i) {
     masses_.held[i] = true;
@@ -457,7 +457,6 @@ class ExactOfDampers {
   SecondaryMasses<Real> masses_;
   std::vector<OwnWall> walls_;           // of each mass
   std::vector<std::size_t> in_contact_;  // ascending
-  bool someone_rests_ = false;           // on a wall, and is not pressed against it
   Real x_, v_;
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene

@@ -73,7 +73,7 @@ class Contact {
     const Real q0 = start_.y - wall_;
     if (t == 0) return {start_.x, start_.v, q0, start_.w};
     const ContactModes<Real, Force>& c = system_;
-    if (!(t * c.fast.rate() < Real(0.5) && t * c.slow.rate() < Real(0.5))) {
+    if (!is_short_time(t)) {
       const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
       return {slow.x + fast.x, slow.v + fast.v, slow.q + fast.q, slow.w + fast.w};
     }
@@ -81,6 +81,14 @@ class Contact {
                              by_fast = change(c.fast, parts().fast, c.drive_fast, t);
     return {start_.x + (start_.v * t + (by_slow.x + by_fast.x)), start_.v + (by_slow.v + by_fast.v),
             q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
+  }
+  // What x differs by from x0 + x0' t, and x' from x0', with digits of their own.
+  std::optional<std::array<Real, 2>> change_of_x(const Real& t) const {
+    const ContactModes<Real, Force>& c = system_;
+    const bool is_short = is_short_time(t);
+    const ContactState<Real> by_slow = change(c.slow, parts().slow, c.drive_slow, t, is_short),
+                             by_fast = change(c.fast, parts().fast, c.drive_fast, t, is_short);
+    return std::array<Real, 2>{by_slow.x + by_fast.x, by_slow.v + by_fast.v};
   }
   // The two parts of x, x', q and q'.
   ContactState<Real> slow_at(const Real& t) const {
@@ -389,9 +397,14 @@ class Contact {
     return to;
   }
 
-  // What a part departs by from a straight line, and what its velocities change by.
+  // Whether the parts are summed as what they change by.
+  bool is_short_time(const Real& t) const {
+    return t * system_.fast.rate() < Real(0.5) && t * system_.slow.rate() < Real(0.5);
+  }
+  // What a part departs by from a straight line, and what its velocities change by; for a short time without
+  // what both parts have in common.
   ContactState<Real> change(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
-                            const ContactState<Real>& drive, const Real& t) const {
+                            const ContactState<Real>& drive, const Real& t, bool is_short = true) const {
     const Propagator<Real> p = oscillator.propagate(t);
     const Real s1 = -oscillator.b() * p.s, v1 = p.c1 - 2 * oscillator.a() * p.s;
     ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
@@ -399,7 +412,7 @@ class Contact {
     if (system_.forcing) {
       // (M5.10): what both parts have in common in x and q is left out where it would cancel.
       const DrivenResponse<Real> driven = response(oscillator, t, p);
-      if (driven.integral) {
+      if (is_short && driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {
         add_driven(by, oscillator, drive, driven, t);
