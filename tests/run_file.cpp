@@ -666,7 +666,7 @@ TEST_CASE("a run of several dampers reads back as it was, and only where it may"
   }
   CHECK(run_text(back) == text);
   CHECK(problems(text) ==
-        Lines{"r.json: /scene/dampers: a list is for run only: "
+        Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response sweep only: "
               "give one damper without a list"});
 }
 
@@ -732,7 +732,7 @@ TEST_CASE(
         std::string::npos);
   CHECK_THROWS_WITH_AS(
       parse_scene("s.json", text),
-      "s.json: /dampers: a list is for run only: give one damper "
+      "s.json: /dampers: a list is for run, sweep, report and response sweep only: give one damper "
       "without a list",
       InputError);
 }

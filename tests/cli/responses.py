@@ -56,12 +56,18 @@ sweeps = {
     "restitution": [*forced, "--engine", "restitution", "--vary", "force-amplitude=0.02:0.06:3", *short],
     "undamped": ["--force-amplitude", 0.004, "--vary", "force_frequency=0.9:1:2", *short],  # infinite at 1
     "budget": [*forced, "--vary", "force_frequency=0.9:1.1:3", "--max-impacts", 2],
+    "several": ["--scene", "boxes.json", "--vary", "force_frequency=0.95:1.05:3", "--start=-0.5:0.2", *short],
     "units": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.05:3.25:3", *short],
 }
+(folder / "boxes.json").write_text(json.dumps({"damping_ratio": 0.01, "force_amplitude": 0.05, "x0": 1, "until_time": 1, "dampers": [
+    {"mass_ratio": 0.05, "y0": 0.5}, {"mass_ratio": 0.03, "clearance": 2, "y0": 0.3}]}))
 for name, words in sweeps.items():
     document = examined(respond(f"{name}.json", "sweep", *words), name)
     ways = [(n, way, each[way]) for n, each in enumerate(document["sweeps"]) for way in ("up", "down")]
     count = document["axis"]["count"]
+    for n, way_name, way in ways:  # of several dampers with their columns as the CSV names them
+        for number, its in enumerate(way.pop("dampers", []), 1):
+            way.update({f"{column}_{number}": values for column, values in its.items()})
     for _, _, way in ways:
         demand({len(column) for column in way.values()} == {count}, f"{name}: columns are not equally long")
     header, *rows = csv.reader(respond(f"{name}.csv", "sweep", *words, "--format", "csv").splitlines())
@@ -80,7 +86,7 @@ for name, words in sweeps.items():
     # The amplitudes of the linear oscillators, from the scene alone.
     for i, value in enumerate(document["values"]):
         scene = {**document["scene"], document["axis"]["number"]: value}
-        for column, mass in (("empty_amplitude", 1), ("locked_amplitude", 1 + scene["mass_ratio"])):
+        for column, mass in (("empty_amplitude", 1), ("locked_amplitude", 1 + sum(each["mass_ratio"] for each in scene.get("dampers", [scene])))):
             h = abs(complex(1 - mass * scene["force_frequency"] ** 2, 2 * scene["damping_ratio"] * scene["force_frequency"]))
             given = document[column][i]
             demand(given is None if h == 0 else math.isclose(given, abs(scene["force_amplitude"]) / h, rel_tol=1e-12),

@@ -30,6 +30,12 @@ SweepResponse asked_sweep() {
           {&Scene::force_frequency, 0.85, 1.15, 4},
           {{{1, 0, 0.5, 0}, {}, {}}, {{-0.5, 0.1, 0.2, 0}, {}, {}}}};
 }
+SweepResponse several_sweep() {
+  SweepResponse several = asked_sweep();
+  several.scene.dampers = {{.mass_ratio = 0.05, .y0 = 0.5}, {.mass_ratio = 0.02, .clearance = 2}};
+  several.sweeps = {{release_of(several.scene), {}, {}}};
+  return several;
+}
 SweepResponse ended_sweep() {
   SweepResponse ended = asked_sweep();
   Exact few;
@@ -90,8 +96,8 @@ std::string complaint(const std::string& text) {
 
 TEST_CASE("a response of each kind reads back as it was written, byte by byte") {
   for (const Response& asked :
-       {Response(asked_sweep()), Response(ended_sweep()), Response(asked_basin()), Response(asked_map()),
-        Response(asked_orbits()), Response(asked_exponents())}) {
+       {Response(asked_sweep()), Response(several_sweep()), Response(ended_sweep()), Response(asked_basin()),
+        Response(asked_map()), Response(asked_orbits()), Response(asked_exponents())}) {
     const Response found = found_for(asked, 1);
     const std::string text = response_text(found);
     const Response read = parse_response("f", text);
@@ -100,6 +106,24 @@ TEST_CASE("a response of each kind reads back as it was written, byte by byte") 
     CHECK(asked_of(read) == asked_of(asked));
     CHECK(complaint(text).empty());
   }
+}
+
+TEST_CASE("of several dampers each has its columns, whose sums are those of all") {
+  const auto found = std::get<SweepResponse>(found_for(several_sweep(), 1));
+  const std::string text = response_text(found);
+  const auto read = std::get<SweepResponse>(parse_response("f", text));
+  CHECK(read.scene.dampers == found.scene.dampers);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(read.sweeps[0].up[i].impacts_by_damper == found.sweeps[0].up[i].impacts_by_damper);
+    CHECK(read.sweeps[0].up[i].state.dampers[1].y == found.sweeps[0].up[i].state.dampers[1].y);
+  }
+  CHECK(complaint(changed(text, "impacts_left", [](double n) {
+          return n + 1;
+        })).find("the sum over the dampers") != std::string::npos);
+  CHECK(complaint(altered(text, "\"dampers\": [{\"y\": 0.5, \"w\": 0}, ", "\"dampers\": ["))
+            .find("must be as many as in the scene, 2, got 1") != std::string::npos);
+  CHECK(complaint(altered(text, "{\"damping_ratio\"", "{\"mass_ratio\": 1, \"damping_ratio\""))
+            .find("must not be given beside dampers") != std::string::npos);
 }
 
 TEST_CASE("what is read has the numbers that were found") {

@@ -290,6 +290,61 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
   }
 }
 
+TEST_CASE("a list of one damper, and the halves of one, have the steady states of that damper") {
+  for (const Engine& engine : {rigid, compliant}) {
+    const Scene scene = active_scene(1.01);
+    Scene list = scene, halves = scene;
+    list.dampers = {{.mass_ratio = scene.mass_ratio, .y0 = scene.y0}};
+    halves.dampers.assign(2, {.mass_ratio = scene.mass_ratio / 2, .wall_stiffness = 5e3, .y0 = scene.y0});
+    const SteadyState one = settled(scene, engine);
+    REQUIRE(one.period == 1);
+    for (const Scene& several : {list, halves}) {
+      const SteadyState same = settled(several, engine);
+      CHECK(same.period == one.period);
+      CHECK(std::abs(same.means->amplitude - one.means->amplitude) < 1e-9);
+      CHECK(std::abs(same.means->power - one.means->power) < 1e-9);
+      CHECK(std::abs(same.means->impact_power - one.means->impact_power) < 1e-9);
+      CHECK(same.symmetric == one.symmetric);
+      REQUIRE(same.state.dampers.size() == several.dampers.size());
+      for (const PlaceInCavity& each : same.state.dampers) {
+        CHECK(std::abs(each.y - one.state.y) < 1e-8);
+        CHECK(std::abs(each.w - one.state.w) < 1e-8);
+      }
+      for (const ImpactCounts& each : same.impacts_by_damper) CHECK(each == one.impacts);
+      CHECK(same.impacts[0] == one.impacts[0] * std::int64_t(several.dampers.size()));
+    }
+  }
+}
+
+TEST_CASE("a steady motion of several dampers is that of one run, and carries its state along a sweep") {
+  Scene scene = active_scene(1);
+  scene.x0 = 0;
+  scene.dampers = {{.mass_ratio = 0.03, .y0 = 0.5}, {.mass_ratio = 0.02, .clearance = 2.5, .y0 = 1}};
+  for (const Engine& engine : {rigid, compliant}) {
+    const ForcedScene forced(scene, engine);
+    const auto passed = forced.pass_periods(release_of(scene));
+    Scene all = scene;
+    all.until_time = 4 * period_of(scene);
+    const Run run = simulate(all, engine, {.half_cycles = false, .history = {{0, *all.until_time, 5}}});
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(std::abs(run.history->x[i + 1] - passed.states[i].x) < 1e-9);
+      for (std::size_t n = 0; n < 2; ++n)
+        CHECK(std::abs(run.history->dampers[n].y[i + 1] - passed.states[i].dampers[n].y) < 1e-9);
+    }
+    const SteadyRule few{.tolerance = 1e-8, .max_periods = 300, .mean_periods = 20};
+    const Sweep both = sweep(scene, engine, {&Scene::force_frequency, 0.98, 1, 3}, few, {release_of(scene)},
+                             1, [](std::int64_t) {})[0];
+    CHECK(both.up.back().state.dampers.size() == 2);
+    const ForcedScene last(scene, engine);  // whose frequency is the last one
+    const SteadyState again = last.settle(both.up[1].state, few);
+    CHECK(again.state.x == both.up[2].state.x);
+    CHECK(again.state.dampers[1].y == both.up[2].state.dampers[1].y);
+  }
+  CHECK_THROWS_AS(
+      sweep(scene, rigid, {&Scene::mass_ratio, 0.1, 0.2, 2}, {}, {release_of(scene)}, 1, [](std::int64_t) {}),
+      InvalidArguments);
+}
+
 TEST_CASE("a state that rounding has put beyond a rigid wall is on it") {
   const ForcedScene forced(active_scene(0.9), rigid);
   for (const auto& [beyond, on] : {std::pair{-1e-15, 0.0}, {1 + 1e-15, 1.0}}) {

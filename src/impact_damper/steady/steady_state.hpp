@@ -23,7 +23,9 @@ namespace impact_damper {
 // The state of a scene: x, x', y, y', or of several dampers y and y' of each, by number in the scene; the two
 // of State mean nothing then.
 struct SceneState : State<double> {
-  SceneState(const State<double>& one = {}) : State<double>(one) {}  // NOLINT(google-explicit-constructor)
+  SceneState() : State<double>{} {}
+  SceneState(const State<double>& one) : State<double>(one) {}  // NOLINT(google-explicit-constructor)
+  SceneState(double x, double v, double y, double w) : State<double>{x, v, y, w} {}
   std::vector<PlaceInCavity> dampers;
 };
 
