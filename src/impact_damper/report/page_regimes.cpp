@@ -125,10 +125,11 @@ std::string dampers_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const double lost = findings.energy_to_impacts() + findings.run.energy->viscous_work;
   HtmlTable table{.caption = "What each damper did, in the order of the scene file",
-                  .heads = {"Damper", "clearance", "damps best at", "fails at", "failed at", "energy taken",
-                            "impacts", "largest speed"},
+                  .heads = {"Damper", "clearance", "damps best at", "fails at"},
                   .rows = {}};
-  const bool rigid = has_rigid_walls(findings.subject.engine);
+  const bool rigid = has_rigid_walls(findings.subject.engine), free = !findings.forced();
+  if (free) table.heads.emplace_back("failed at");
+  for (const char* each : {"energy taken", "impacts", "largest speed"}) table.heads.emplace_back(each);
   if (!rigid) table.heads.emplace_back("largest force");
   for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
     const SceneDamper& damper = scene.dampers[n];
@@ -137,24 +138,25 @@ std::string dampers_html(const Findings& findings) {
     const bool has_form = e > 0 && e < 1;
     const auto& [missed, for_good] = found.failure;
     const auto failed = missed ? missed : for_good;
-    table.rows.push_back({std::to_string(n + 1), quantities.length(c),
-                          has_form ? quantities.length(peak_loss_amplitude(e) * c) : "–",
-                          has_form ? quantities.length(fold_amplitude(e) * c) : "–",
-                          failed ? quantities.length(*failed) : "–",
-                          lost > 0 ? percent_html(found.energy / lost) : "–", count_html(found.impacts),
-                          found.loads ? quantities.velocity(found.loads->speed) : "–"});
+    std::vector<std::string>& row = table.rows.emplace_back();
+    const auto add = [&](bool is_there, auto&& cell) { row.push_back(is_there ? cell() : std::string("–")); };
+    row = {std::to_string(n + 1), quantities.length(c)};
+    add(has_form, [&] { return quantities.length(peak_loss_amplitude(e) * c); });
+    add(has_form, [&] { return quantities.length(fold_amplitude(e) * c); });
+    if (free) add(failed.has_value(), [&] { return quantities.length(*failed); });
+    add(lost > 0, [&] { return percent_html(found.energy / lost); });
+    row.push_back(count_html(found.impacts));
+    add(found.loads.has_value(), [&] { return quantities.velocity(found.loads->speed); });
     if (rigid) continue;
-    const bool has_force = found.loads && found.loads->contact;
-    table.rows.back().push_back(
-        has_force ? quantities.force(std::max(found.loads->contact->force, found.loads->initial_force))
-                  : "–");
+    add(found.loads && found.loads->contact,
+        [&] { return quantities.force(std::max(found.loads->contact->force, found.loads->initial_force)); });
   }
   std::string text =
       "<i>Damps best at</i> and <i>fails at</i> are amplitudes by the closed form for a light mass that "
       "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. "
-      "<i>Failed at</i> is where its impacts began to fail in this run. The energy is that part of all that "
-      "was lost which its impacts took.";
-  if (const auto& stuck = findings.dampers[findings.shown].sticking_ends)
+      "The energy is that part of all that was lost which its impacts took.";
+  if (free) text += " <i>Failed at</i> is where its impacts began to fail in this run.";
+  if (const auto& stuck = findings.dampers[findings.shown].sticking_ends; free && stuck)
     text += " The bounces of damper " + std::to_string(findings.shown + 1) +
             ", which took most, ended stuck to a wall down to an amplitude of " + quantities.length(*stuck) +
             ".";
