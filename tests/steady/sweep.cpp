@@ -552,7 +552,7 @@ TEST_CASE("no result depends on the number of threads") {
   const Scene scene = active_scene(1);
   const Axis axis{&Scene::force_frequency, 0.88, 1.12, 7};
   const SteadyRule rule{.max_periods = 400, .mean_periods = 50};
-  std::vector<State<double>> starts;
+  std::vector<SceneState> starts;
   for (int i = 0; i < 12; ++i) starts.push_back({0.4 * i - 2, 0.1 * i, 0.08 * i, 0.2});
   std::string first;
   for (const std::int64_t threads : {1, 2, 5}) {

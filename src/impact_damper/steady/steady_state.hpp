@@ -25,7 +25,7 @@ namespace impact_damper {
 struct SceneState : State<double> {
   SceneState() : State<double>{} {}
   SceneState(const State<double>& one) : State<double>(one) {}  // NOLINT(google-explicit-constructor)
-  SceneState(double x, double v, double y, double w) : State<double>{x, v, y, w} {}
+  SceneState(double of_x, double of_v, double of_y, double of_w) : State<double>{of_x, of_v, of_y, of_w} {}
   std::vector<PlaceInCavity> dampers;
 };
 
