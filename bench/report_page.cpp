@@ -216,7 +216,7 @@ void add_own_costs_of_dampers(std::string& page, const Findings& found) {
                  cost.list ? printed("%.0f ns", cost.bound) : "", rounded(point.error)});
       if (!cost.within()) {
         missed += (missed.empty() ? "" : ", ") + engine + " with " + std::to_string(cost.dampers) +
-                  printed(" (%.1f times)", cost.cost / cost.bound);
+                  printed(" (%.2f times)", cost.cost / cost.bound);
       }
     }
   }
