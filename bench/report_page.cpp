@@ -226,7 +226,7 @@ void add_own_costs_of_dampers(std::string& page, const Findings& found) {
 void add_peers_of_dampers(std::string& page, const Findings& found) {
   page +=
       "\nHow many times as long the peers take for the whole run, at an error of the amplitudes and at the "
-      "smallest that they reach:\n\n";
+      "smallest that they reach; —: it is not reached, or a run would take too long:\n\n";
   PageTable table(page,
                   {"peer", "walls", "dampers", "for 1.0e-06", "for 1.0e-09", "smallest error", "for it"});
   for (const Curve& curve : found.curves) {

@@ -3,7 +3,6 @@
 #include <boost/version.hpp>
 
 #include "peers/peers.hpp"
-#include "peers/several_dampers.hpp"
 
 namespace impact_damper::bench {
 namespace {
@@ -13,28 +12,9 @@ Rows run(const Scene& scene, Walls walls, double tolerance) {
   return OdeintRun<HybridSystem<double>, Stepper>(scene, walls, tolerance).run();
 }
 
-// The number of dampers is that of a scene of the bench.
-template <std::size_t N>
-Rows run_several(const Scene& scene, Walls walls, double tolerance) {
-  return OdeintRun<SeveralDampers<double, N>, DormandPrince>(scene, walls, tolerance).run();
-}
 Rows run_dormand_prince(const Scene& scene, Walls walls, double tolerance) {
-  switch (scene.dampers.size()) {
-    case 0:
-      return run<DormandPrince>(scene, walls, tolerance);
-    case 1:
-      return run_several<1>(scene, walls, tolerance);
-    case 2:
-      return run_several<2>(scene, walls, tolerance);
-    case 5:
-      return run_several<5>(scene, walls, tolerance);
-    case 20:
-      return run_several<20>(scene, walls, tolerance);
-    case 100:
-      return run_several<100>(scene, walls, tolerance);
-    default:
-      throw std::invalid_argument("not compiled for so many dampers");
-  }
+  return scene.dampers.empty() ? run<DormandPrince>(scene, walls, tolerance)
+                               : run_dampers(scene, walls, tolerance);
 }
 
 using Runs = Rows(const Scene&, Walls, double tolerance);

@@ -268,4 +268,7 @@ class OdeintRun {
   State guard_state_{};
 };
 
+// By DormandPrince, a list of as many dampers as a scene of the bench has (odeint_dampers.cpp).
+Rows run_dampers(const Scene& scene, Walls walls, double tolerance);
+
 }  // namespace impact_damper::bench
