@@ -262,7 +262,11 @@ void add_dampers(std::string& page, const Findings& found) {
       "t = 30.5, before rounding decides; times are those of the whole run, by its impacts in nanoseconds, "
       "in "
       "brackets reference operations.\n\n"
-      "An impact may cost what it costs with one damper that is no list, and 20 ns for each further one.\n\n";
+      "An impact may cost what it costs with one damper that is no list, and 20 ns for each further one. A "
+      "run "
+      "that is repeated as it is the processor learns: other releases in turn take up to a fifth longer with "
+      "2 "
+      "to 20 dampers ([tried.md](../tried.md)).\n\n";
   add_own_costs_of_dampers(page, found);
   add_peers_of_dampers(page, found);
 }
