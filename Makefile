@@ -144,7 +144,7 @@ bare:  ## run both commands of README.md on a bare Debian 12 (as root, a quarter
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
 
-bench:  ## measure run time beside error (five to ten minutes), print and draw it
+bench:  ## measure run time beside error (ten to twenty minutes), print and draw it
 	@$(alone) $(with_bench) cmake --build $(BUILD) --target bench
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/

@@ -21,6 +21,7 @@ struct Contender {
   // Runs a scene that ends by until_time or until_amplitude. May throw where a setting is beyond it.
   std::function<Rows(const Scene&, double setting)> run;
   std::string about = {};  // how it goes about it, and whose it is
+  bool several = false;    // runs scenes with a list of dampers, too
 };
 
 // The engines of this project; the component element method once for each way of stepping.

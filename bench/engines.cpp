@@ -26,7 +26,8 @@ Contender closed_form(const std::string& name, Walls walls, const Engine& engine
           [engine](const Scene& scene, double) {
             return rows_of(simulate(scene, engine, {.half_cycles = true}));
           },
-          about};
+          about,
+          true};
 }
 
 // From 2 steps in a contact of nominal length, near the limit of stability, to 4096, and the default of 100.

@@ -44,13 +44,26 @@ struct Findings {
   const Curve* curve(const std::string& scene, const std::string& contender) const;
 };
 
+// What an impact of S9 costs by one of our engines, in nanoseconds, and what it may cost with so many
+// dampers: what the engine of one damper takes, and 20 ns for each further one.
+struct DamperCost {
+  int dampers = 0;
+  bool list = true;  // else by the engine of one damper
+  const Curve* curve = nullptr;
+  double cost = 0, bound = 0;
+
+  bool within() const { return cost <= bound; }
+};
+// First that of the engine of one damper. Empty if that was not measured.
+std::vector<DamperCost> damper_costs(const Findings& findings, const std::string& engine);
+
 // One result, held against the bound beyond which something has become slower or less exact than it was. A
 // number that could not be measured is absent, and `note` says why.
 struct Result {
   std::string what;
   bool at_most = true;  // else at least
   double bound = 0;
-  std::string unit;  // "", "ms", "x"
+  std::string unit;  // "", "ms", "ns", "x"
   std::optional<double> measured;
   std::string note;
 

@@ -12,6 +12,7 @@
 #include "peers/hybrid_system.hpp"
 #include "peers/peers.hpp"
 #include "peers/row_book.hpp"
+#include "peers/several_dampers.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;
@@ -192,6 +193,81 @@ TEST_CASE("the peers' compliant wall gives back e of the speed to a mass that mo
   }
 }
 
+TEST_CASE("a list of one damper is, for the peers, the one damper") {
+  const Scene one{.mass_ratio = 0.3, .restitution = 0.7, .damping_ratio = 0.1, .y0 = 0.5};
+  Scene list = one;
+  list.dampers = {{.mass_ratio = 0.3, .restitution = 0.7, .y0 = 0.5}};
+  for (const Walls walls : {Walls::compliant, Walls::rigid}) {
+    for (const std::size_t guard : {0, 1}) {
+      HybridSystem<double> system(one, walls);
+      SeveralDampers<double, 1> same(list, walls);
+      CHECK(same.state == system.state);
+      const auto check_rates = [&](const std::array<double, 4>& u) {
+        std::array<double, 4> du{}, same_du{};
+        system.derivative(u, du, 0);
+        same.derivative(u, same_du, 0);
+        for (std::size_t i = 0; i < 4; ++i) CHECK(same_du[i] == Approx(du[i]));
+        for (std::size_t i = 0; i < 4; ++i) {
+          CHECK(same.event(i, u, 0) == system.event(i, u, 0));
+          if (system.flies(0) || i != 1)
+            CHECK(same.event_rate(i, u, 0) == Approx(system.event_rate(i, u, 0)));
+        }
+      };
+      std::array<double, 4> u{0.5, -0.25, double(guard), guard == 0 ? -2.0 : 2.0}, same_u = u;
+      check_rates(u);
+      CHECK(system.pass(guard, u, 0));
+      CHECK(same.pass(guard, same_u, 0));
+      for (std::size_t i = 0; i < 4; ++i) CHECK(same_u[i] == Approx(u[i]));
+      check_rates({0.5, -0.25, guard == 0 ? -1e-3 : 1.001, -0.1});
+    }
+  }
+}
+
+TEST_CASE("one of the peers' several dampers impinges without moving the others") {
+  const Scene scene{.dampers = {{.mass_ratio = 0.1, .restitution = 0.7, .y0 = 0.5},
+                                {.mass_ratio = 0.2, .restitution = 0.4, .clearance = 2, .y0 = 0.5}}};
+  SeveralDampers<double, 2> system(scene, Walls::rigid);
+  std::array<double, 6> u{0.5, -0.25, 0.3, 1, 2, 3}, before = u;
+  CHECK(system.pass(3, u, 0));
+  CHECK(u[5] == Approx(-0.4 * 3));
+  CHECK(1.3 * u[1] + 0.1 * u[3] + 0.2 * u[5] == Approx(1.3 * before[1] + 0.1 * before[3] + 0.2 * before[5]));
+  CHECK(u[1] + u[3] == Approx(before[1] + before[3]));
+  CHECK(u[2] == before[2]);
+}
+
+TEST_CASE("on S9 no mass comes to rest on a wall, and few contacts overlap") {
+  int lists = 0;
+  for (const BenchScene& scene : bench_scenes()) {
+    if (scene.scene.dampers.empty()) continue;
+    ++lists;
+    CHECK(scene.dampers == int(scene.scene.dampers.size()));
+    if (scene.walls == Walls::rigid) {
+      CHECK(simulate(scene.scene, Restitution{}, {.contacts = true}).contacts->begin.empty());
+      continue;
+    }
+    const Contacts contacts = *simulate(scene.scene, Exact{}, {.contacts = true}).contacts;
+    std::vector<double> begin = contacts.begin, end = contacts.end;
+    for (std::size_t i = 0; i < begin.size(); ++i) CHECK(end[i] - begin[i] < 1e-4);
+    std::ranges::sort(begin);
+    std::ranges::sort(end);
+    std::size_t overlap = 0;
+    for (std::size_t i = 1; i < begin.size(); ++i) overlap += begin[i] < end[i - 1];
+    CHECK(100 * overlap < begin.size());
+  }
+  CHECK(lists == 10);
+}
+
+TEST_CASE("S9 is run by those who take lists, and without a list by our engines") {
+  const Contender peer{.name = "peer", .several = true}, other{.name = "other"};
+  for (const BenchScene& scene : bench_scenes()) {
+    if (scene.dampers == 0 || scene.walls == Walls::rigid) continue;
+    CHECK(takes_part(peer, false, scene) == !scene.scene.dampers.empty());
+    CHECK(takes_part(peer, true, scene));
+    CHECK(!takes_part(other, false, scene));
+    CHECK(!takes_part(other, true, scene));
+  }
+}
+
 TEST_CASE("plain central differences come nearer to the exact engine with the first power of their step") {
   const Contender plain = central_differences_peers()[0];
   const std::vector<double> reference = reference_amplitudes(tiny, Exact{});
@@ -278,6 +354,21 @@ TEST_CASE("a peer that does not reach the error has no ratio, and how far it cam
   CHECK(cvode.note.find("never below 7e-05") != std::string::npos);
   CHECK(find(results, "error on S1").within());
   CHECK(!find(results, "error on S3").within());
+}
+
+TEST_CASE("an impact with several dampers may cost 20 ns more for each further one") {
+  Findings found{.scenes = bench_scenes()};
+  found.reference_operation = {2e-8, 2e-8, 2e-8};
+  found.curves.push_back(curve_of("S9 5", "exact", {{0, 1e-13, 1500}}));
+  CHECK(damper_costs(found, "exact").empty());
+  found.curves.push_back(curve_of("S9 20", "exact", {{0, 1e-13, 1500}}));
+  found.curves.push_back(curve_of("S9 one", "exact", {{0, 1e-13, 1000}}));  // 100 impacts: 200 ns each
+  const std::vector<Result> results = results_of(found);
+  const Result& five = find(results, "exact: time per impact on S9, list of 5");
+  CHECK(five.bound == Approx(200 + 4 * 20));
+  CHECK(*five.measured == Approx(300));
+  CHECK(!five.within());
+  CHECK(find(results, "exact: time per impact on S9, list of 20").within());
 }
 
 TEST_CASE("the best of two peers is what an engine is held against") {

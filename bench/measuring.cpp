@@ -87,6 +87,15 @@ TEST_CASE("the reference and long double agree where double is seen to differ") 
   CHECK(*amplitude_error(amplitudes(tiny, Restitution{}), reference_amplitudes(tiny, Restitution{})) < 1e-11);
 }
 
+TEST_CASE("several dampers have their reference, too") {
+  Scene several = tiny;
+  several.dampers = {{.mass_ratio = 0.01}, {.mass_ratio = 0.01, .clearance = 1.5, .y0 = 0.5}};
+  CHECK(*amplitude_error(amplitudes(several, Exact{}), reference_amplitudes(several, Exact{})) < 1e-11);
+  CHECK(*amplitude_error(amplitudes(several, Restitution{}), reference_amplitudes(several, Restitution{})) <
+        1e-11);
+  CHECK(*amplitude_error(amplitudes(several, Exact{}), reference_amplitudes(tiny, Exact{})) > 1e-6);
+}
+
 TEST_CASE("the error is the largest difference of a row, and one row more or less is none") {
   CHECK(*amplitude_error({3, 2, 1}, {3, 2.25, 1.125}) == 0.25);
   CHECK(*amplitude_error({3, 2}, {3, 2, 1}) == 0);

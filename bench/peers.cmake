@@ -14,7 +14,7 @@ endfunction()
 
 find_path(ODEINT_HEADERS boost/numeric/odeint.hpp)
 if(ODEINT_HEADERS)
-  peer(odeint "peers/odeint.cpp;peers/odeint_reference.cpp")
+  peer(odeint "peers/odeint.cpp;peers/odeint_dampers.cpp;peers/odeint_reference.cpp")
   # odeint copies steppers whose scratch arrays were never written.
   target_compile_options(bench_odeint PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
   if(HAVE_FLOAT128)

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_dampers.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 #ifdef HAVE_FLOAT128
@@ -37,16 +39,24 @@ std::vector<double> amplitudes_of(Recorder& recorder) {
 
 template <class Real>
 std::vector<double> amplitudes(const Scene& scene, const Exact& options) {
-  Recorder recorder({.half_cycles = true});
-  run_exact<Real>(scene, options, recorder);
+  Recorder recorder({.half_cycles = true}, scene.dampers.size());
+  if (scene.dampers.empty()) {
+    run_exact<Real>(scene, options, recorder);
+  } else {
+    run_exact_dampers<Real>(scene, options, recorder);
+  }
   return amplitudes_of(recorder);
 }
 
 template <class Real>
 std::vector<double> amplitudes(const Scene& scene, Restitution options) {
   options.accumulation_tolerance = 1e-12;
-  Recorder recorder({.half_cycles = true});
-  run_restitution<Real>(scene, options, recorder);
+  Recorder recorder({.half_cycles = true}, scene.dampers.size());
+  if (scene.dampers.empty()) {
+    run_restitution<Real>(scene, options, recorder);
+  } else {
+    run_restitution_dampers<Real>(scene, options, recorder);
+  }
   return amplitudes_of(recorder);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "impact_damper/io/provenance.hpp"
@@ -22,6 +23,8 @@ std::string rounded(double number) {
   if (size < 10) return printed("%.3g", number);
   return printed(size < 100 ? "%.1f" : "%.0f", number);
 }
+
+std::string rounded(const std::optional<double>& number) { return number ? rounded(*number) : "—"; }
 
 using Cells = std::vector<std::string>;
 
@@ -78,6 +81,7 @@ void add_times(std::string& page, const Findings& found) {
       "smallest error taken for a method's own, and where two settings are below it finer ones are left out. "
       "At that error two rates are held against the fixed step of the paper, which does not locate events.\n";
   for (const BenchScene& scene : found.scenes) {
+    if (scene.dampers > 0) continue;
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
     if (scene.compared_until) {
       page += "Amplitudes are compared up to t = " + printed("%g", *scene.compared_until) +
@@ -121,10 +125,9 @@ void add_references(std::string& page, const Findings& found) {
           "integrator.\n\n";
   PageTable table(page,
                   {"", "distance from long double", "from another integrator", "the ensemble's own scatter"});
-  const auto cell = [](const std::optional<double>& number) { return number ? rounded(*number) : "—"; };
   for (const Reference& reference : found.references) {
     table.row({reference.scene + (reference.walls == Walls::compliant ? ", compliant" : ", rigid"),
-               cell(reference.from_long_double), cell(reference.from_independent),
+               rounded(reference.from_long_double), rounded(reference.from_independent),
                reference.loss_curve
                    ? rounded(reference.loss_curve->scatter) + " (" + rounded(reference.loss_curve->lower) +
                          " to " + rounded(reference.loss_curve->upper) + ")"
@@ -198,6 +201,74 @@ void add_sweeps(std::string& page, const Findings& found) {
     }
     page += "\n";
   }
+}
+
+void add_own_costs_of_dampers(std::string& page, const Findings& found) {
+  PageTable table(page, {"engine", "dampers", "impacts", "an impact", "at most", "error"});
+  std::string missed;
+  for (const std::string engine : {"exact", "restitution"}) {
+    for (const DamperCost& cost : damper_costs(found, engine)) {
+      const Point& point = cost.curve->finest();
+      const std::string time = printed("%.0f ns (%.1f)", cost.cost,
+                                       point.timing.reference_operations.median / double(point.impacts));
+      table.row({engine, std::to_string(cost.dampers) + (cost.list ? "" : ", no list"),
+                 std::to_string(point.impacts), cost.within() ? time : "**" + time + "**",
+                 cost.list ? printed("%.0f ns", cost.bound) : "", rounded(point.error)});
+      if (!cost.within()) {
+        missed += (missed.empty() ? "" : ", ") + engine + " with " + std::to_string(cost.dampers) +
+                  printed(" (%.2f times)", cost.cost / cost.bound);
+      }
+    }
+  }
+  page += missed.empty() ? "\nThe bound is met everywhere.\n" : "\nThe bound is missed by " + missed + ".\n";
+}
+
+void add_peers_of_dampers(std::string& page, const Findings& found) {
+  page +=
+      "\nHow many times as long the peers take for the whole run, at an error of the amplitudes and at the "
+      "smallest that they reach; —: it is not reached, or a run would take too long:\n\n";
+  PageTable table(page,
+                  {"peer", "walls", "dampers", "for 1.0e-06", "for 1.0e-09", "smallest error", "for it"});
+  for (const Curve& curve : found.curves) {
+    const auto scene = std::ranges::find(found.scenes, curve.scene, &BenchScene::name);
+    const bool rigid = curve.walls == Walls::rigid;
+    const Curve* own = found.curve(curve.scene, rigid ? "restitution" : "exact");
+    if (curve.ours || scene == found.scenes.end() || scene->dampers == 0 || !own || own->points.empty())
+      continue;
+    const double unit = own->finest().timing.reference_operations.median;
+    const auto times = [&](const std::optional<double>& time) {
+      return time ? rounded(*time / unit) + " x" : "—";
+    };
+    const Point* best = nullptr;
+    for (const Point& point : curve.points) {
+      if (point.error && !(best && *best->error <= *point.error)) best = &point;
+    }
+    table.row({curve.contender, rigid ? "rigid" : "compliant", std::to_string(scene->dampers),
+               times(time_at(curve, 1e-6)), times(time_at(curve, 1e-9)),
+               best                   ? rounded(*best->error)
+               : curve.points.empty() ? "not run: too slow"
+                                      : "no run that can be compared",
+               best ? times(best->timing.reference_operations.median) : "—"});
+  }
+}
+
+void add_dampers(std::string& page, const Findings& found) {
+  if (damper_costs(found, "exact").empty() && damper_costs(found, "restitution").empty()) return;
+  page +=
+      "\n## Several dampers\n\n"
+      "S9: a free decay from x₀ = 3 to t = 101 with a list of dampers, which share ν = 0.02 and k = 10⁸ "
+      "equally; e = 0.8, clearances from 1 up to below 1.7, the masses begin in the left halves of their "
+      "cavities. No mass comes to rest on a wall, and few contacts overlap. Amplitudes are compared up to "
+      "t = 30.5, before rounding decides; times are those of the whole run, by its impacts in nanoseconds, "
+      "in "
+      "brackets reference operations.\n\n"
+      "An impact may cost what it costs with one damper that is no list, and 20 ns for each further one. A "
+      "run "
+      "that is repeated as it is the processor learns: other releases in turn take up to a fifth longer with "
+      "2 "
+      "to 20 dampers ([tried.md](../tried.md)).\n\n";
+  add_own_costs_of_dampers(page, found);
+  add_peers_of_dampers(page, found);
 }
 
 void add_rest(std::string& page, const Findings& found) {
@@ -307,6 +378,7 @@ std::string report_page(const Findings& found) {
   add_counts(page, found);
   add_ways(page, found);
   add_sweeps(page, found);
+  add_dampers(page, found);
   add_rest(page, found);
   return page;
 }

@@ -185,6 +185,21 @@ const Curve* Findings::curve(const std::string& scene, const std::string& conten
   return nullptr;
 }
 
+std::vector<DamperCost> damper_costs(const Findings& found, const std::string& engine) {
+  std::vector<DamperCost> all;
+  for (const BenchScene& scene : found.scenes) {
+    const Curve* curve = scene.dampers > 0 ? found.curve(scene.name, engine) : nullptr;
+    if (!curve || curve->points.empty()) continue;
+    const Point& point = curve->finest();
+    const double cost = point.timing.reference_operations.median / double(point.impacts) *
+                        found.reference_operation.median * 1e9;
+    const bool list = !scene.scene.dampers.empty();
+    if (list && all.empty()) break;
+    all.push_back({scene.dampers, list, curve, cost, list ? all[0].cost + 20 * (scene.dampers - 1) : cost});
+  }
+  return all;
+}
+
 std::vector<Result> results_of(const Findings& found) {
   std::vector<Result> all;
   const auto add = [&](Result result, const auto& measure_it) {
@@ -216,6 +231,20 @@ std::vector<Result> results_of(const Findings& found) {
   }
   add(at_most("exact: time per impact, at 50 per period, on S8, largest by smallest", 3, "x"),
       [&](Result& t) { measure_frequencies(found, t); });
+
+  for (const std::string engine : {"exact", "restitution"}) {
+    for (const DamperCost& cost : damper_costs(found, engine)) {
+      if (!cost.list) continue;
+      add(at_most(engine + ": time per impact on S9, list of " + std::to_string(cost.dampers), cost.bound,
+                  "ns"),
+          [&](Result& t) {
+            const Point& point = cost.curve->finest();
+            t.measured = cost.cost;
+            t.note = std::to_string(point.impacts) + " impacts in " +
+                     digits(point.timing.seconds.median * 1e3) + " ms";
+          });
+    }
+  }
 
   const std::vector<std::string> odeint{"odeint fehlberg78", "odeint dopri5"};
   add(at_least("exact against the best odeint at 1e-9, S1", 10),

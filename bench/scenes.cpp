@@ -1,10 +1,41 @@
 #include "scenes.hpp"
 
+#include <cmath>
+
 namespace impact_damper::bench {
+namespace {
+
+void add_several_dampers(std::vector<BenchScene>& scenes) {
+  const auto add = [&](const std::string& name, int count, const Scene& scene) {
+    BenchScene added{.name = name, .scene = scene, .compared_until = 30.5, .dampers = count};
+    scenes.push_back(added);
+    added.name += " rigid";
+    added.walls = Walls::rigid;
+    scenes.push_back(added);
+  };
+  const Scene one{.restitution = 0.8, .wall_stiffness = 1e8, .x0 = 3, .until_time = 101};
+  add("S9 one", 1, one);
+  for (const int count : {1, 2, 5, 20, 100}) {
+    Scene several = one;
+    for (int i = 0; i < count; ++i) {
+      const double clearance = 1 + 0.7 * i / count;
+      // The golden section spreads any number of them evenly and out of order.
+      const double place = std::fmod(0.381966 * i, 1.0) / 2;
+      several.dampers.push_back({.mass_ratio = one.mass_ratio / count,
+                                 .restitution = one.restitution,
+                                 .clearance = clearance,
+                                 .wall_stiffness = one.wall_stiffness / count,
+                                 .y0 = clearance * place});
+    }
+    add("S9 " + std::to_string(count), count, several);
+  }
+}
+
+}  // namespace
 
 std::vector<BenchScene> bench_scenes() {
   const Scene regular{.x0 = 4.5, .until_time = 100};
-  return {
+  std::vector<BenchScene> scenes{
       {.name = "S1", .what = "x₀ = 4.5 to t = 100", .scene = regular},
       {.name = "S2", .what = "the same with rigid walls", .scene = regular, .walls = Walls::rigid},
       {.name = "S3",
@@ -50,6 +81,8 @@ std::vector<BenchScene> bench_scenes() {
                  .until_time = 20},
        .compared_until = 1},
   };
+  add_several_dampers(scenes);
+  return scenes;
 }
 
 Scene compared_part(const BenchScene& scene) {
@@ -59,6 +92,7 @@ Scene compared_part(const BenchScene& scene) {
 }
 
 bool takes_part(const Contender& contender, bool ours, const BenchScene& scene) {
+  if (scene.dampers > 0 && !(contender.several && (ours || !scene.scene.dampers.empty()))) return false;
   return contender.walls == scene.walls || (ours && scene.with_others);
 }
 

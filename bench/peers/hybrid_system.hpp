@@ -21,13 +21,16 @@ namespace impact_damper::bench {
 enum class Regime { free, left, right, stuck_left, stuck_right };
 inline constexpr std::size_t regimes = 5;
 
-template <class Real>
+template <class Number>
 class HybridSystem {
  public:
+  using Real = Number;
   using State = std::array<Real, 4>;
   // Two guards, falling; then x and x', either way.
   static constexpr std::size_t events = 4;
   static constexpr std::size_t guards = 2;
+  // A stepper's step lengths are kept for each of so many.
+  static constexpr std::size_t paces = regimes;
 
   // The scene begins in flight, or on a wall that it is about to leave.
   HybridSystem(const Scene& scene, Walls walls)
@@ -51,6 +54,12 @@ class HybridSystem {
   }
 
   Regime regime() const { return regime_; }
+  std::size_t pace() const { return std::size_t(regime_); }
+  // Half a unit of time; in contact a quarter of its period.
+  Real longest_step(std::size_t pace) const {
+    const bool contact = pace == std::size_t(Regime::left) || pace == std::size_t(Regime::right);
+    return contact ? Real(contact_time_ / 2) : Real(0.5);
+  }
   // Half a period of the contact.
   const Real& contact_time() const { return contact_time_; }
 
@@ -116,6 +125,10 @@ class HybridSystem {
     }
     return 0;
   }
+
+  bool flies(std::size_t) const { return regime_ == Regime::free; }
+  // Where in a state the rate of the gap stands whose guard this is.
+  static constexpr std::size_t speed_of(std::size_t) { return 3; }
 
   // A guard was passed at time t in the state u, which is put right: y exactly on its wall, velocities as the
   // new regime begins with them. True if it was an impact.

@@ -21,19 +21,21 @@ namespace odeint = boost::numeric::odeint;
 
 // odeint's view of the system; t counts from the beginning of the regime, so that a short contact late in a
 // run is resolved as well as one at its start.
-template <class Real>
+template <class System>
 struct OdeintSystem {
-  const HybridSystem<Real>* system;
+  using Real = typename System::Real;
+  using State = typename System::State;
+  const System* system;
   Real origin{0};
-  using State = typename HybridSystem<Real>::State;
   void operator()(const State& u, State& du, const Real& t) const { system->derivative(u, du, origin + t); }
 };
 
 // One step from (t, u) at a time, and any state inside it.
-template <class Real>
+template <class System>
 class Fehlberg {
  public:
-  using State = typename HybridSystem<Real>::State;
+  using Real = typename System::Real;
+  using State = typename System::State;
   using Method = odeint::runge_kutta_fehlberg78<State, Real, State, Real, odeint::array_algebra>;
 
   explicit Fehlberg(const Real& tolerance)
@@ -44,7 +46,7 @@ class Fehlberg {
     t0_ = t1_ = 0;
     next_ = step;
   }
-  void step(const OdeintSystem<Real>& system, const Real& longest) {
+  void step(const OdeintSystem<System>& system, const Real& longest) {
     t0_ = t1_;
     begin_ = end_;
     if (next_ > longest) next_ = longest;
@@ -52,7 +54,7 @@ class Fehlberg {
       if (tries == 100) throw std::runtime_error("odeint: no step is short enough");
     }
   }
-  State at(const OdeintSystem<Real>& system, const Real& t) {
+  State at(const OdeintSystem<System>& system, const Real& t) {
     State u;
     method_.do_step(system, begin_, t0_, u, Real(t - t0_));
     return u;
@@ -70,24 +72,25 @@ class Fehlberg {
   Real t0_{0}, t1_{0}, next_{0};
 };
 
-template <class Real>
+template <class System>
 class DormandPrince {
  public:
-  using State = typename HybridSystem<Real>::State;
+  using Real = typename System::Real;
+  using State = typename System::State;
   using Method = odeint::runge_kutta_dopri5<State, Real, State, Real, odeint::array_algebra>;
 
   explicit DormandPrince(const Real& tolerance)
       : dense_(odeint::make_dense_output<Method>(tolerance, tolerance)) {}
 
   void restart(const State& u, const Real& step) { dense_.initialize(u, Real(0), step); }
-  void step(const OdeintSystem<Real>& system, const Real& longest) {
+  void step(const OdeintSystem<System>& system, const Real& longest) {
     // Only a restart can shorten the step that the stepper has chosen.
     if (dense_.current_time_step() > longest) {
       dense_.initialize(State(dense_.current_state()), dense_.current_time(), longest);
     }
     dense_.do_step(system);
   }
-  State at(const OdeintSystem<Real>&, const Real& t) {
+  State at(const OdeintSystem<System>&, const Real& t) {
     State u;
     dense_.calc_state(t, u);
     return u;
@@ -102,10 +105,11 @@ class DormandPrince {
   decltype(odeint::make_dense_output<Method>(Real(), Real())) dense_;
 };
 
-template <class Real, class Stepper>
+template <class System, template <class> class Stepper>
 class OdeintRun {
  public:
-  using State = typename HybridSystem<Real>::State;
+  using Real = typename System::Real;
+  using State = typename System::State;
 
   OdeintRun(const Scene& scene, Walls walls, const Real& tolerance)
       : scene_(scene),
@@ -113,8 +117,7 @@ class OdeintRun {
         view_{&system_},
         stepper_(tolerance),
         rows_(scene.x0, scene.until_amplitude) {
-    longest_.fill(Real(0.5));
-    longest_[std::size_t(Regime::left)] = longest_[std::size_t(Regime::right)] = system_.contact_time() / 2;
+    for (std::size_t pace = 0; pace < System::paces; ++pace) longest_[pace] = system_.longest_step(pace);
     steps_ = longest_;
     for (Real& step : steps_) step /= 16;
   }
@@ -123,18 +126,18 @@ class OdeintRun {
     const Real end = scene_.until_time ? Real(*scene_.until_time) : Real(1e6);
     restart(system_.state, Real(0));
     for (;;) {
-      const std::size_t regime = std::size_t(system_.regime());
-      stepper_.step(view_, longest_[regime]);
+      const std::size_t pace = system_.pace();
+      stepper_.step(view_, longest_[pace]);
       const std::size_t guard = find_guard();
-      const bool passed = guard < HybridSystem<Real>::guards;
-      const Real until = passed ? guard_time_ : stepper_.t1();
-      State last = passed ? stepper_.at(view_, until) : stepper_.end();
+      const bool passed = guard < System::guards;
+      const Real until = guard_time_;
+      State last = guard_state_;
       if (observe(until, last, end)) break;
       const Real now = view_.origin + until;
       if (now >= end) break;
       if (!passed) continue;
       rows_.peak(double(now), double(last[0]));  // x' may jump here
-      steps_[regime] = stepper_.next_step();
+      steps_[pace] = stepper_.next_step();
       if (system_.pass(guard, last, now)) rows_.impact();
       restart(last, now);
     }
@@ -144,10 +147,10 @@ class OdeintRun {
  private:
   void restart(const State& u, const Real& now) {
     view_.origin = now;
-    stepper_.restart(u, steps_[std::size_t(system_.regime())]);
+    stepper_.restart(u, steps_[system_.pace()]);
     // What is zero at a regime's beginning has the sign of its rate; a guard is open.
-    for (std::size_t i = 0; i < HybridSystem<Real>::events; ++i) {
-      const Real g = i < HybridSystem<Real>::guards ? Real(1) : system_.event(i, u, now);
+    for (std::size_t i = 0; i < System::events; ++i) {
+      const Real g = i < System::guards ? Real(1) : system_.event(i, u, now);
       positive_[i] = g > 0 || (g == 0 && system_.event_rate(i, u, now) > 0);
     }
   }
@@ -184,20 +187,23 @@ class OdeintRun {
         [&](const State& u, const Real& t) { return system_.event_rate(which, u, view_.origin + t); });
   }
 
-  // Which guard is passed first in the step, and when; events if none is.
+  // Which guard is passed first in the step, and when and in which state; events if none is.
   std::size_t find_guard() {
-    std::size_t first = HybridSystem<Real>::events;
-    for (std::size_t i = 0; i < HybridSystem<Real>::guards; ++i) {
-      Real high = stepper_.t1();
-      if (value(i, stepper_.end(), high) > 0) {
-        const std::optional<Real> dip = system_.regime() == Regime::free ? find_dip(i) : std::nullopt;
-        if (!dip || value(i, stepper_.at(view_, *dip), *dip) > 0) continue;
+    std::size_t first = System::events;
+    guard_time_ = stepper_.t1();
+    guard_state_ = stepper_.end();
+    for (std::size_t i = 0; i < System::guards; ++i) {
+      Real high = guard_time_;
+      if (value(i, guard_state_, high) > 0) {
+        const std::optional<Real> dip = system_.flies(i) ? find_dip(i) : std::nullopt;
+        if (!dip || !(*dip < high) || value(i, stepper_.at(view_, *dip), *dip) > 0) continue;
         high = *dip;
       }
       const Real t = solve(i, stepper_.t0(), high);
-      if (first < HybridSystem<Real>::events && guard_time_ <= t) continue;
+      if (first < System::events && guard_time_ <= t) continue;
       first = i;
       guard_time_ = t;
+      guard_state_ = stepper_.at(view_, t);
     }
     return first;
   }
@@ -206,9 +212,10 @@ class OdeintRun {
   // comes near closing it.
   std::optional<Real> find_dip(std::size_t guard) {
     using std::sqrt;
-    const Real t0 = stepper_.t0(), h = stepper_.t1() - t0, away = guard == 0 ? 1 : -1;
+    const Real t0 = stepper_.t0(), h = stepper_.t1() - t0, away = guard % 2 == 0 ? 1 : -1;
+    const std::size_t speed = System::speed_of(guard);
     const Real g0 = value(guard, stepper_.begin(), t0), g1 = value(guard, stepper_.end(), stepper_.t1());
-    const Real r0 = h * away * stepper_.begin()[3], r1 = h * away * stepper_.end()[3];
+    const Real r0 = h * away * stepper_.begin()[speed], r1 = h * away * stepper_.end()[speed];
     const Real c = 3 * (g1 - g0) - 2 * r0 - r1, d = r0 + r1 - 2 * (g1 - g0);  // g0 + r0 s + c s^2 + d s^3
     const Real square = c * c - 3 * d * r0;
     if (!(square > 0) || !(r1 > 0)) return std::nullopt;
@@ -217,13 +224,13 @@ class OdeintRun {
     if (!(s > 0 && s < 1) || g0 + s * (r0 + s * (c + s * d)) > Real(0.02)) return std::nullopt;
     // From where the cubic falls steepest the gap's rate grows.
     const Real low = d > 0 && c < 0 ? Real(t0 + h * (-c / (3 * d))) : t0;
-    if (!(away * stepper_.at(view_, low)[3] < 0)) return std::nullopt;
+    if (!(away * stepper_.at(view_, low)[speed] < 0)) return std::nullopt;
     return solve(
-        away < 0, low, stepper_.t1(), Real(t0 + h * s), [](const State& u, const Real&) { return u[3]; },
+        away < 0, low, stepper_.t1(), Real(t0 + h * s), [&](const State& u, const Real&) { return u[speed]; },
         [&](const State& u, const Real& t) {
           State du{};
           system_.derivative(u, du, view_.origin + t);
-          return du[3];
+          return du[speed];
         });
   }
 
@@ -231,7 +238,7 @@ class OdeintRun {
   bool observe(const Real& until, const State& last, const Real& end) {
     std::array<std::pair<Real, std::size_t>, 2> seen;
     std::size_t n = 0;
-    for (std::size_t i = HybridSystem<Real>::guards; i < HybridSystem<Real>::events; ++i) {
+    for (std::size_t i = System::guards; i < System::events; ++i) {
       const Real g = value(i, last, until);
       if (g == 0 || (g > 0) == positive_[i]) continue;
       seen[n++] = {solve(i, stepper_.t0(), until), i};
@@ -241,7 +248,7 @@ class OdeintRun {
     for (std::size_t j = 0; j < n; ++j) {
       const Real now = view_.origin + seen[j].first;
       if (now > end) return true;
-      if (seen[j].second == 3) {
+      if (seen[j].second == System::guards + 1) {
         rows_.peak(double(now), double(stepper_.at(view_, seen[j].first)[0]));
       } else if (rows_.zero_crossing(double(now))) {
         return true;
@@ -251,13 +258,17 @@ class OdeintRun {
   }
 
   const Scene& scene_;
-  HybridSystem<Real> system_;
-  OdeintSystem<Real> view_;
-  Stepper stepper_;
+  System system_;
+  OdeintSystem<System> view_;
+  Stepper<System> stepper_;
   RowBook rows_;
-  std::array<Real, regimes> longest_, steps_;
-  std::array<bool, HybridSystem<Real>::events> positive_{};
+  std::array<Real, System::paces> longest_, steps_;
+  std::array<bool, System::events> positive_{};
   Real guard_time_{0};
+  State guard_state_{};
 };
+
+// By DormandPrince, a list of as many dampers as a scene of the bench has (odeint_dampers.cpp).
+Rows run_dampers(const Scene& scene, Walls walls, double tolerance);
 
 }  // namespace impact_damper::bench

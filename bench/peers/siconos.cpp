@@ -1,9 +1,9 @@
 // Siconos, on rigid walls: Moreau and Jean's time stepping, and its event-driven simulation with LSODAR.
 //
-// The two masses are one Lagrangian system of absolute positions (x, z) with two unilateral constraints,
-// z - x >= 0 and 1 - z + x >= 0, and Newton's impact law. Between the steps or events that Siconos delivers
-// x is harmonic where nothing damps or forces it, so its largest value follows from x and x' at hand: the
-// peaks cost the peer no accuracy.
+// All masses are one Lagrangian system of absolute positions (x, z1, z2, ...) with two unilateral constraints
+// for each secondary mass, z - x >= 0 and c - z + x >= 0, and Newton's impact law. Between the steps or
+// events that Siconos delivers x is harmonic where nothing damps or forces it, so its largest value follows
+// from x and x' at hand: the peaks cost the peer no accuracy.
 #include "peers/siconos.hpp"
 
 #include <SiconosKernel.hpp>
@@ -19,30 +19,36 @@ struct Model {
   SP::NonSmoothDynamicalSystem system;
 
   explicit Model(const SiconosScene& scene) {
-    auto position = std::make_shared<SiconosVector>(2), velocity = std::make_shared<SiconosVector>(2);
+    const unsigned n = unsigned(scene.dampers.size());
+    auto position = std::make_shared<SiconosVector>(1 + n), velocity = std::make_shared<SiconosVector>(1 + n);
+    auto mass = std::make_shared<SimpleMatrix>(1 + n, 1 + n),
+         stiffness = std::make_shared<SimpleMatrix>(1 + n, 1 + n),
+         damping = std::make_shared<SimpleMatrix>(1 + n, 1 + n);
     (*position)(0) = scene.x0;
-    (*position)(1) = scene.x0 + scene.y0;
     (*velocity)(0) = scene.v0;
-    (*velocity)(1) = scene.v0 + scene.w0;
-    auto mass = std::make_shared<SimpleMatrix>(2, 2), stiffness = std::make_shared<SimpleMatrix>(2, 2),
-         damping = std::make_shared<SimpleMatrix>(2, 2);
     (*mass)(0, 0) = 1;
-    (*mass)(1, 1) = scene.mass_ratio;
     (*stiffness)(0, 0) = 1;
     (*damping)(0, 0) = 2 * scene.damping_ratio;
+    for (unsigned i = 0; i < n; ++i) {
+      (*position)(1 + i) = scene.x0 + scene.dampers[i].y0;
+      (*velocity)(1 + i) = scene.v0 + scene.dampers[i].w0;
+      (*mass)(1 + i, 1 + i) = scene.dampers[i].mass_ratio;
+    }
     masses = std::make_shared<LagrangianLinearTIDS>(position, velocity, mass, stiffness, damping);
 
     system = std::make_shared<NonSmoothDynamicalSystem>(0, scene.until_time + 1);
     system->insertDynamicalSystem(masses);
-    for (const double side : {1.0, -1.0}) {
-      auto direction = std::make_shared<SimpleMatrix>(1, 2);
-      (*direction)(0, 0) = -side;
-      (*direction)(0, 1) = side;
-      auto offset = std::make_shared<SiconosVector>(1);
-      (*offset)(0) = side > 0 ? 0 : 1;
-      auto law = std::make_shared<NewtonImpactNSL>(scene.restitution);
-      auto relation = std::make_shared<LagrangianLinearTIR>(direction, offset);
-      system->link(std::make_shared<Interaction>(law, relation), masses);
+    for (unsigned i = 0; i < n; ++i) {
+      for (const double side : {1.0, -1.0}) {
+        auto direction = std::make_shared<SimpleMatrix>(1, 1 + n);
+        (*direction)(0, 0) = -side;
+        (*direction)(0, 1 + i) = side;
+        auto offset = std::make_shared<SiconosVector>(1);
+        (*offset)(0) = side > 0 ? 0 : scene.dampers[i].clearance;
+        auto law = std::make_shared<NewtonImpactNSL>(scene.dampers[i].restitution);
+        auto relation = std::make_shared<LagrangianLinearTIR>(direction, offset);
+        system->link(std::make_shared<Interaction>(law, relation), masses);
+      }
     }
   }
 };

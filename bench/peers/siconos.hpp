@@ -2,13 +2,19 @@
 // C++20.
 #pragma once
 
+#include <vector>
+
 #include "rows.hpp"
 
 namespace impact_damper::bench {
 
 // A scene with rigid walls, without forcing, that ends at a time; the names are Scene's.
 struct SiconosScene {
-  double mass_ratio, restitution, damping_ratio, x0, v0, y0, w0, until_time;
+  double damping_ratio, x0, v0, until_time;
+  struct Damper {
+    double mass_ratio, restitution, clearance, y0, w0;
+  };
+  std::vector<Damper> dampers;
 };
 
 Rows siconos_moreau_jean(const SiconosScene& scene, double time_step);
