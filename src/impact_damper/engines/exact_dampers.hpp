@@ -167,9 +167,10 @@ class ExactOfDampers {
     events_.clear();
     for (const Meeting<Real>& each : next_meeting_.find(masses_, primary, x_, v_, until, tracker_.search()))
       consider({each.index, each.time, each.wall}, until);
-    State<Real> end = motion.at(until);
+    const auto last = primary.at(until);
+    State<Real> end{last.x, last.v, Real(0), Real(0)};
     pass(
-        motion, until, end, Real(0), [&](const Real& t) { return primary.at(t); },
+        motion, until, end, Real(0), [&](const Real& t) { return t == until ? last : primary.at(t); },
         [](std::size_t, const Real&) { return std::array<Real, 2>{}; });
     take_events();
   }

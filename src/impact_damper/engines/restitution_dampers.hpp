@@ -97,11 +97,12 @@ class RestitutionOfDampers {
 
   // Lets a time pass in which nothing happens but in the primary mass's half cycles.
   void pass(const Motion& motion, const Real& until) {
-    State<Real> end = motion.at(until);
+    const auto last = motion.primary().at(until);
+    State<Real> end{last.x, last.v, Real(0), Real(0)};
     tracker_.pass(motion, until, end, Real(0), [&](const Real& t) { tell_sample(motion, t); });
     const Real t = tracker_.passed();
     if (t == 0) return;
-    const auto now = motion.primary().at(t);
+    const auto now = t == until ? last : motion.primary().at(t);
     masses_.fly(t, now.dx, now.dv);
     x_ = now.x;
     v_ = now.v;
@@ -244,17 +245,20 @@ class RestitutionOfDampers {
     // Who may join: all that go no farther from their walls than moves x by rounding. All of them lose energy
     // each time that one kicks the others off their walls.
     Real all_lose{0};
+    const Real moves_little = epsilon * (absolute(x_) + absolute(v_)) / 8, per_moves = 2 * a * mass_;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.away[i] != now.side) continue;
       const Real& u1 = masses_.u1[i];
       const Real square =
           masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
-      const Real moves = masses_.nu[i] * square / (2 * a * mass_);
-      if (!(8 * moves <= epsilon * (absolute(x_) + absolute(v_)))) continue;
+      if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves)) continue;  // most often, and no division
+      const Real moves = masses_.nu[i] * square / per_moves;
+      if (!(moves <= moves_little)) continue;
       all_lose += loses(i);
       if (masses_.held[i]) continue;
       chattering_.push_back({i, square_root(square), moves, Real(0)});
     }
+    if (chattering_.empty()) return false;
     // The duration (M17.6), and what ends too late for it.
     std::erase_if(chattering_, [&](Chattering& each) {
       const std::size_t i = each.index;

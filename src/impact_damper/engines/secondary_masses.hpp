@@ -107,7 +107,8 @@ struct Meeting {
 };
 
 // Searches for those that meet walls next. No queue is kept: after an event all bounds move with x', and
-// making them anew takes a square root or two for each mass.
+// making them anew takes a square root or two for each mass. Once one meeting is known, Lemma L2 up to its
+// time excludes most of the others whose bounds are earlier.
 template <class Real>
 class NextMeeting {
  public:
@@ -119,15 +120,27 @@ class NextMeeting {
                                       const Real& until, Search<Real>& search) {
     const Real span = until < search.span ? until : search.span;
     const Real most = primary.bound(2, span);
-    masses.find_lower_bounds(most, span, bounds_);
+    if (masses.size() > 1) {
+      masses.find_lower_bounds(most, span, bounds_);
+    } else {
+      bounds_.assign(1, masses.held[0] ? std::numeric_limits<Real>::infinity() : Real(0));
+    }
     found_.clear();
     Real earliest = until;
+    using Then = ThenOf<typename ForcedMotion<Real, Force>::Change>;
+    Then then{};
     for (;;) {
       const auto next = std::min_element(bounds_.begin(), bounds_.end());
       const std::size_t i = next - bounds_.begin();
       const Real late = 16 * std::numeric_limits<Real>::epsilon() * (earliest + 1);
       if (!(*next <= earliest + late)) break;
       *next = std::numeric_limits<Real>::infinity();
+      if (!found_.empty() && earliest <= span) {
+        if (then.time != earliest)
+          then = {earliest, primary.at(earliest), primary.beginning()[2], primary.beginning()[3],
+                  primary.bound(4, span)};
+        if (is_excluded(masses, i, then, most)) continue;
+      }
       const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
           primary, {masses.clearance[i]}, masses.start_of_flight(i, x, v));
       const Real horizon = earliest + late < until ? Real(earliest + late) : until;
@@ -143,6 +156,7 @@ class NextMeeting {
       found_.push_back({i, met->time, met->wall, slack < keeps ? slack : keeps});
       if (met->time < earliest) earliest = met->time;
     }
+    if (found_.size() < 2) return found_;
     // At one instant: what rounding cannot tell apart.
     std::erase_if(found_, [&](const Meeting<Real>& each) { return each.time - earliest > each.slack; });
     for (Meeting<Real>& each : found_) each.time = earliest;
@@ -151,6 +165,29 @@ class NextMeeting {
   }
 
  private:
+  // The primary mass at the time of a meeting, its second and third derivative now, and a bound on the
+  // fourth.
+  template <class Change>
+  struct ThenOf {
+    Real time{-1};
+    Change at{};
+    Real second{0}, third{0}, fourth{0};
+  };
+  // Whether the i-th is proved to fly on beyond that time, by more than rounding.
+  template <class Then>
+  static bool is_excluded(const SecondaryMasses<Real>& masses, std::size_t i, const Then& then,
+                          const Real& most) {
+    if (masses.rests(i)) return false;
+    const Real &away = masses.away[i], &u = masses.u[i], &u1 = masses.u1[i], &gap = masses.clearance[i],
+               &time = then.time;
+    const Real u_then = u + (u1 * time - away * then.at.dx), u1_then = u1 - away * then.at.dv;
+    const Real way = gap + (absolute(u1) + most * time / 2) * time;
+    const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * way;
+    return u_then > rounding && gap - u_then > rounding &&
+           stays_between<Real>({u, u1, -away * then.second, -away * then.third}, u_then, u1_then, time,
+                               then.fourth, gap);
+  }
+
   std::vector<Real> bounds_;
   std::vector<Meeting<Real>> found_;
 };

@@ -39,6 +39,7 @@ class ForcedMotion {
     Real dx, dv;  // x - x0 - v0 t and v - v0, without cancellation
   };
   Change at(const Real& t) const {
+    if (t == 0) return {x0_, v0_, Real(0), Real(0)};
     if constexpr (forced) {
       if (t <= reach()) {
         const SeriesAt<Real> by = departure(t);
