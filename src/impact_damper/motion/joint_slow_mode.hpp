@@ -1,6 +1,6 @@
 // Several secondary masses that press their walls together after the ringing of these has died away
-// (docs/mathematics.md, 17.5): x is one oscillator again, (M17.18), and each q a combination of x, x' and the
-// force, (M17.19).
+// (docs/mathematics.md, 17.5): x is one oscillator again, the slow factor of (M17.18), and each q a
+// combination of x, x' and the force, (M17.20).
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ class JointSlowMode {
     factor.p = 2 * zeta / factor.mass;
     factor.b = 1 / factor.mass;
     std::vector<OfWall> of_walls(walls.size());
-    for (int i = 0; i < 30; ++i) {  // (M17.18)
+    for (int i = 0; i < 30; ++i) {  // (M17.19)
       const Real p = factor.p, b = factor.b;
       Real r0{0}, r1{0};
       for (std::size_t k = 0; k < walls.size(); ++k) {
