@@ -412,10 +412,10 @@ def compare(page, text, run, scales):
         return shown
     if run["scene"]["force_amplitude"]:
         last = amplitudes[-(len(amplitudes) // 4):]
-        shown = [sum(last) / len(last)] + ([min(last), max(last)] if "lies between" in page.words["decay"] else [])
-        for value in shown:
+        means = [sum(last) / len(last)] + ([min(last), max(last)] if "lies between" in page.words["decay"] else [])
+        for value in means:
             holds(page, "decay", value * (scales[1] if scales else 1), "amplitude in the last quarter")
-        check(len(shown) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
+        check(len(means) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
         response(page, text, run, scales)
         return shown
     if amplitudes[0] == max(amplitudes[:2]):

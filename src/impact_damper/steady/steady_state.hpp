@@ -23,9 +23,17 @@ namespace impact_damper {
 // The state of a scene: x, x', y, y', or of several dampers y and y' of each, by number in the scene; the two
 // of State mean nothing then.
 struct SceneState : State<double> {
-  SceneState() : State<double>{} {}
-  SceneState(const State<double>& one) : State<double>(one) {}  // NOLINT(google-explicit-constructor)
-  SceneState(double of_x, double of_v, double of_y, double of_w) : State<double>{of_x, of_v, of_y, of_w} {}
+  SceneState() : SceneState(0, 0, 0, 0) {}
+  // A state of one damper is a state of a scene.
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  SceneState(const State<double>& one)  // cppcheck-suppress noExplicitConstructor
+      : SceneState(one.x, one.v, one.y, one.w) {}
+  SceneState(double of_x, double of_v, double of_y, double of_w) {
+    x = of_x;
+    v = of_v;
+    y = of_y;
+    w = of_w;
+  }
   std::vector<PlaceInCavity> dampers;
 };
 
