@@ -244,12 +244,12 @@ TEST_CASE("random lists run, keep their energy and are what they are looked at f
 
 TEST_CASE("a thousand dampers, their clearances over six decades") {
   Scene scene;
-  scene.until_time = 7;
+  scene.until_time = 2;
   for (int i = 0; i < 1000; ++i)
     scene.dampers.push_back(
         damper(2e-5, 0.2 + 0.0006 * i, std::pow(10, -3 + 0.006 * i), 20 + 0.02 * i, 0, 0));
   const Run run = simulate(scene, Exact{}, {.impacts = true, .energy = true});
   CHECK(run.stop_reason == StopReason::time);
   CHECK(std::abs(run.energy->residual) < 1e-12);
-  CHECK(run.impacts->time.size() > 5'000);
+  CHECK(run.impacts->time.size() > 2000);
 }
