@@ -4,7 +4,7 @@
 // While all secondary masses fly the primary mass is one oscillator, and who meets a wall next is found as
 // with rigid walls (secondary_masses.hpp). While one pushes its wall it moves as the one damper of exact.hpp
 // does, and the others fly on: most often a bound on x'' shows at once that none of them meets a wall
-// meanwhile (M17.15). While several push their walls, all move by power series (joint_contact.hpp), and once
+// meanwhile (M17.8). While several push their walls, all move by power series (joint_contact.hpp), and once
 // these walls ring no more, as one oscillator again (joint_slow_mode.hpp).
 #pragma once
 
@@ -167,7 +167,7 @@ class ExactOfDampers {
     events_.clear();
     for (const Meeting<Real>& each : next_meeting_.find(masses_, primary, x_, v_, until, tracker_.search()))
       consider({each.index, each.time, each.wall}, until);
-    const auto last = primary.at(until);
+    const auto last = next_meeting_.primary_at(primary, until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
     pass(
         motion, until, end, Real(0), [&](const Real& t) { return t == until ? last : primary.at(t); },
@@ -179,24 +179,43 @@ class ExactOfDampers {
   template <class InContact>
   void push_alone(const ContactModes<Real, Force>& modes) {
     const std::size_t i = in_contact_.front();
+    events_.clear();
+    if (!(masses_.u[i] < 0) && masses_.u1[i] > 0) {  // left together with others, but for rounding
+      events_.push_back({i, Real(0), {}});
+      return take_events();
+    }
     const Real q = masses_.away[i] * masses_.u[i], remaining = tracker_.remaining();
     const InContact contact(modes, tracker_.now(), {x_, v_, q, masses_.w(i)}, masses_.wall(i), Real(0));
+    if constexpr (std::is_same_v<InContact, Contact<Real, Force>>) {
+      // Where all others stay so far from their walls that a rounding of x' h is none of a distance (M17.15).
+      const auto end = contact.end_of_short_contact();
+      if (end && end->time < remaining &&
+          all_stay_off_walls(contact.second_of_x(end->time), end->time, Real(absolute(v_) * end->time))) {
+        events_.push_back({i, end->time, {}});
+        return pass_contact(contact, end->time, {end->x, end->v, Real(0), end->w}, end->change);
+      }
+    }
     const auto leaves = contact.leave(remaining, tracker_.search());
     Real until = leaves ? leaves->time : remaining;
-    events_.clear();
     if (leaves) events_.push_back({i, until, {}});
-    if (!nobody_meets(contact.second_of_x(until), until)) {
+    if (!all_stay_off_walls(contact.second_of_x(until), until, Real(0))) {
       for (std::size_t j = 0; j < masses_.size(); ++j)
         if (!masses_.held[j])
           if (const auto met = meets_beside(contact, j, until)) consider(*met, until);
     }
-    State<Real> end = leaves && until == leaves->time ? leaves->state : contact.at(until);
+    pass_contact(contact, until, leaves && until == leaves->time ? leaves->state : contact.at(until), {});
+  }
+  // Until the contact is in the state `end`. change: of x by then, where it is known.
+  template <class InContact>
+  void pass_contact(const InContact& contact, const Real& until, State<Real> end,
+                    const std::optional<ChangeOfX<Real>>& change) {
+    const std::size_t i = in_contact_.front();
     const auto state = [&](const Real& t) { return t == until ? end : contact.at(t); };
     const Work<Real> works = pass(
         contact, until, end, masses_.nu[i] * walls_[i].damping,
         [&](const Real& t) {
           const State<Real> now = state(t);
-          const auto [dx, dv] = change_of_x(contact, t, now.x, now.v);
+          const auto [dx, dv] = change && t == until ? *change : change_of_x(contact, t, now.x, now.v);
           return typename Piece::Change{now.x, now.v, dx, dv};
         },
         [&](std::size_t, const Real& t) {
@@ -208,8 +227,7 @@ class ExactOfDampers {
   }
   // What x differs by from a straight line, and x' from its beginning, while one pushes its wall.
   template <class InContact>
-  std::array<Real, 2> change_of_x(const InContact& contact, const Real& t, const Real& x,
-                                  const Real& v) const {
+  ChangeOfX<Real> change_of_x(const InContact& contact, const Real& t, const Real& x, const Real& v) const {
     if (const auto change = contact.change_of_x(t)) return *change;
     return {Real(x - (x_ + v_ * t)), Real(v - v_)};
   }
@@ -222,8 +240,8 @@ class ExactOfDampers {
       const auto change = contact.change_of_x(t);
       const auto near = [&](const Jet<Real>& of_x, bool whole) {
         const bool known = whole && change;
-        const Real dx = known ? (*change)[0] : Real(of_x.g - (x_ + v_ * t)),
-                   dv = known ? (*change)[1] : Real(of_x.g1 - v_);
+        const Real dx = known ? change->dx : Real(of_x.g - (x_ + v_ * t)),
+                   dv = known ? change->dv : Real(of_x.g1 - v_);
         return Jet<Real>{u + (u1 * t - away * dx), u1 - away * dv, -away * of_x.g2, of_x.third};
       };
       const auto far = [&](const Jet<Real>& gap) {
@@ -262,9 +280,9 @@ class ExactOfDampers {
       const Wall wall = masses_.wall(in_contact_[k]);
       if (!piece.stays(k, wall)) look_for(in_contact_[k], piece.depth(k, wall), {});
     }
-    if (const Real most = piece.second_of_x(); !nobody_meets(most, until)) {
+    if (const Real most = piece.second_of_x(); !all_stay_off_walls(most, until, Real(0))) {
       for (std::size_t j = 0; j < masses_.size(); ++j) {
-        if (masses_.held[j] || nobody_meets(most, until, j)) continue;
+        if (masses_.held[j] || masses_.stays_off_walls(j, most, until, Real(0))) continue;
         const Real &u = masses_.u[j], &u1 = masses_.u1[j], &away = masses_.away[j];
         look_for(j, piece.gap(u, u1, away), masses_.wall(j));
         look_for(j, piece.gap(masses_.clearance[j] - u, -u1, -away), opposite(masses_.wall(j)));
@@ -330,15 +348,11 @@ class ExactOfDampers {
     take_events();
   }
 
-  // Whether all that fly are proved to meet no wall within a time t in which |x''| <= most (M17.15).
-  bool nobody_meets(const Real& most, const Real& t) const {
+  // Whether (M17.8) proves it of all that fly.
+  bool all_stay_off_walls(const Real& most, const Real& t, const Real& margin) const {
     for (std::size_t j = 0; j < masses_.size(); ++j)
-      if (!masses_.held[j] && !nobody_meets(most, t, j)) return false;
+      if (!masses_.held[j] && !masses_.stays_off_walls(j, most, t, margin)) return false;
     return true;
-  }
-  bool nobody_meets(const Real& most, const Real& t, std::size_t j) const {
-    const Real way = masses_.u1[j] * t, off = most * t * t / 2, &u = masses_.u[j];
-    return u + (way < 0 ? way : Real(0)) > off && masses_.clearance[j] - u - (way > 0 ? way : Real(0)) > off;
   }
   // So a search finds what is not before an event but with it.
   static Real just_after(const Real& time) { return time * (1 + 8 * std::numeric_limits<Real>::epsilon()); }
@@ -462,7 +476,7 @@ class ExactOfDampers {
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene
   std::vector<PlaceInCavity> places_;
-  NextMeeting<Real> next_meeting_;
+  NextMeeting<Real, Force> next_meeting_;
   std::vector<Event> events_;
   std::vector<PushedWall<Real>> pushed_;
   Piece piece_;

@@ -81,8 +81,7 @@ class RestitutionOfDampers {
   const Driven<Real, Force>& oscillator() const { return joined_ ? *joined_ : system_.free; }
   Force force() const { return {system_.forcing.amplitude / mass_, system_.forcing.frequency}; }
 
-  // The next event and, if secondary masses meet their walls, which. Lower bounds on the times (M17.8) tell
-  // whom to search first, and when none of the others can be earlier.
+  // The next event and, if secondary masses meet their walls, which.
   Event next_event(Motion& motion) {
     const Real remaining = tracker_.remaining(), length = motion.primary().length();
     Event event{length < remaining ? length : remaining, false, {}};
@@ -97,13 +96,17 @@ class RestitutionOfDampers {
 
   // Lets a time pass in which nothing happens but in the primary mass's half cycles.
   void pass(const Motion& motion, const Real& until) {
-    const auto last = motion.primary().at(until);
+    const auto last = next_meeting_.primary_at(motion.primary(), until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
     tracker_.pass(motion, until, end, Real(0), [&](const Real& t) { tell_sample(motion, t); });
     const Real t = tracker_.passed();
     if (t == 0) return;
     const auto now = t == until ? last : motion.primary().at(t);
     masses_.fly(t, now.dx, now.dv);
+    if (some_rest_) {
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        if (masses_.held[i]) masses_.u[i] = masses_.u1[i] = 0;
+    }
     x_ = now.x;
     v_ = now.v;
     not_followed_ = 0;
@@ -247,11 +250,11 @@ class RestitutionOfDampers {
     Real all_lose{0};
     const Real moves_little = epsilon * (absolute(x_) + absolute(v_)) / 8, per_moves = 2 * a * mass_;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.away[i] != now.side) continue;
       const Real& u1 = masses_.u1[i];
       const Real square =
           masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
-      if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves)) continue;  // most often, and no division
+      // Most often too far, which is told without a division; first, as no processor foresees the side.
+      if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != now.side) continue;
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
       all_lose += loses(i);
@@ -331,19 +334,26 @@ class RestitutionOfDampers {
       all.duration += each.lasts;
       joining_.push_back(all);
     }
+    Real most{0};                     // a bound on |x''|
     std::optional<Real> others_meet;  // a wall, not before this time: who is left out
     for (std::size_t count = chattering_.size(); count > 0 && joining_[count].bounces; --count) {
       const Joining& all = joining_[count];
       if (limit_holds(all, a, ends_soon)) {
-        if (!others_meet) others_meet = first_meeting(2 * joining_.back().duration, count);
+        if (!others_meet) {
+          const Real until = 2 * joining_.back().duration, longest = tracker_.search().span;
+          const Real span = until < longest ? until : longest;
+          most = ForcedMotion<Real, Force>(oscillator(), force(), tracker_.now(), x_, v_).bound(2, span);
+          others_meet = first_meeting(most, span, count);
+        }
         if (*others_meet >= 2 * all.duration) {
           chattering_.resize(count);
           return all;
         }
       }
+      if (!others_meet) continue;
       // From now on this one is left out, too.
-      if (others_meet && bounds_[chattering_[count - 1].index] < *others_meet)
-        others_meet = bounds_[chattering_[count - 1].index];
+      const Real time = masses_.lower_bound_of_meeting(chattering_[count - 1].index, most);
+      if (time < *others_meet) others_meet = time;
     }
     return std::nullopt;
   }
@@ -358,17 +368,18 @@ class RestitutionOfDampers {
     return !may_turn || 2 * all.duration <= epsilon * tracker_.now();
   }
   Real loses(std::size_t i) const { return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]); }
-  // Before which time, `until` at most, nobody but the first of chattering_ can meet a wall (M17.8).
-  Real first_meeting(const Real& until, std::size_t first) {
-    const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
-    const Real span = until < tracker_.search().span ? until : tracker_.search().span;
-    masses_.find_lower_bounds(motion.bound(2, span), span, bounds_);
-    std::vector<Real>& bounds = others_bounds_;
-    bounds = bounds_;
-    for (std::size_t k = 0; k < first; ++k)
-      bounds[chattering_[k].index] = std::numeric_limits<Real>::infinity();
-    const Real least = *std::min_element(bounds.begin(), bounds.end());
-    return least < span ? least : span;
+  // Before which time, `span` at most, nobody who flies can meet a wall but the first of chattering_, while
+  // |x''| <= most.
+  Real first_meeting(const Real& most, const Real& span, std::size_t first) {
+    joins_.assign(masses_.size(), false);
+    for (std::size_t k = 0; k < first; ++k) joins_[chattering_[k].index] = true;
+    Real least = span;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (joins_[i] || masses_.held[i]) continue;
+      const Real time = masses_.lower_bound_of_meeting(i, most);
+      if (time < least) least = time;
+    }
+    return least;
   }
 
   Energy energy_now() const {
@@ -395,12 +406,11 @@ class RestitutionOfDampers {
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene
   std::vector<PlaceInCavity> places_;
-  NextMeeting<Real> next_meeting_;
-  std::vector<Real> bounds_;
+  NextMeeting<Real, Force> next_meeting_;
   std::vector<MassAtWall<Real>> at_walls_, told_;
   std::vector<Chattering> chattering_;
   std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them
-  std::vector<Real> others_bounds_;
+  std::vector<char> joins_;
 };
 
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with and in which each secondary

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,48 +47,73 @@ struct SecondaryMasses {
     return double(Real(nu[i] * z1 * z1 / 2));
   }
 
-  // Those that fly do so for a time t in which x departs from its straight line by dx, and x' changes by dv.
+  // All fly for a time t in which x departs from its straight line by dx, and x' changes by dv. Those that
+  // are held do not: theirs is then set anew. To leave them out would take a branch that no processor
+  // foresees.
   void fly(const Real& t, const Real& dx, const Real& dv) {
     for (std::size_t i = 0; i < size(); ++i) {
-      if (held[i]) continue;
       u[i] += u1[i] * t - away[i] * dx;
       u1[i] -= away[i] * dv;
     }
   }
   // One arrives at a wall.
   void arrive(std::size_t i, Wall where) {
-    if (where != wall(i)) {
-      away[i] = -away[i];
-      u1[i] = -u1[i];
-    }
+    const Real before = away[i];
+    away[i] = Real(1 - 2 * int(where == Wall::right));
+    u1[i] *= away[i] * before;
     if (u1[i] > 0) u1[i] = 0;  // grazed, by rounding
     u[i] = 0;
   }
   FlightStart<Real> start_of_flight(std::size_t i, const Real& x, const Real& v) const {
-    const Real wall = away[i] > 0 ? Real(0) : clearance[i];
+    const Real wall = (1 - away[i]) / 2 * clearance[i];
     return {{x, v, wall + away[i] * u[i], w(i)}, wall, away[i], u[i]};
   }
-  // Times before which no wall is met if |x''| <= most (M17.8), which holds for a time `span`.
-  void find_lower_bounds(const Real& most, const Real& span, std::vector<Real>& bounds) const {
-    bounds.resize(size());
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-      // Rounding may leave a mass a little beyond a wall that it has just left.
-      const Real &speed = u1[i], near = u[i] > 0 ? u[i] : Real(0), beyond = clearance[i] - near,
-                 far = beyond > 0 ? beyond : Real(0);
-      // The roots of near + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
-      const Real near_root = square_root(Real(speed * speed + 2 * most * near)),
-                 far_root = square_root(Real(speed * speed + 2 * most * far));
-      const Real to_home = near_root - speed, to_far = far_root + speed;
-      const Real home = speed > 0     ? Real((speed + near_root) / most)
-                        : to_home > 0 ? Real(2 * near / to_home)
-                                      : Real(0);
-      const Real across = speed < 0    ? Real((far_root - speed) / most)
-                          : to_far > 0 ? Real(2 * far / to_far)
-                                       : Real(0);
-      const Real first = home < across ? home : across;
-      // What lies after the span is not excluded.
-      bounds[i] = held[i] ? std::numeric_limits<Real>::infinity() : first < span ? first : span;
+  // Whether the i-th is proved to meet no wall within a time t in which |x''| <= most, nor to come nearer to
+  // one than `margin` (M17.8).
+  bool stays_off_walls(std::size_t i, const Real& most, const Real& t, const Real& margin) const {
+    const Real way = u1[i] * t, off = most * t * t / 2 + margin;
+    return u[i] + (way < 0 ? way : Real(0)) > off && clearance[i] - u[i] - (way > 0 ? way : Real(0)) > off;
+  }
+  // A time before which the i-th, which flies, meets no wall if |x''| <= most: the smaller root of (M17.8).
+  Real lower_bound_of_meeting(std::size_t i, const Real& most) const {
+    // Rounding may leave a mass a little beyond a wall that it has just left.
+    const Real &speed = u1[i], near = u[i] > 0 ? u[i] : Real(0), beyond = clearance[i] - near,
+               far = beyond > 0 ? beyond : Real(0);
+    // The roots of near + u' t - most t^2/2, and of far - u' t - most t^2/2, without cancellation.
+    const Real near_root = square_root(Real(speed * speed + 2 * most * near)),
+               far_root = square_root(Real(speed * speed + 2 * most * far));
+    const Real to_home = near_root - speed, to_far = far_root + speed;
+    const Real home = speed > 0     ? Real((speed + near_root) / most)
+                      : to_home > 0 ? Real(2 * near / to_home)
+                                    : Real(0);
+    const Real across = speed < 0    ? Real((far_root - speed) / most)
+                        : to_far > 0 ? Real(2 * far / to_far)
+                                     : Real(0);
+    return home < across ? home : across;
+  }
+  // Which of those that fly is estimated to meet a wall first, as if x'' stayed as it is. `times`: room for
+  // all.
+  std::size_t likely_first(const Real& second_of_x, std::vector<Real>& times) const {
+    times.resize(size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      // Without branches, which no processor would foresee.
+      const Real speed = absolute(u1[i]), rises = one_if_positive(u1[i]);
+      const Real ahead = u[i] + rises * (clearance[i] - 2 * u[i]),
+                 push = (1 - 2 * rises) * (away[i] * second_of_x);
+      // To the wall ahead, or where it turns before, back to the other one.
+      const Real square = speed * speed + 2 * push * ahead;
+      const Real arrives = one_if_positive(square), turns = 1 - arrives;
+      const Real sum = speed + square_root(Real(square - turns * (2 * push * clearance[i])));
+      times[i] = (arrives * (2 * ahead) + turns * sum) / (arrives * sum - turns * push);
     }
+    std::size_t first = 0;
+    Real earliest = std::numeric_limits<Real>::infinity();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (held[i] || !(times[i] < earliest)) continue;
+      first = i;
+      earliest = times[i];
+    }
+    return first;
   }
 
   std::vector<std::int32_t> number;  // in the scene
@@ -103,93 +129,110 @@ struct Meeting {
   std::size_t index;
   Real time;
   Wall wall;
-  Real slack;  // how much later than another it may seem to be and still be at the same time
+  Real speed;  // relative to the wall
 };
 
-// Searches for those that meet walls next. No queue is kept: after an event all bounds move with x', and
-// making them anew takes a square root or two for each mass. Once one meeting is known, Lemma L2 up to its
-// time excludes most of the others whose bounds are earlier.
-template <class Real>
+// Searches for those that meet walls next. No queue is kept: an impact moves the estimates of all. The one
+// that is estimated to be the first is searched first. With its time known, (M17.8) and Lemma L2 exclude most
+// of the others.
+template <class Real, class Force>
 class NextMeeting {
  public:
+  using Change = typename ForcedMotion<Real, Force>::Change;
+
   // All that meet walls at one instant (17.2), the first before `until`, from now on, while x moves as
   // `primary` tells; in the order of the masses. Empty: nobody does.
-  template <class Force>
   std::span<const Meeting<Real>> find(const SecondaryMasses<Real>& masses,
                                       const ForcedMotion<Real, Force>& primary, const Real& x, const Real& v,
                                       const Real& until, Search<Real>& search) {
-    const Real span = until < search.span ? until : search.span;
-    const Real most = primary.bound(2, span);
-    if (masses.size() > 1) {
-      masses.find_lower_bounds(most, span, bounds_);
-    } else {
-      bounds_.assign(1, masses.held[0] ? std::numeric_limits<Real>::infinity() : Real(0));
-    }
     found_.clear();
-    Real earliest = until;
-    using Then = ThenOf<typename ForcedMotion<Real, Force>::Change>;
-    Then then{};
-    for (;;) {
-      const auto next = std::min_element(bounds_.begin(), bounds_.end());
-      const std::size_t i = next - bounds_.begin();
-      const Real late = 16 * std::numeric_limits<Real>::epsilon() * (earliest + 1);
-      if (!(*next <= earliest + late)) break;
-      *next = std::numeric_limits<Real>::infinity();
-      if (!found_.empty() && earliest <= span) {
-        if (then.time != earliest)
-          then = {earliest, primary.at(earliest), primary.beginning()[2], primary.beginning()[3],
-                  primary.bound(4, span)};
-        if (is_excluded(masses, i, then, most)) continue;
-      }
-      const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
-          primary, {masses.clearance[i]}, masses.start_of_flight(i, x, v));
-      const Real horizon = earliest + late < until ? Real(earliest + late) : until;
-      const auto met =
-          masses.rests(i) ? flight.released_meets_wall(horizon, search) : flight.next_wall(horizon, search);
-      if (!met) continue;
-      // What rounding leaves of its distance from that wall.
-      const Real from = met->wall == masses.wall(i) ? masses.u[i] : masses.clearance[i];
-      const Real &t = met->time, speed = absolute(met->state.w);
-      const Real way = absolute(from) + (absolute(masses.u1[i]) + most * t / 2) * t;
-      // But no longer than it keeps its speed.
-      const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed, keeps = speed / (4 * most);
-      found_.push_back({i, met->time, met->wall, slack < keeps ? slack : keeps});
-      if (met->time < earliest) earliest = met->time;
+    earliest_ = until;
+    at_earliest_.reset();
+    bounds_.reset();
+    if (masses.size() == 1) {
+      if (!masses.held[0]) look_for(masses, 0, primary, x, v, until, search);
+      return found_;
     }
+    const std::size_t likely = masses.likely_first(primary.beginning()[2], estimates_);
+    if (!masses.held[likely]) look_for(masses, likely, primary, x, v, until, search);
+    for (std::size_t i = 0; i < masses.size(); ++i)
+      if (i != likely && !masses.held[i] && !is_excluded(masses, i, primary, search))
+        look_for(masses, i, primary, x, v, until, search);
     if (found_.size() < 2) return found_;
     // At one instant: what rounding cannot tell apart.
-    std::erase_if(found_, [&](const Meeting<Real>& each) { return each.time - earliest > each.slack; });
-    for (Meeting<Real>& each : found_) each.time = earliest;
+    std::erase_if(found_, [&](const Meeting<Real>& each) {
+      return each.time - earliest_ > slack_of(masses, each, primary, search);
+    });
+    for (Meeting<Real>& each : found_) each.time = earliest_;
     std::ranges::sort(found_, {}, &Meeting<Real>::index);
     return found_;
   }
-
- private:
-  // The primary mass at the time of a meeting, its second and third derivative now, and a bound on the
-  // fourth.
-  template <class Change>
-  struct ThenOf {
-    Real time{-1};
-    Change at{};
-    Real second{0}, third{0}, fourth{0};
-  };
-  // Whether the i-th is proved to fly on beyond that time, by more than rounding.
-  template <class Then>
-  static bool is_excluded(const SecondaryMasses<Real>& masses, std::size_t i, const Then& then,
-                          const Real& most) {
-    if (masses.rests(i)) return false;
-    const Real &away = masses.away[i], &u = masses.u[i], &u1 = masses.u1[i], &gap = masses.clearance[i],
-               &time = then.time;
-    const Real u_then = u + (u1 * time - away * then.at.dx), u1_then = u1 - away * then.at.dv;
-    const Real way = gap + (absolute(u1) + most * time / 2) * time;
-    const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * way;
-    return u_then > rounding && gap - u_then > rounding &&
-           stays_between<Real>({u, u1, -away * then.second, -away * then.third}, u_then, u1_then, time,
-                               then.fourth, gap);
+  // The primary mass at a time: where the last search found a meeting then, what it knows of it.
+  Change primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
+    return at_earliest_ && t == earliest_ ? *at_earliest_ : primary.at(t);
   }
 
-  std::vector<Real> bounds_;
+ private:
+  void look_for(const SecondaryMasses<Real>& masses, std::size_t i, const ForcedMotion<Real, Force>& primary,
+                const Real& x, const Real& v, const Real& until, Search<Real>& search) {
+    const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
+        primary, {masses.clearance[i]}, masses.start_of_flight(i, x, v));
+    const Real late = earliest_ + 16 * std::numeric_limits<Real>::epsilon() * (earliest_ + 1);
+    const Real horizon = late < until ? late : until;
+    const auto met =
+        masses.rests(i) ? flight.released_meets_wall(horizon, search) : flight.next_wall(horizon, search);
+    if (!met) return;
+    found_.push_back({i, met->time, met->wall, absolute(met->state.w)});
+    if (!(met->time < earliest_)) return;
+    earliest_ = met->time;
+    at_earliest_ = {met->state.x, met->state.v, met->change->dx, met->change->dv};
+  }
+  // How much later than another a meeting may seem to be and still be at the same time: from what rounding
+  // leaves of the mass's distance from that wall; but no longer than it keeps its speed.
+  Real slack_of(const SecondaryMasses<Real>& masses, const Meeting<Real>& met,
+                const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
+    const Real from = met.wall == masses.wall(met.index) ? masses.u[met.index] : masses.clearance[met.index];
+    const Real &t = met.time, &most = bounds(primary, search).second;
+    const Real way = absolute(from) + (absolute(masses.u1[met.index]) + most * t / 2) * t;
+    const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / met.speed,
+               keeps = met.speed / (4 * most);
+    return slack < keeps ? slack : keeps;
+  }
+  // Whether the i-th is proved to fly on beyond the earliest meeting that is known, by more than rounding.
+  bool is_excluded(const SecondaryMasses<Real>& masses, std::size_t i,
+                   const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
+    if (masses.rests(i)) return false;
+    const Real &time = earliest_, &most = bounds(primary, search).second;
+    if (!(time <= bounds_->span)) return false;
+    const Real &u = masses.u[i], &u1 = masses.u1[i], &gap = masses.clearance[i], &away = masses.away[i];
+    const Real way = gap + (absolute(u1) + most * time / 2) * time;
+    const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * way;
+    if (masses.stays_off_walls(i, most, time, rounding)) return true;
+    if (!at_earliest_) at_earliest_ = primary.at(time);
+    const Real u_then = u + (u1 * time - away * at_earliest_->dx), u1_then = u1 - away * at_earliest_->dv;
+    return u_then > rounding && gap - u_then > rounding &&
+           stays_between<Real>({u, u1, -away * bounds_->second_now, -away * bounds_->third_now}, u_then,
+                               u1_then, time, bounds_->fourth, gap);
+  }
+  // On |x''| and |x''''|, for a time `span`, which does not depend on where the run ends; and x'' and x''' at
+  // the beginning.
+  struct Bounds {
+    Real span, second, fourth, second_now, third_now;
+  };
+  const Bounds& bounds(const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
+    if (!bounds_) {
+      const Real span = primary.length() < search.span ? primary.length() : search.span;
+      const auto beginning = primary.beginning();
+      bounds_ = {span, primary.bound(2, span), primary.bound(4, span), beginning[2], beginning[3]};
+    }
+    return *bounds_;
+  }
+
+  std::vector<Real> estimates_;
   std::vector<Meeting<Real>> found_;
+  Real earliest_{0};
+  std::optional<Change> at_earliest_;
+  std::optional<Bounds> bounds_;
 };
 
 }  // namespace impact_damper

@@ -86,6 +86,16 @@ Real absolute(const Real& x) {
   }
 }
 
+// 1 where x > 0, 0 where x < 0, and one of them where x is zero or not a number.
+template <class Real>
+Real one_if_positive(const Real& x) {
+  if constexpr (std::is_floating_point_v<Real>) {
+    return (1 + std::copysign(Real(1), x)) / 2;  // without a branch, as above
+  } else {
+    return x > 0 ? Real(1) : Real(0);
+  }
+}
+
 // The least whole number not below x, without a call.
 inline double whole_above(double x) {
   if (!(absolute(x) < 0x1p52)) return x;

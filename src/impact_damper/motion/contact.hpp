@@ -50,6 +50,13 @@ class Contact {
     SearchCounter<Real>::found(FoundBy::contact_search);
     return search_leave(horizon, search);
   }
+  // The same where the short-contact map tells it, and the change of x.
+  auto end_of_short_contact() const {
+    using Result = typename Map::EndAndChange;
+    return system_.short_contact && start_.y == wall_
+               ? system_.short_contact.template operator()<Result>(start_of_map())
+               : std::nullopt;
+  }
   // The same, certified step by step.
   std::optional<WallEvent<Real>> search_leave(const Real& horizon, Search<Real>& search) const {
     // A mass at rest may be pressed against the wall by q''' alone.
@@ -82,13 +89,13 @@ class Contact {
     return {start_.x + (start_.v * t + (by_slow.x + by_fast.x)), start_.v + (by_slow.v + by_fast.v),
             q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
   }
-  // What x differs by from x0 + x0' t, and x' from x0', with digits of their own.
-  std::optional<std::array<Real, 2>> change_of_x(const Real& t) const {
+  // With digits of its own.
+  std::optional<ChangeOfX<Real>> change_of_x(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
     const bool is_short = is_short_time(t);
     const ContactState<Real> by_slow = change(c.slow, parts().slow, c.drive_slow, t, is_short),
                              by_fast = change(c.fast, parts().fast, c.drive_fast, t, is_short);
-    return std::array<Real, 2>{by_slow.x + by_fast.x, by_slow.v + by_fast.v};
+    return ChangeOfX<Real>{by_slow.x + by_fast.x, by_slow.v + by_fast.v};
   }
   // The two parts of x, x', q and q'.
   ContactState<Real> slow_at(const Real& t) const {

@@ -31,7 +31,7 @@ class ContactWithoutModes {
     const Vector s = exponential_(s_, t);
     return {s[0], s[1], wall_ + s[2], s[3]};
   }
-  std::optional<std::array<Real, 2>> change_of_x(const Real&) const { return {}; }  // as in contact.hpp
+  std::optional<ChangeOfX<Real>> change_of_x(const Real&) const { return {}; }  // as in contact.hpp
   Real overlap(const Real& t) const { return absolute(exponential_(s_, t)[2]); }
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.

@@ -90,9 +90,10 @@ class Flight {
                                       search, resolution());
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
-    State<Real> state = at(met->time);
+    const Place then = from_wall(met->time);
+    State<Real> state = met->time == 0 ? start_ : state_of(then);
     state.y = wall == Wall::left ? Real(0) : gap();
-    return WallEvent<Real>{met->time, wall, state};
+    return WallEvent<Real>{met->time, wall, state, then.change};
   }
   // The first time in [from, until) at which sign times y' falls through zero.
   std::optional<Real> turn_of_y(const Real& sign, const Real& from, const Real& until,
@@ -164,12 +165,13 @@ class Flight {
   // The place of the secondary mass as its distance u from the wall.
   struct Place {
     Real x, v, u, u1;
+    ChangeOfX<Real> change;  // of x
   };
   [[gnu::always_inline]] Place from_wall(const Real& t) const {
     const Real u1 = away_ * start_.w;
-    if (t == 0) return {start_.x, start_.v, u_, u1};
+    if (t == 0) return {start_.x, start_.v, u_, u1, {Real(0), Real(0)}};
     const auto now = primary_.at(t);
-    return {now.x, now.v, u_ + (u1 * t - away_ * now.dx), u1 - away_ * now.dv};
+    return {now.x, now.v, u_ + (u1 * t - away_ * now.dx), u1 - away_ * now.dv, {now.dx, now.dv}};
   }
   State<Real> state_of(const Place& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
@@ -257,8 +259,8 @@ class Flight {
       const Real level = predicted.across ? gap() : Real(0), u1 = u[1] + by_u1;
       if (!stays_between_walls(u, Real(0), {level, u1}, h, fourth, 2)) return {};
       SearchCounter<Real>::found(FoundBy::series);
-      return PredictedWall{
-          met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u), start_.v - away_ * by_u1, u1)};
+      return PredictedWall{met(predicted.across, h, start_.x + (start_.v * h - away_ * by_u),
+                               start_.v - away_ * by_u1, u1, {-away_ * by_u, -away_ * by_u1})};
     };
     const auto usable = [&](const Prediction<Real>& predicted) {
       return predicted.exact && predicted.time > 0 && predicted.time < reach;
@@ -285,9 +287,10 @@ class Flight {
     if (usable(predicted)) return first(predicted);
     return {};
   }
-  WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1) const {
+  WallEvent<Real> met(bool across, const Real& time, const Real& x, const Real& v, const Real& u1,
+                      const ChangeOfX<Real>& change) const {
     const bool left = across == (away_ < 0);
-    return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : gap(), away_ * u1}};
+    return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : gap(), away_ * u1}, change};
   }
   // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
   // not succeed.
@@ -299,12 +302,12 @@ class Flight {
       const auto u = derivatives_of_u<10>(here, begin);
       const Real fourth = primary_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
       const auto reached = [&](bool across, const Real& h, const Real& x1, const Real& v1, const Real& u1,
-                               FoundBy way) -> std::optional<WallEvent<Real>> {
+                               const ChangeOfX<Real>& change, FoundBy way) -> std::optional<WallEvent<Real>> {
         const Real level = across ? gap() : Real(0);
         // A correction may lead beyond the span for which `fourth` holds.
         if (!(h <= span) || !stays_between_walls(u, begin, {level, u1}, h, fourth, 2)) return {};
         SearchCounter<Real>::found(way);
-        return met(across, begin + h, x1, v1, u1);
+        return met(across, begin + h, x1, v1, u1, change);
       };
 
       const Prediction<Real> predicted = predict_impact(
@@ -316,8 +319,9 @@ class Flight {
       if (predicted.exact) {
         // x has departed from its own straight line by -away times as much.
         const auto& [by_u, by_u1] = predicted.gained;
+        const auto& [dx, dv] = here.change;
         return reached(predicted.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
-                       here.u1 + by_u1, FoundBy::series);
+                       here.u1 + by_u1, {dx + (dv * h - away_ * by_u), dv - away_ * by_u1}, FoundBy::series);
       }
       Place there;
       for (int correction = 0;; ++correction) {
@@ -327,8 +331,11 @@ class Flight {
         const auto [shift, newton, close] = time_to_level(across ? gap() : Real(0), u_there, h, fourth);
         if (close && absolute(shift) < h / 4 && moves_x_by_series(u_there, shift, fourth)) {
           const auto [x1, v1] = shifted<Real>(-away_ * there.x, -away_ * there.v, u_there, shift);
+          const auto [dx, dv] =
+              shifted<Real>(-away_ * there.change.dx, -away_ * there.change.dv, u_there, shift);
           return reached(across, h + shift, -away_ * x1, -away_ * v1,
-                         shifted(there.u, there.u1, u_there, shift).u1, FoundBy::correction);
+                         shifted(there.u, there.u1, u_there, shift).u1, {-away_ * dx, -away_ * dv},
+                         FoundBy::correction);
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= gap());
         if (correction == 5 || !(near || beyond)) break;

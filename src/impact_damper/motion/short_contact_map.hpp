@@ -20,6 +20,7 @@
 #include "impact_damper/math/power_series.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 #include "impact_damper/motion/short_contact_table.hpp"
+#include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
 
@@ -107,22 +108,28 @@ class ShortContactMap {
   struct End {
     Real time, x, v, w;
   };
-  [[gnu::always_inline]] std::optional<End> operator()(const Start& start) const {
+  // With the change of x (M17.15), of which dx errs by a rounding of x' times the time.
+  struct EndAndChange {
+    Real time, x, v, w;
+    ChangeOfX<Real> change;
+  };
+  template <class Result = End>
+  [[gnu::always_inline]] std::optional<Result> operator()(const Start& start) const {
     const auto q = overlap_after<few>(start);
     const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
                b = t * t * (q[1][1] * over);
     Real s = t * (1 - a + (2 * a * a - b));
     if (absolute(s) < few_.s)
-      if (const auto end = end_within(start, q, s, few_)) return end;
+      if (const auto end = end_within<Result>(start, q, s, few_)) return end;
     if (!(absolute(s) < most_.s)) return {};
     // A few terms bring s near enough to tell how many it takes.
     for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
     if (absolute(s) < more_.s)
-      if (const auto end = end_within(start, overlap_after<more>(start), s, more_)) return end;
+      if (const auto end = end_within<Result>(start, overlap_after<more>(start), s, more_)) return end;
     if (absolute(s) < many_.s)
-      if (const auto end = end_within(start, overlap_after<many>(start), s, many_)) return end;
+      if (const auto end = end_within<Result>(start, overlap_after<many>(start), s, many_)) return end;
     if (!(absolute(s) < most_.s)) return {};
-    return end_within(start, overlap_after<most>(start), s, most_);
+    return end_within<Result>(start, overlap_after<most>(start), s, most_);
   }
   // Bounds on |x''| and |x'''| during the contact.
   Real second_of_x(const Start& start) const { return bound(second_of_x_, start); }
@@ -200,9 +207,9 @@ class ShortContactMap {
     const Real over = 1 / w, newton = -depth * over, bend = newton * (w1 * over) / 2;
     return {newton * (1 - bend), bend, w, w1};
   }
-  template <std::size_t pairs>
-  std::optional<End> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
-                                const Reach& reach) const {
+  template <class Result, std::size_t pairs>
+  std::optional<Result> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
+                                   const Reach& reach) const {
     const Real &x = start[0], &v = start[1], &w = start[2];
     Step step;
     for (int i = 0;; ++i) {
@@ -235,10 +242,16 @@ class ShortContactMap {
     if (!proved) return {};
     const SeriesAt<Real> change = sum<Real>(combine<pairs>(centre_, start), s);
     const Real centre_v = v + share_ * w;
-    const Real end_x = x + (centre_v * whole + (change.u + rest * change.u1));
-    const Real v_before = v + (share_ * (w - end_w) + change.u1);
-    if constexpr (columns == 5) return End{time, end_x, v_before + rest * change.u2, end_w};
-    return End{time, end_x, v_before - rest * ((1 - share_) * (2 * zeta_ * v_before + end_x)), end_w};
+    const Real moved = change.u + rest * change.u1, gained = share_ * (w - end_w) + change.u1;
+    const Real end_x = x + (centre_v * whole + moved), v_before = v + gained;
+    const Real by_rest =
+        columns == 5 ? Real(rest * change.u2) : Real(-rest * ((1 - share_) * (2 * zeta_ * v_before + end_x)));
+    if constexpr (std::is_same_v<Result, EndAndChange>) {
+      const Real dx = share_ * w * whole + (moved - v * half_period_);
+      return Result{time, end_x, v_before + by_rest, end_w, {dx, gained + by_rest}};
+    } else {
+      return Result{time, end_x, v_before + by_rest, end_w};
+    }
   }
   static Real bound(const Start& row, const Start& start) {
     Real sum = row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);

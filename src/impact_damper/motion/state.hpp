@@ -1,6 +1,8 @@
 // The state of both masses, and what ends a motion.
 #pragma once
 
+#include <optional>
+
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -17,12 +19,19 @@ State<Real> copied(const State<Real>& s) {
   return {s.x, s.v, s.y, s.w};
 }
 
+// x - (x0 + x'0 t) and x' - x'0, since the beginning of a motion.
+template <class Real>
+struct ChangeOfX {
+  Real dx, dv;
+};
+
 // Where and when the secondary mass meets a wall, or leaves it.
 template <class Real>
 struct WallEvent {
   Real time;
   Wall wall;
   State<Real> state;
+  std::optional<ChangeOfX<Real>> change{};  // of a flight
 };
 
 }  // namespace impact_damper
