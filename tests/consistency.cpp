@@ -279,6 +279,8 @@ const std::vector<Alteration> of_several_dampers{
        run.impacts.reset();
        run.energy->dampers[1].impact_loss *= 1.01;
      }},
+    {"/energy/contact_loss", "a loss in a damper's contact that is not in that of all",
+     [](Run& run) { run.energy->dampers[0].contact_loss = 1e-3; }},
     {"/energy/dampers/0/bounce_down_loss", "a loss in no bounce-down",
      [](Run& run) { run.energy->dampers[0].bounce_down_loss = 1e-3; }},
     {"/energy/bounce_down_loss", "a loss in bounce-downs of one damper that is not in that of all",

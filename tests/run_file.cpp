@@ -596,7 +596,7 @@ Run run_of_several() {
   run.contacts->damper = {1, 0};
   run.history->dampers = {{{0.5, 0.75}, {1, -1}}, {{0, 0.125}, {2, -0.0}}};
   run.history->y = run.history->w = {};
-  run.energy->dampers = {{1, 2, 3, 4, 5}, {1.5, 2.5, 3.5, 0, 4.5}};
+  run.energy->dampers = {{1, 2, 3, 0.5, 4, 5}, {1.5, 2.5, 3.5, -0.25, 0, 4.5}};
   return run;
 }
 
@@ -637,8 +637,8 @@ TEST_CASE("a run file of several dampers numbers them from 1 and has columns of 
   holds(R"(
   "residual": -1e-16,
   "dampers": [
-   {"initial_kinetic": 1, "final_kinetic": 2, "impact_loss": 3, "bounce_down_loss": 5, "bounce_downs": 4},
-   {"initial_kinetic": 1.5, "final_kinetic": 2.5, "impact_loss": 3.5, "bounce_down_loss": 4.5, "bounce_downs": 0}
+   {"initial_kinetic": 1, "final_kinetic": 2, "impact_loss": 3, "contact_loss": 0.5, "bounce_down_loss": 5, "bounce_downs": 4},
+   {"initial_kinetic": 1.5, "final_kinetic": 2.5, "impact_loss": 3.5, "contact_loss": -0.25, "bounce_down_loss": 4.5, "bounce_downs": 0}
   ]
  },)");
   holds(R"(

@@ -84,6 +84,7 @@ struct Energy {
 struct DamperEnergy {
   double initial_kinetic = 0, final_kinetic = 0;  // nu (v + w)^2 / 2
   double impact_loss = 0;                         // of all its impacts
+  double contact_loss = 0;                        // compliant walls: in contacts that no impact began
   std::int64_t bounce_downs = 0;                  // accumulation points jumped to
   double bounce_down_loss = 0;                    // in the impacts jumped over
 };
@@ -93,10 +94,11 @@ struct DamperEnergyField {
   std::string_view name;
   double DamperEnergy::*member;
 };
-inline constexpr std::array<DamperEnergyField, 4> damper_energy_fields{
+inline constexpr std::array<DamperEnergyField, 5> damper_energy_fields{
     {{"initial_kinetic", &DamperEnergy::initial_kinetic},
      {"final_kinetic", &DamperEnergy::final_kinetic},
      {"impact_loss", &DamperEnergy::impact_loss},
+     {"contact_loss", &DamperEnergy::contact_loss},
      {"bounce_down_loss", &DamperEnergy::bounce_down_loss}}};
 
 // initial.total() + forcing_work

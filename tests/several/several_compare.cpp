@@ -51,7 +51,7 @@ Answer answer_of(const Run& run) {
   for (const DamperEnergy& each : energy.dampers) {
     answer.damper_initial.push_back(each.initial_kinetic);
     answer.damper_final.push_back(each.final_kinetic);
-    answer.damper_loss.push_back(Quad(each.impact_loss) + each.bounce_down_loss);
+    answer.damper_loss.push_back(Quad(each.impact_loss) + each.contact_loss + each.bounce_down_loss);
   }
   answer.viscous_work = energy.viscous_work, answer.forcing_work = energy.forcing_work;
   return answer;
@@ -583,7 +583,7 @@ Run run_of_oracle(const Scene& scene, Fault fault, Walls walls) {
   energy.viscous_work = double(answer.viscous_work), energy.forcing_work = double(answer.forcing_work);
   for (std::size_t n = 0; n < count; ++n)
     energy.dampers.push_back({double(answer.damper_initial[n]), double(answer.damper_final[n]),
-                              double(answer.damper_loss[n]), 0, 0});
+                              double(answer.damper_loss[n]), 0, 0, 0});
   return run;
 }
 

@@ -481,7 +481,7 @@ class Integrator {
       if (!each.in_contact || each.damping == 0) continue;
       const Polynomial speed = derivative(each.path);
       const Quad loss = each.nu * each.damping * integral_of_product(speed, speed, end) / h_;
-      if (each.impact) answer_.damper_loss[i] += loss;
+      answer_.damper_loss[i] += loss;
       (each.impact ? answer_.impacts[*each.impact].loss : answer_.contact_loss) += loss;
     }
     if (zeta_ != 0) answer_.viscous_work += 2 * zeta_ * h_ * integral_of_product(pv_, pv_, end);

@@ -551,11 +551,12 @@ class Examination {
       if (run_.impacts) losses[damper_of(run_.impacts->damper, i)] += balance.impact_loss[i];
     }
     const double rounded = rounding * (1 + static_cast<double>(balance.impact_loss.size()) / 64);
-    double impact_loss = 0, bounce_down_loss = 0;
+    double impact_loss = 0, contact_loss = 0, bounce_down_loss = 0;
     std::int64_t bounce_downs = 0;
     for (std::size_t i = 0; i < dampers.size(); ++i) {
       const std::string section = of_damper("/energy/", i);
       impact_loss += dampers[i].impact_loss;
+      contact_loss += dampers[i].contact_loss;
       bounce_down_loss += dampers[i].bounce_down_loss;
       bounce_downs += dampers[i].bounce_downs;
       if (run_.impacts && !equal(section + "impact_loss", losses[i], dampers[i].impact_loss,
@@ -568,6 +569,7 @@ class Examination {
     }
     const std::string of = ", the sum over all dampers";
     equal("/energy/impact_loss_total", impact_loss, loss, rounded * std::abs(loss), of);
+    equal("/energy/contact_loss", contact_loss, balance.contact_loss, rounding * std::abs(contact_loss), of);
     equal("/energy/bounce_down_loss", bounce_down_loss, balance.bounce_down_loss,
           rounding * (1 + static_cast<double>(bounce_downs) / 64) * bounce_down_loss, of);
     require(bounce_downs == balance.bounce_downs, "/energy/bounce_downs",

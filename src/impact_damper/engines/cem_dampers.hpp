@@ -408,6 +408,7 @@ class CemOfDampers {
       Real contact_loss = 0, losses = 0;
       for (const Mass& m : masses_) {
         energy_[m.number].impact_loss = double(m.impact_loss);
+        energy_[m.number].contact_loss = double(m.contact_loss);
         contact_loss += m.contact_loss;
         losses += m.impact_loss + m.contact_loss;
       }

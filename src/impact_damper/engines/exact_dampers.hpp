@@ -440,6 +440,7 @@ class ExactOfDampers {
         energy_[masses_.number[i]].impact_loss += double(wall.work);
       } else {
         balance.contact_loss += double(wall.work);
+        energy_[masses_.number[i]].contact_loss += double(wall.work);
       }
     }
     wall.impact.reset();

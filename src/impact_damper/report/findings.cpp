@@ -109,7 +109,7 @@ DamperFindings findings_of_damper(const Run& run, std::size_t number) {
   const double c = run.scene.dampers[number].clearance;
   const DamperEnergy& energy = run.energy->dampers[number];
   DamperFindings found;
-  found.energy = energy.impact_loss + energy.bounce_down_loss;
+  found.energy = energy.impact_loss + energy.contact_loss + energy.bounce_down_loss;
   found.impacts = std::ssize(its.impacts->time);
   found.loads = loads_of(its);
   if (found.loads) {
