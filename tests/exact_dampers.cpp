@@ -110,6 +110,27 @@ TEST_CASE("the parts of a damper, with their shares of its wall, are that damper
   }
 }
 
+TEST_CASE("several at rest on walls that only the third derivative presses in stay there") {
+  // x'' = -2 zeta v0 - x0 is zero but for rounding, and x''' > 0.
+  for (const double stiffness : {1e3, 1e7, 1e12}) {
+    Scene scene;
+    scene.damping_ratio = 0.05, scene.x0 = 0.07, scene.v0 = -0.7, scene.until_time = 4;
+    scene.dampers.assign(2, damper(0.05, 0.6, 1, stiffness, 0, 0));
+    Scene one = scene;
+    one.dampers = {damper(0.1, 0.6, 1, 2 * stiffness, 0, 0)};
+    const Run run = run_of(scene), whole = run_of(one);
+    CAPTURE(stiffness);
+    REQUIRE(run.contacts->end.size() >= 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(run.contacts->begin[i] == 0);
+      CHECK(std::abs(run.contacts->end[i] - whole.contacts->end[0]) < 1e-9);
+    }
+    CHECK(run.contacts->end[0] > 0.5);
+    CHECK(run.energy->contact_loss == doctest::Approx(whole.energy->contact_loss).epsilon(1e-6));
+    REQUIRE(run.impacts->time.size() == 2 * whole.impacts->time.size());
+  }
+}
+
 TEST_CASE("a damper of vanishing mass changes nothing of the others' motion") {
   Scene with = four;
   with.dampers.push_back(damper(1e-9, 0.5, 0.1, 1e-5, 0, 0));

@@ -167,9 +167,10 @@ class JointContact {
   std::optional<Real> fall(const Function& g, const Real& until, Search<Real>& search) const {
     Real from{0};
     // At rest on a wall the third derivative may lead alone (M7.4).
-    const Real third = 6 * get(g.terms, 3);
-    if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0 && third > 0)
-      from = h_ * begin_by_third<Real>(third, bound(g.terms, 4), until * over_h_);
+    const Real third = 6 * get(g.terms, 3) * (over_h_ * over_h_ * over_h_);
+    if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0 && third > 0 &&
+        2 * get(g.terms, 2) >= -rounding_of_second())
+      from = begin_by_third<Real>(third, bound(g.terms, 4), until);
     return fall(g, from, until, search);
   }
 
@@ -214,6 +215,15 @@ class JointContact {
     }
     return square_root(Real(1 + all_k + most_k)) + 2 * zeta + all_c + most_c +
            (forcing ? forcing.frequency : Real(0));
+  }
+  // Of h^2 x'' at the beginning, from the sizes of what it is the sum of. Where it is rounding the force is
+  // no larger than the others together.
+  Real rounding_of_second() const {
+    const std::size_t count = nu_.size();
+    Real size = h_ * h_ * absolute(get(x_, 0)) + 2 * zeta_ * h_ * absolute(get(x_, 1));
+    for (std::size_t i = 0; i < count; ++i)
+      size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
+    return 8 * std::numeric_limits<Real>::epsilon() * size;
   }
   static Real get(const DrivenTerms<Real>& terms, std::size_t n) { return terms[n / 2][n % 2]; }
   static void set(DrivenTerms<Real>& terms, std::size_t n, const Real& value) {
