@@ -95,6 +95,17 @@ TEST_CASE("several that press their walls until these ring no more leave them wh
   }
 }
 
+TEST_CASE("that several press their walls is told late under a force as early") {
+  // The phase of the force rounds the more the later it is: without regard to that no slow mode takes over.
+  Scene scene;
+  scene.damping_ratio = 0.05, scene.until_time = 20'000;
+  scene.force_amplitude = 0.3, scene.force_frequency = 0.7;
+  scene.dampers = {damper(0.05, 0.1, 0.3, 5000, 0, 0), damper(0.02, 0.1, 0.2, 2000, 0, 0)};
+  const Exact options{.budget = {.max_impacts = 1'000'000, .max_half_cycles = 1'000'000},
+                      .max_steps = 3'000'000};
+  CHECK(simulate(scene, options, {}).stop_reason == StopReason::time);
+}
+
 TEST_CASE("the parts of a damper, with their shares of its wall, are that damper") {
   constexpr std::array shares{0.5, 0.3, 0.2};
   for (Scene scene : single) {

@@ -198,11 +198,10 @@ class ExactOfDampers {
     const auto leaves = contact.leave(remaining, tracker_.search());
     Real until = leaves ? leaves->time : remaining;
     if (leaves) events_.push_back({i, until, {}});
-    if (!all_stay_off_walls(contact.second_of_x(until), until, Real(0))) {
-      for (std::size_t j = 0; j < masses_.size(); ++j)
-        if (!masses_.held[j])
-          if (const auto met = meets_beside(contact, j, until)) consider(*met, until);
-    }
+    const Real most = contact.second_of_x(until);
+    for (std::size_t j = 0; j < masses_.size(); ++j)
+      if (!masses_.held[j] && !masses_.stays_off_walls(j, most, until, Real(0)))
+        if (const auto met = meets_beside(contact, j, until)) consider(*met, until);
     pass_contact(contact, until, leaves && until == leaves->time ? leaves->state : contact.at(until), {});
   }
   // Until the contact is in the state `end`. change: of x by then, where it is known.
@@ -280,13 +279,12 @@ class ExactOfDampers {
       const Wall wall = masses_.wall(in_contact_[k]);
       if (!piece.stays(k, wall)) look_for(in_contact_[k], piece.depth(k, wall), {});
     }
-    if (const Real most = piece.second_of_x(); !all_stay_off_walls(most, until, Real(0))) {
-      for (std::size_t j = 0; j < masses_.size(); ++j) {
-        if (masses_.held[j] || masses_.stays_off_walls(j, most, until, Real(0))) continue;
-        const Real &u = masses_.u[j], &u1 = masses_.u1[j], &away = masses_.away[j];
-        look_for(j, piece.gap(u, u1, away), masses_.wall(j));
-        look_for(j, piece.gap(masses_.clearance[j] - u, -u1, -away), opposite(masses_.wall(j)));
-      }
+    const Real most = piece.second_of_x();
+    for (std::size_t j = 0; j < masses_.size(); ++j) {
+      if (masses_.held[j] || masses_.stays_off_walls(j, most, until, Real(0))) continue;
+      const Real &u = masses_.u[j], &u1 = masses_.u1[j], &away = masses_.away[j];
+      look_for(j, piece.gap(u, u1, away), masses_.wall(j));
+      look_for(j, piece.gap(masses_.clearance[j] - u, -u1, -away), opposite(masses_.wall(j)));
     }
     State<Real> end = piece.at(until);
     pass(

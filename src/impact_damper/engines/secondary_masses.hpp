@@ -177,8 +177,7 @@ class NextMeeting {
                 const Real& x, const Real& v, const Real& until, Search<Real>& search) {
     const Flight<Real, Force, OwnClearance<Real>, const ForcedMotion<Real, Force>&> flight(
         primary, {masses.clearance[i]}, masses.start_of_flight(i, x, v));
-    const Real late = earliest_ + 16 * std::numeric_limits<Real>::epsilon() * (earliest_ + 1);
-    const Real horizon = late < until ? late : until;
+    const Real horizon = latest_of_instant(masses, i, primary, until, search);
     const auto met =
         masses.rests(i) ? flight.released_meets_wall(horizon, search) : flight.next_wall(horizon, search);
     if (!met) return;
@@ -186,6 +185,17 @@ class NextMeeting {
     if (!(met->time < earliest_)) return;
     earliest_ = met->time;
     at_earliest_ = {met->state.x, met->state.v, met->change->dx, met->change->dv};
+  }
+  // Up to when a meeting of the i-th may be at the earliest time that is known: no slack (slack_of) exceeds
+  // the mean of the two that it is the lesser of.
+  Real latest_of_instant(const SecondaryMasses<Real>& masses, std::size_t i,
+                         const ForcedMotion<Real, Force>& primary, const Real& until,
+                         const Search<Real>& search) {
+    if (!(earliest_ < until)) return until;
+    const Real &t = earliest_, &most = bounds(primary, search).second;
+    const Real way = masses.clearance[i] + (absolute(masses.u1[i]) + most * t) * t;
+    const Real late = t + square_root(Real(2 * std::numeric_limits<Real>::epsilon() * way / most));
+    return late < until ? late : until;
   }
   // How much later than another a meeting may seem to be and still be at the same time: from what rounding
   // leaves of the mass's distance from that wall; but no longer than it keeps its speed.

@@ -73,7 +73,9 @@ class JointSlowMode {
       const OfWall& wall = walls_[k];
       const auto [q, w] = overlap(k, time, x, v);
       const Real size = absolute(wall.on_x) * size_of_x + absolute(wall.on_v * v) + wall.size_on_f;
-      const Real rounding = 64 * std::numeric_limits<Real>::epsilon() * size;
+      // The phase of the force is known to a rounding of itself, which grows with time.
+      const Real rounding =
+          std::numeric_limits<Real>::epsilon() * (64 * size + 4 * force_.frequency * time * wall.size_on_f);
       if (!(absolute(walls[k].q - q) <= rounding && absolute(walls[k].w - w) <= rounding * wall.rate))
         return false;
     }
@@ -117,7 +119,7 @@ class JointSlowMode {
     for (std::size_t k = 0; k < walls.size(); ++k) {
       const auto& [nu, stiffness, damping, q, w] = walls[k];
       OfWall& wall = walls_[k];
-      wall.rate = square_root(stiffness);
+      wall.rate = square_root(stiffness) + omega;
       if (!forcing) continue;
       const Complex h = Complex(-wall.on_x * stiffness / factor.b, -omega * wall.on_v) /
                         Complex(stiffness - omega * omega, omega * damping);
