@@ -132,6 +132,16 @@ for row in [row for row in rows if row not in wrong][::97]:
     speed = max(map(abs, run["impacts"]["relative_velocity"])) * length / second
     demand(math.isclose(float(row["largest_impact_speed"]), speed, rel_tol=1e-12), f"{row}: speed")
 
+# So do those of several dampers in units.
+boxes = json.loads((source / "data/examples/mast_boxes.json").read_text())
+(folder / "boxes.json").write_text(json.dumps(boxes))
+call("sweep", "--scene", "boxes.json", "--vary", "clearance_1=40,60", "--keep", "impacts", "-o", "boxes.csv")
+for row in csv.DictReader(text("boxes.csv").splitlines()):
+    boxes["dampers"][0]["clearance"] = float(row["clearance_1"])
+    (folder / "scene.json").write_text(json.dumps(boxes))
+    run = json.loads(call("run", "--scene", "scene.json", "--record", "impacts"))
+    demand(int(row["impacts"]) == len(run["impacts"]["time"]), f"{row}: impacts of several dampers in units")
+
 # Killed, and again, and interrupted: the same command goes on, to the same bytes.
 words = ["sweep", "plan.json", "--threads", "1", "-o", "killed.csv"]
 slow = {**plan, "quantities": plan["quantities"] + ["impact_energy_share"]}

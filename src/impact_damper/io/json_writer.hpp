@@ -18,7 +18,7 @@ namespace impact_damper {
 
 class JsonWriter {
  public:
-  // What an object or array holds stands on lines of its own or all on one.
+  // What an object or array holds stands on lines of its own or all on one: within one that does, always.
   enum class Layout { lines, one_line };
 
   explicit JsonWriter(std::string_view of) : of_(of) {}  // of what, for messages
@@ -100,6 +100,7 @@ class JsonWriter {
   }
   void begin(char bracket, Layout layout) {
     text_ += bracket;
+    if (!levels_.empty() && levels_.back().layout == Layout::one_line) layout = Layout::one_line;
     levels_.push_back({bracket == '{' ? '}' : ']', layout});
   }
   void break_line() {
