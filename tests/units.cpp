@@ -172,6 +172,12 @@ TEST_CASE("a mass outside its cavity and a heavy one are cautioned about, and no
         "the secondary mass begins 20 mm outside its cavity, which reaches from 0 to 10 mm "
         "(secondary_displacement is "
         "30 mm): a compliant wall there holds an energy of 32000 J, beside 28.8 J in the primary spring");
+  Scene list{.x0 = 6, .dampers = {{}, {.clearance = 0.2, .wall_stiffness = 1e4, .y0 = 0.5}}};
+  REQUIRE(cautions_of(list, {}).size() == 1);
+  CHECK(cautions_of(list, {})[0] ==
+        "the secondary mass of damper 2 begins 0.3 outside its cavity, which reaches from 0 to 0.2 (y0 is "
+        "0.5): "
+        "a compliant wall there holds an energy of 450, beside 18 in the primary spring");
   scene.y0 = -0.5;
   CHECK(cautions_of(scene, {})[0].starts_with("the secondary mass begins 0.5 times the clearance outside"));
   scene.mass_ratio = 40;

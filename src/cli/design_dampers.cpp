@@ -48,6 +48,9 @@ Asked asked_of(Arguments& arguments) {
   reject_options_beside_units(arguments, asked.file, "");
   for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
+  for (const Option& option : engine_options())
+    if (arguments.given(option.name))
+      arguments.reject(option.name, "is not for --dampers, whose runs are those of the restitution engine");
   const Scene& scene = asked.file.scene;
   if (scene.force_amplitude != 0) arguments.reject("--dampers", "needs a free decay: the scene has a force");
   DamperSetQuestion& question = asked.question;
@@ -55,6 +58,8 @@ Asked asked_of(Arguments& arguments) {
   asked.mass = asked.file.scales ? asked.file.scales->mass : 1;
   question.count = arguments.whole_number("--dampers", within(1, double(most_set_dampers))).value_or(1);
   question.release = arguments.number("--from", above(0)).value_or(std::abs(scene.x0) * length);
+  if (question.release == 0 && !arguments.given("--from"))
+    arguments.reject("--from", "must be given: the scene has no initial displacement");
   if (!arguments.given("--to")) arguments.reject("--to", "must be given");
   question.to = arguments.number("--to", above(0)).value_or(question.release / 10);
   question.upper = arguments.number("--upper", above(0)).value_or(0.9 * question.release);
@@ -124,7 +129,7 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
                     readable(set.dampers[j].mass_ratio * asked.mass)});
   text += aligned(rows) + "\n";
   rows = {{"amplitude", "loss factor", "", "dampers that are off", "", ""},
-          {in_units ? "mm" : "", "expected", "run", "expected at worst", "mean",
+          {in_units ? "mm" : "", "if they add", "run", "each at its worst, if they add", "mean",
            "least of " + std::to_string(set_draws)}};
   for (std::size_t i = 0; i + 1 < set.edges.size(); ++i)
     rows.push_back({readable(std::sqrt(set.edges[i] * set.edges[i + 1])), readable(set.expected[i]),
@@ -134,9 +139,12 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
   text += "From " + readable(set.edges.front()) + " to " + readable(set.edges.back()) + length +
           " the loss factor is " + readable(least(set.run.mean)) + " or more, by the mean of " +
           std::to_string(set_releases) + " releases; of " + std::to_string(set_draws) +
-          " sets whose dampers are off, by their mean " + readable(least(set.varied.mean)) +
-          " or more.\nOf one damper of that mass, with the clearance that is best for it, " +
-          readable(set.least_of_one) + " or more is expected.\n";
+          " sets whose dampers are off by their mean " + readable(least(set.varied.mean)) +
+          " or more, in the worst of them " + readable(least(set.varied.low)) + ".\n";
+  if (set.one)
+    text += "One damper of that mass, designed in the same way, has a clearance of " +
+            readable(set.one->clearance) + length + " and a loss factor of " + readable(set.one->least) +
+            " or more.\n";
   if (std::int64_t(set.dampers.size()) < question.count)
     text += "Of " + std::to_string(question.count) + " clearances " +
             std::to_string(question.count - std::int64_t(set.dampers.size())) + " got no mass.\n";

@@ -289,7 +289,9 @@ void warn_of(const std::vector<Sweep>& sweeps, const SteadyRule& rule) {
   }
   if (open > 0)
     warn(of_all(open, all, "motions") + " are not periodic within " + std::to_string(rule.max_periods) +
-         " periods of the force; their numbers are means; --max-periods raises that");
+         " periods of the force, which --max-periods raises; theirs are the largest |x|, the mean powers and "
+         "all impacts of " +
+         std::to_string(rule.mean_periods) + " periods");
   if (ended > 0)
     warn(of_all(ended, all, "motions") +
          " ended early, by a budget of the engine that \"end\" names; its option raises that");

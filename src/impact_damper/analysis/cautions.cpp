@@ -7,19 +7,21 @@
 namespace impact_damper {
 namespace {
 
-std::string begins_outside(const Scene& scene, const std::optional<Scales>& scales) {
-  const double depth = std::max(-scene.y0, scene.y0 - 1), energy = scene.wall_stiffness * depth * depth / 2;
+// unit_of_depth: in a scene without units.
+std::string begins_outside(const std::string& mass, double y0, double clearance, double wall_stiffness,
+                           double x0, const std::optional<Scales>& scales, std::string_view unit_of_depth) {
+  const double depth = std::max(-y0, y0 - clearance), energy = wall_stiffness * depth * depth / 2;
   const auto text = [](double value) { return rounded_text(value, 5); };
   const auto with_unit = [&](double value, double scale, std::string_view unit) {
     return scales ? text(value * scale) + ' ' + std::string(unit) : text(value);
   };
   const double length = scales ? scales->length : 1;
-  return "the secondary mass begins " + with_unit(depth, length, "mm") +
-         (scales ? "" : " times the clearance") + " outside its cavity, which reaches from 0 to " +
-         with_unit(1, length, "mm") + " (" + (scales ? "secondary_displacement" : "y0") + " is " +
-         with_unit(scene.y0, length, "mm") + "): a compliant wall there holds an energy of " +
+  return mass + " begins " + with_unit(depth, length, "mm") + (scales ? "" : std::string(unit_of_depth)) +
+         " outside its cavity, which reaches from 0 to " + with_unit(clearance, length, "mm") + " (" +
+         (scales ? "secondary_displacement" : "y0") + " is " + with_unit(y0, length, "mm") +
+         "): a compliant wall there holds an energy of " +
          with_unit(energy, scales ? scales->energy() : 1, "J") + ", beside " +
-         with_unit(scene.x0 * scene.x0 / 2, scales ? scales->energy() : 1, "J") + " in the primary spring";
+         with_unit(x0 * x0 / 2, scales ? scales->energy() : 1, "J") + " in the primary spring";
 }
 
 }  // namespace
@@ -31,10 +33,20 @@ std::vector<std::string> cautions_of(const Scene& scene, const std::optional<Sca
       cautions.push_back(mass + " is " + rounded_text(mass_ratio, 4) + " times as heavy as the primary mass" +
                          (scales ? ": are both given in kilograms?" : ""));
   };
-  for (std::size_t i = 0; i < scene.dampers.size(); ++i)
-    heavy("the secondary mass of damper " + std::to_string(i + 1), scene.dampers[i].mass_ratio);
+  const auto outside = [&](const std::string& mass, double y0, double clearance, double wall_stiffness,
+                           std::string_view unit_of_depth) {
+    if (y0 < 0 || y0 > clearance)
+      cautions.push_back(
+          begins_outside(mass, y0, clearance, wall_stiffness, scene.x0, scales, unit_of_depth));
+  };
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    const SceneDamper& damper = scene.dampers[i];
+    const std::string mass = "the secondary mass of damper " + std::to_string(i + 1);
+    outside(mass, damper.y0, damper.clearance, damper.wall_stiffness, "");
+    heavy(mass, damper.mass_ratio);
+  }
   if (!scene.dampers.empty()) return cautions;
-  if (scene.y0 < 0 || scene.y0 > 1) cautions.push_back(begins_outside(scene, scales));
+  outside("the secondary mass", scene.y0, 1, scene.wall_stiffness, " times the clearance");
   heavy("the secondary mass", scene.mass_ratio);
   return cautions;
 }

@@ -156,6 +156,62 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
   return lengths;
 }
 
+// All of a set but what is asked of sets that are off, and of one damper.
+DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads,
+                       const std::function<void(const std::string& doing)>& tell) {
+  const double e = question.restitution, fold = fold_amplitude(e);
+  DamperSet set;
+  set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
+  tell("what one damper does alone");
+  // The narrowest clearance that is tried, at its narrowest.
+  const double from = 1.1 * question.upper * fold / (0.4 * question.to) / (1 - question.clearance_off);
+  // f hardly depends on the mass; a very light one takes long.
+  const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
+  const auto alone = [&](double restitution) {
+    return measured_alone(alone_mass, restitution, from, threads);
+  };
+  const LossAlone nominal = alone(e);
+  const Known exactly{nominal, nominal, nominal};
+  const double off = question.restitution_off;
+  const Known known = off == 0 ? exactly : Known{nominal, alone(e - off), alone(e + off)};
+  tell("clearances");
+  Clearances clearances = best_clearances(question, question.count, known, set.edges);
+  const double viscous = 2 * question.damping_ratio / (1 + question.mass_ratio);
+  const auto expected_of = [&](const std::vector<SceneDamper>& dampers, const Known& with,
+                               double clearance_off) {
+    std::vector<double> sum(set.edges.size() - 1, viscous);
+    for (const SceneDamper& damper : dampers) {
+      const std::vector<double> column = column_of(with, damper.clearance, set.edges, clearance_off);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += damper.mass_ratio * column[i];
+    }
+    return sum;
+  };
+  // Where the dampers do not quite add their run tells by how much: the programme once more with that.
+  const int passes = question.count == 1 ? 1 : 3;  // the share of one is 1
+  double best = -1;
+  for (int pass = 0; pass < passes; ++pass) {
+    tell("masses, " + std::to_string(pass + 1) + " of " + std::to_string(passes));
+    const std::vector<SceneDamper> dampers =
+        dampers_of(question, clearances, best_shares(clearances.columns).share);
+    const LossSpread run =
+        losses_between(runs_of(question, dampers, threads), in_releases(set.edges, question.release));
+    const std::vector<double> expected = expected_of(dampers, exactly, 0);
+    const double least = *std::ranges::min_element(run.mean);
+    if (least > best) {
+      best = least;
+      set.dampers = dampers;
+      set.run = run;
+      set.expected = expected;
+    }
+    for (std::size_t i = 0; i < run.mean.size(); ++i) {
+      const double ratio = std::clamp((run.mean[i] - viscous) / (expected[i] - viscous), 0.5, 2.0);
+      for (std::vector<double>& column : clearances.columns) column[i] *= ratio;
+    }
+  }
+  set.worst = expected_of(set.dampers, known, question.clearance_off);
+  return set;
+}
+
 }  // namespace
 
 // With z = x/t it is: least sum of z with sum over j of z_j columns[j][i] >= 1. Its dual, largest sum of w
@@ -205,15 +261,17 @@ Shares best_shares(const std::vector<std::vector<double>>& columns) {
 
 std::vector<Problem> problems_of(const DamperSetQuestion& question) {
   std::vector<Problem> problems;
-  const auto demand = [&](std::string_view field, double value, double least, double most) {
+  const auto demand = [&](std::string_view field, double value, double least, double most,
+                          std::string_view why = "") {
     if (!(value >= least && value <= most))
-      problems.push_back({std::string(field), "must be >= " + number_text(least) + " and <= " +
-                                                  number_text(most) + ", got " + number_text(value)});
+      problems.push_back({std::string(field), "must be >= " + number_text(least) +
+                                                  " and <= " + number_text(most) + std::string(why) +
+                                                  ", got " + number_text(value)});
   };
   demand("release", question.release, 1e-6, 1e6);
-  demand("upper", question.upper, 0, 0.9 * question.release);
-  demand("to", question.to, question.upper / 1000, question.upper / 2);
-  demand("mass_ratio", question.mass_ratio, 1e-4, 0.2);
+  demand("upper", question.upper, 0, 0.9 * question.release, ", nine tenths of the release");
+  demand("to", question.to, question.upper / 1000, question.upper / 2, ", half of the range's upper end");
+  demand("mass_ratio", question.mass_ratio, 1e-4, 0.2, ", divided by the primary mass");
   demand("count", double(question.count), 1, double(most_set_dampers));
   demand("clearance_off", question.clearance_off, 0, 0.5);
   demand("restitution_off", question.restitution_off, 0, 0.4);
@@ -236,60 +294,17 @@ Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDam
 DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& threads,
                           const std::function<void(const std::string& doing)>& tell) {
   if (auto problems = problems_of(question); !problems.empty()) throw InvalidArguments(std::move(problems));
-  const double e = question.restitution, fold = fold_amplitude(e);
-  DamperSet set;
-  set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
-  tell("what one damper does alone");
-  // The narrowest clearance that is tried, at its narrowest.
-  const double from = 1.1 * question.upper * fold / (0.4 * question.to) / (1 - question.clearance_off);
-  // f hardly depends on the mass; a very light one takes long.
-  const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
-  const auto alone = [&](double restitution) {
-    return measured_alone(alone_mass, restitution, from, threads);
-  };
-  const LossAlone nominal = alone(e);
-  const Known exactly{nominal, nominal, nominal};
-  const double off = question.restitution_off;
-  const Known known = off == 0 ? exactly : Known{nominal, alone(e - off), alone(e + off)};
-  tell("clearances");
-  Clearances clearances = best_clearances(question, question.count, known, set.edges);
-  const double viscous = 2 * question.damping_ratio / (1 + question.mass_ratio);
-  const auto expected_of = [&](const std::vector<SceneDamper>& dampers, const Known& with,
-                               double clearance_off) {
-    std::vector<double> sum(set.edges.size() - 1, viscous);
-    for (const SceneDamper& damper : dampers) {
-      const std::vector<double> column = column_of(with, damper.clearance, set.edges, clearance_off);
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += damper.mass_ratio * column[i];
-    }
-    return sum;
-  };
-  // Where the dampers do not quite add their run tells by how much: the programme once more with that.
-  constexpr int passes = 3;
-  double best = -1;
-  for (int pass = 0; pass < passes; ++pass) {
-    tell("masses, " + std::to_string(pass + 1) + " of " + std::to_string(passes));
-    const std::vector<SceneDamper> dampers =
-        dampers_of(question, clearances, best_shares(clearances.columns).share);
-    const LossSpread run =
-        losses_between(runs_of(question, dampers, threads), in_releases(set.edges, question.release));
-    const std::vector<double> expected = expected_of(dampers, exactly, 0);
-    const double least = *std::ranges::min_element(run.mean);
-    if (least > best) {
-      best = least;
-      set.dampers = dampers;
-      set.run = run;
-      set.expected = expected;
-    }
-    for (std::size_t i = 0; i < run.mean.size(); ++i) {
-      const double ratio = std::clamp((run.mean[i] - viscous) / (expected[i] - viscous), 0.5, 2.0);
-      for (std::vector<double>& column : clearances.columns) column[i] *= ratio;
-    }
-  }
-  set.worst = expected_of(set.dampers, known, question.clearance_off);
+  DamperSet set = best_by_runs(question, threads, tell);
   tell("dampers that are off");
   set.varied =
       losses_between(varied_runs(question, set.dampers, threads), in_releases(set.edges, question.release));
-  set.least_of_one = viscous + question.mass_ratio * best_clearances(question, 1, exactly, set.edges).least;
+  if (question.count > 1) {
+    DamperSetQuestion of_one = question;
+    of_one.count = 1;
+    const DamperSet one =
+        best_by_runs(of_one, threads, [&](const std::string& doing) { tell("of one damper: " + doing); });
+    set.one = {one.dampers.front().clearance, *std::ranges::min_element(one.run.mean)};
+  }
   return set;
 }
 

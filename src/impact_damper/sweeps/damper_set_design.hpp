@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,12 @@ struct DamperSet {
   std::vector<double> expected, worst;
   LossSpread run;     // of the releases, by the restitution engine
   LossSpread varied;  // of the sets that are off at random, uniformly
-  // Least eta expected, as designed, of one damper of all the mass with the clearance that is best for it.
-  double least_of_one = 0;
+  // If more than one was asked for: one damper of all the mass, designed in the same way, and the least eta
+  // of its releases.
+  struct One {
+    double clearance = 0, least = 0;
+  };
+  std::optional<One> one;
 };
 // `tell` is called by this thread with what begins. Throws InvalidArguments if the question is not valid. The
 // same bits with any number of threads, and each time.
