@@ -18,7 +18,7 @@ namespace impact_damper {
 
 class JsonWriter {
  public:
-  // What an object or array holds stands on lines of its own or all on one: within one that does, always.
+  // What an object or array holds stands on lines of its own or all on one.
   enum class Layout { lines, one_line };
 
   explicit JsonWriter(std::string_view of) : of_(of) {}  // of what, for messages
@@ -41,6 +41,7 @@ class JsonWriter {
     if (level.layout == Layout::lines) break_line();
     text_ += level.end;
   }
+  Layout layout() const { return levels_.back().layout; }  // of the object or array that is open
   void new_line() { breaks_ = true; }  // on which the next field stands, whatever the layout
 
   // Throws NumericalError, naming the field, if a number is not finite: JSON has none.
@@ -100,7 +101,6 @@ class JsonWriter {
   }
   void begin(char bracket, Layout layout) {
     text_ += bracket;
-    if (!levels_.empty() && levels_.back().layout == Layout::one_line) layout = Layout::one_line;
     levels_.push_back({bracket == '{' ? '}' : ']', layout});
   }
   void break_line() {

@@ -189,7 +189,7 @@ void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
   for (const UnitField& each : unit_fields)
     if (scene.*each.member) out.field(each.name, scene.*each.member);
   if (scene.dampers.empty()) return;
-  out.open_array("dampers", JsonWriter::Layout::lines);
+  out.open_array("dampers", out.layout());
   for (const DamperInUnits& damper : scene.dampers) {
     out.open_object(JsonWriter::Layout::one_line);
     for (const DamperUnitField& each : damper_unit_fields)
