@@ -291,7 +291,7 @@ class RestitutionOfDampers {
         each.lasts -= each.lasts * each.lasts *
                       (change / (3 * a) + system_.zeta * masses_.e[i] * masses_.nu[i] / (1 + masses_.nu[i]));
       }
-      if (observer_.wants_energy() && !masses_.rests(i)) {
+      if (observer_.wants_energy()) {
         const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - gained) / 2;  // (M17.7)
         losses_ += loss;
         DamperEnergy& energy = energy_[masses_.number[i]];
@@ -316,17 +316,15 @@ class RestitutionOfDampers {
   };
   // What the first of chattering_ amount to.
   struct Joining {
-    bool bounces = false;  // not all rest
     Real mass{0}, momentum{0}, kick{0}, moves{0}, duration{0};
   };
-  // Leaves in chattering_ as many of its first as can join, of whom one at least bounces.
+  // Leaves in chattering_ as many of its first as can join.
   template <class EndsSoon>
   std::optional<Joining> most_that_join(const Real& a, EndsSoon&& ends_soon) {
     joining_.assign(1, {});
     for (const Chattering& each : chattering_) {
       const std::size_t i = each.index;
       Joining all = joining_.back();
-      all.bounces = all.bounces || !masses_.rests(i);
       all.mass += masses_.nu[i];
       all.momentum += masses_.nu[i] * masses_.w(i);
       all.kick += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
@@ -336,7 +334,7 @@ class RestitutionOfDampers {
     }
     Real most{0};                     // a bound on |x''|
     std::optional<Real> others_meet;  // a wall, not before this time: who is left out
-    for (std::size_t count = chattering_.size(); count > 0 && joining_[count].bounces; --count) {
+    for (std::size_t count = chattering_.size(); count > 0; --count) {
       const Joining& all = joining_[count];
       if (limit_holds(all, a, ends_soon)) {
         if (!others_meet) {
