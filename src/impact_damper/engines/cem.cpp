@@ -37,7 +37,8 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
   if (!problems.empty()) return problems;
   if (options.stuck_speed && !scene.dampers.empty())
     problems.push_back(
-        {"stuck_speed", "is for one damper: the masses of a list stick by pressing their walls"});
+        {"stuck_speed",
+         "is for one damper, as --stuck paper is: the masses of a list stick by pressing their walls"});
   const double h = options.time_step.value();
   const double limit = stability_limit(scene, options.damper, options.calibration);
   if (!(h <= limit || options.unstable)) {

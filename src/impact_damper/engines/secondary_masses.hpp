@@ -118,9 +118,10 @@ struct SecondaryMasses {
 
   std::vector<std::int32_t> number;  // in the scene
   std::vector<Real> nu, e, clearance;
-  std::vector<Real> away;   // 1 if the wall that was left last is the left one, -1 if it is the right one
+  // 1 if the mass left its left wall last, -1 if its right one; at the release, if that is the nearer one.
+  std::vector<Real> away;
   std::vector<Real> u, u1;  // distance from that wall, and its derivative
-  std::vector<char> held;   // at its wall: it sticks there, or pushes it in (then u < 0)
+  std::vector<char> held;   // at its wall: it sticks there, u = 0, or pushes it in, u <= 0
   std::vector<double> held_since;
 };
 

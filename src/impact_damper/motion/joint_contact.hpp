@@ -23,11 +23,12 @@ struct PushedWall {
   Real q, w;
 };
 
-// One piece at a time. It is a motion (motion.hpp); y and y' in its states mean nothing.
+// One piece at a time. It is a motion (motion.hpp); y and y' in its states mean nothing. Series are in s =
+// t/h_: their terms are h_^n/n! times the n-th derivatives by t. Whatever is passed and returned is by t.
 template <class Real, class Force>
 class JointContact {
  public:
-  // A series in t / unit, and a bound on the third derivative, by t, of its function in the piece.
+  // A series in s, and a bound on the third derivative, by t, of its function in the piece.
   struct Function {
     DrivenTerms<Real> terms;
     Real third;

@@ -20,8 +20,8 @@ class JointSlowMode {
  public:
   using Primary = ForcedMotion<Real, Force>;
 
-  // Of these walls, whoever pushes them; their q and q' mean nothing. Nothing where a wall is not much
-  // stiffer than the spring of the primary mass.
+  // Of these walls, of which nu, stiffness and damping count here, not q and q'. Nothing where a wall is not
+  // much stiffer than the spring of the primary mass.
   static std::optional<JointSlowMode> of(const Real& zeta, const Force& forcing,
                                          const std::vector<PushedWall<Real>>& walls) {
     Factor factor{};
@@ -107,7 +107,7 @@ class JointSlowMode {
   };
   struct OfWall {
     Real on_x, on_v;         // q = on_x x + on_v x' ...
-    Real on_f{0}, on_f1{0};  // ... + on_f f + on_f1 f', with the force f of x'' + p x' + b x = f
+    Real on_f{0}, on_f1{0};  // ... + on_f f + on_f1 f', with G f of (M17.20) for f
     Real size_on_f{0}, rate{0};
   };
 
@@ -137,7 +137,7 @@ class JointSlowMode {
   }
 
   Driven<Real, Force> oscillator_;
-  Force force_;
+  Force force_;  // G f of (M17.20), but for its phase
   Real ahead_{0};
   std::vector<OfWall> walls_;
 };

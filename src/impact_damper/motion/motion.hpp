@@ -1,5 +1,6 @@
-// What a motion is: one part of a run, between two of its events, in closed form. Flight, Stuck, Contact and
-// ContactWithoutModes are motions. All times are since the motion's beginning.
+// What a motion is: one part of a run, between two of its events, in closed form. Flight, Stuck,
+// JoinedMasses, Contact, ContactWithoutModes and JointContact are motions. All times are since the motion's
+// beginning.
 #pragma once
 
 #include <concepts>

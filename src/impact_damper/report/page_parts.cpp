@@ -82,7 +82,9 @@ std::string best_sentences(const Findings& findings) {
       "The loss factor η is the part of the energy lost per radian. It is the slope of a straight line "
       "through the logarithm of 3 to " +
       count_html(fit.most_half_cycles + 1) + " successive peaks, no more than lie within a factor of " +
-      number_html(fit.factor) + " of each other. Before impacts fail it is largest, " +
+      number_html(fit.factor) + " of each other. " +
+      (findings.several() ? "Before the impacts of all fail it is largest, "
+                          : "Before impacts fail it is largest, ") +
       number_html(best.eta) + ", at an amplitude of " + quantities.length(best.amplitude) +
       ": the primary mass is damped there as by " + as_viscous(best.eta) + ". ";
   if (zeta > 0) text += "Its own damping accounts for η = 2ζ = " + number_html(2 * zeta) + " of that. ";
@@ -252,7 +254,8 @@ std::string energy_html(const Findings& findings) {
   if (const auto count = std::ssize(findings.run.impacts->time); count > 0) {
     text = count_html(count) + (count == 1 ? " impact was counted" : " impacts were counted");
     text += impacts > 0 && brought > 0
-                ? ", which took " + percent_html(impacts / brought) + " of the energy. "
+                ? ", which took " + percent_html(impacts / brought) + " of the energy at the beginning" +
+                      (findings.forced() ? " and of what the force brought. " : ". ")
                 : ". ";
   }
   return table_html(table) +
