@@ -111,6 +111,15 @@ struct VariedNumber {
 };
 std::optional<VariedNumber> number_of(Arguments& arguments, const std::string& text,
                                       const Variables& variables) {
+  const std::size_t number = text.find_first_of("0123456789=");
+  const bool several = !variables.contains("mass_ratio");
+  if (several && number > 0 && number < text.find('=') && text[number - 1] == '_') {
+    arguments.reject("--vary", "must name a number that is not of one damper of several, got " +
+                                   in_quotes(text) +
+                                   "; impact-damper sweep varies these, for instance with "
+                                   "--keep steady_amplitude");
+    return std::nullopt;
+  }
   std::vector<std::string_view> names;
   for (const auto& [name, ignored] : variables) names.push_back(name);
   const auto varied = varied_of(arguments, text, names);
