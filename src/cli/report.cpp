@@ -51,7 +51,8 @@ int report(Arguments& arguments) {
                         file.description, file.scene, file.scales, engine};
   ProgressOnStderr progress("report");
   const Findings findings = saying_options(
-      [&] { return examine(subject, ensemble, [&](const std::string& doing) { progress(doing); }); });
+      [&] { return examine(subject, ensemble, [&](const std::string& doing) { progress(doing); }); },
+      scene_name, file.scales);
   warn_of_early_end("impact-damper report", findings.run, file.scales);
   const std::vector<Drawing> drawings = drawings_of(findings);
   std::map<std::string, std::string> svgs;

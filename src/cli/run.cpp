@@ -188,8 +188,8 @@ int run_scene(Arguments& arguments) {
     if_interrupted_say(left_as_it_was(*file));
   }
   warn_of_cautions(program, scene, scales);
-  const Run result =
-      saying_options([&] { return simulate(scene, engine, record); }, arguments.text("--scene").value_or(""));
+  const Run result = saying_options([&] { return simulate(scene, engine, record); },
+                                    arguments.text("--scene").value_or(""), scales);
   warn_of_early_end(program, result, scales);
   warn_of_missing_samples(result, record);
   if (ensemble.members > 1) run_members(*file, result, record, scales, ensemble);

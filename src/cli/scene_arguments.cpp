@@ -239,7 +239,11 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
        "--max-steps");
 }
 
-void reject_as_options(std::vector<Problem> problems, const std::string& scene_file) {
+void reject_as_options(std::vector<Problem> problems, const std::string& scene_file,
+                       const std::optional<Scales>& scales) {
+  for (Problem& problem : problems)
+    if (scales && problem.field.ends_with("y0"))
+      problem.message += " (secondary_displacement, divided by " + rounded_text(scales->length, 6) + " mm)";
   const auto in_list = [](const Problem& problem) { return problem.field.starts_with("dampers"); };
   if (std::ranges::any_of(problems, in_list)) {
     std::erase_if(problems, std::not_fn(in_list));

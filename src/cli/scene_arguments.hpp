@@ -31,14 +31,17 @@ void warn_of_cautions(const std::string& command, const Scene& scene, const std:
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
 // What simulate() rejects, naming fields, as a UsageError that names the options; as an InputError where it
-// is about a list of dampers, which only a scene file has.
-[[noreturn]] void reject_as_options(std::vector<Problem> problems, const std::string& scene_file);
+// is about a list of dampers, which only a scene file has. Beside a scene in units, by what lengths are
+// divided.
+[[noreturn]] void reject_as_options(std::vector<Problem> problems, const std::string& scene_file,
+                                    const std::optional<Scales>& scales);
 template <class Simulate>
-auto saying_options(Simulate&& simulate_something, const std::string& scene_file = {}) {
+auto saying_options(Simulate&& simulate_something, const std::string& scene_file = {},
+                    const std::optional<Scales>& scales = {}) {
   try {
     return simulate_something();
   } catch (const InvalidArguments& error) {
-    reject_as_options(error.problems(), scene_file);
+    reject_as_options(error.problems(), scene_file, scales);
   }
 }
 
