@@ -299,8 +299,7 @@ void warn_of(const std::vector<Sweep>& sweeps, const SteadyRule& rule) {
   if (open > 0)
     warn(of_all(open, all, "motions") + " are not periodic within " + std::to_string(rule.max_periods) +
          " periods of the force, which --max-periods raises; theirs are the largest amplitude, the mean "
-         "powers and "
-         "all impacts of " +
+         "powers and all impacts of " +
          std::to_string(rule.mean_periods) + " periods");
   if (ended > 0)
     warn(of_all(ended, all, "motions") +
