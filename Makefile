@@ -25,13 +25,16 @@ PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recomm
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 # What sweeps on several machines are tested with.
 CLUSTER_PACKAGES := python3 slurm-wlm munge parallel rsync
+# What WebAssembly is compiled and run with, and what is compiled for other processors.
+WASM_PACKAGES := emscripten nodejs node-acorn
+MACHINE_PACKAGES := g++-aarch64-linux-gnu g++-riscv64-linux-gnu g++-s390x-linux-gnu qemu-user
 # What a bare system is made with.
 BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper build install report-page figures verify paper docs test bench bench-record \
+.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits build install report-page figures verify paper docs test bench bench-record \
   stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
 
 help:  ## list the targets
@@ -54,6 +57,9 @@ deps-cluster:  ## the same for sweeps on a cluster: make deps-cluster cluster-ch
 
 deps-paper:  ## the same for the report: make deps-paper paper
 	@.ci/install $(PACKAGES) $(PAPER_PACKAGES)
+
+deps-same-bits:  ## the same for other compilers and processors: make deps-same-bits same-bits
+	@.ci/install $(PACKAGES) $(CHECK_PACKAGES) $(WASM_PACKAGES) $(MACHINE_PACKAGES)
 
 deps-bare:  ## the same for a bare system to try both commands of README.md in: make deps-bare bare
 	@.ci/install $(BARE_PACKAGES)
@@ -189,7 +195,7 @@ coverage: sanitize  ## the same; then which lines of the library they ran: at le
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
 
-same-bits:  ## the same bytes from five more builds, in strange surroundings (minutes)
+same-bits:  ## the same bytes from other compilers, processors, WebAssembly and strange surroundings (a quarter of an hour)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -16,21 +17,36 @@ namespace impact_damper::cli {
 // thread of its own tells it, so a long simulation is not silent.
 class ProgressOnStderr {
  public:
-  explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {}
+  explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {
+    try {
+      teller_ = std::thread([this] { tell(); });
+    } catch (const std::system_error&) {
+      // No thread is to be had: the work goes on in silence.
+    }
+  }
+  ProgressOnStderr(const ProgressOnStderr&) = delete;
+  ProgressOnStderr& operator=(const ProgressOnStderr&) = delete;
+  ~ProgressOnStderr() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    changed_.notify_all();
+    if (teller_.joinable()) teller_.join();
+  }
   void operator()(const std::string& doing) {
     const std::lock_guard lock(mutex_);
     doing_ = doing;
   }
 
  private:
-  void tell(const std::stop_token& stop) {
+  void tell() {
     using namespace std::chrono_literals;
     constexpr int first = 2, at_least_every = 10;  // seconds
     constexpr int minute = 60;                     // after so many of them a line in so many seconds
     std::string told;
     std::unique_lock lock(mutex_);
-    for (int second = 1, last = 0; !ended_.wait_for(lock, stop, 1s, [&] { return stop.stop_requested(); });
-         ++second) {
+    for (int second = 1, last = 0; !changed_.wait_for(lock, 1s, [&] { return ended_; }); ++second) {
       const int silent = second - last;
       if (second < first || doing_.empty() || silent < second / minute) continue;
       if (doing_ == told && silent < at_least_every) continue;
@@ -43,9 +59,10 @@ class ProgressOnStderr {
 
   std::string command_;
   std::mutex mutex_;
-  std::condition_variable_any ended_;
+  std::condition_variable changed_;
   std::string doing_;
-  std::jthread teller_{[this](const std::stop_token& stop) { tell(stop); }};  // ends before what it uses
+  bool ended_ = false;
+  std::thread teller_;
 };
 
 }  // namespace impact_damper::cli

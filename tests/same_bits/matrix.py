@@ -3,14 +3,16 @@
 
     matrix.py BUILD [--without-clang] [--only NAMES]
 
-BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. Five
-more programs are built below BUILD/same_bits, kept for the next time: {g++, clang++} x {-O3 -march=native, -O2 with
-link-time optimisation}, and g++ -O0. The three other combinations would run nothing new: link-time optimisation has the
-passes of -O2 and sees more at once, and what clang++ evaluates in another order than g++ it does so at any level.
-What is crossed with what:
+BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. More
+programs are built below BUILD/same_bits, kept for the next time. For this processor there are five: {g++, clang++} x
+{-O3 -march=native, -O2 with link-time optimisation}, and g++ -O0. The three other combinations would run nothing new:
+link-time optimisation has the passes of -O2 and sees more at once, and what clang++ evaluates in another order than g++
+it does so at any level. For other machines there are four: aarch64, riscv64 and s390x, whose bytes have the other order,
+run by qemu; and WebAssembly, run by node. What is crossed with what:
 
-    all programs        x {at home, without the processor's FMA and AVX2 and in all surroundings at once: time zone,
+    for this processor  x {at home, without the processor's FMA and AVX2 and in all surroundings at once: time zone,
                            comma locale, folder, ~/.gnuplot}
+    for other machines  x at home
     one of them         x each of the four surroundings by itself, and all at once with the processor as it is
                           (clang++ -O3 -march=native)
     the project's own   x processor features {as they are, without FMA and AVX2} x {at home, all surroundings at once}
@@ -18,9 +20,9 @@ What is crossed with what:
                         all programs, once in each of the four surroundings, once in all at once without FMA and AVX2
 
 Each time all three engines run all scenes of the catalogue and those in scenes/ (forced and damped, the component
-element method also with its other ways to step), the catalogue's responses are found with fewer points and periods, and
-all tables are made. The heap is filled with rubbish where the surroundings are strange, and at -O0 so are variables that
-nobody set: what reads them shows.
+element method also with its other ways to step), the catalogue's responses are found with fewer points and periods,
+all tables are made, and the runs in BUILD/runs/exact get their verdicts. The heap is filled with rubbish where the
+surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -44,13 +46,22 @@ from differences import compare_files  # noqa: E402
 
 VERSION = re.search(r"project\(impact-damper VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 OWN = "the project's own build"
-COMPILERS = {"g++": ["-O0", "-O3 -march=native", "-O2 with LTO"], "clang++": ["-O3 -march=native", "-O2 with LTO"]}
-# Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
-FLAGS = {
-    "-O0": ["-DCMAKE_CXX_FLAGS=-O0 -ftrivial-auto-var-init=pattern"],
-    "-O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
-    "-O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"],
+LTO = "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"
+# What CMake is called with. Variables that nobody set hold a pattern at -O0, where otherwise they would often be zero.
+BUILDS = {
+    "g++ -O0": ["-DCMAKE_CXX_FLAGS=-O0 -ftrivial-auto-var-init=pattern"],
+    "g++ -O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
+    "g++ -O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", LTO],
+    "clang++ -O3 -march=native": ["-DCMAKE_CXX_FLAGS=-O3 -march=native"],
+    "clang++ -O2 with LTO": ["-DCMAKE_CXX_FLAGS=-O2", LTO, "-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld"],
 }
+BUILDS = {name: [f"-DCMAKE_CXX_COMPILER={name.split()[0]}", "-DCMAKE_BUILD_TYPE=None", *options]
+          for name, options in BUILDS.items()}
+LINUX = ["aarch64", "riscv64", "s390x"]
+BUILDS |= {name: ["--toolchain", SOURCE / "toolchains/linux.cmake", f"-DMACHINE={name}"] for name in LINUX}
+BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "toolchains/wasm.cmake"]
+# What runs the programs of other machines.
+RUNNERS = {**{name: [f"qemu-{name}"] for name in LINUX}, "WebAssembly": ["node"]}
 EACH_SURROUNDING_BY_ITSELF = "clang++ -O3 -march=native"
 FEATURES = {"": {}, "without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"}}
 SURROUNDINGS = ["time zone", "comma locale", "folder", "~/.gnuplot"]
@@ -58,13 +69,14 @@ ENGINES = ["exact", "restitution", "cem"]
 # The component element method's other ways, on the small scenes.
 WAYS = {"exact": [[], ["--calibration", "two-body"]], "restitution": [[]],
         "cem": [[], ["--locate", "--large-step", "0.05", "--calibration", "two-body"], ["--damper", "lagged"]]}
+MEMBERS_OF_CLAIMS = 8  # of each ensemble: half of them, and the verdicts are the same
 RECORD = ["--record", "half_cycles,impacts,contacts,energy,history", "--history", "0:150:301"]
 
 
 class Setting(NamedTuple):
     """One cell of the matrix: a program, and what surrounds it."""
     program: Path
-    build: str
+    build: str  # its name in BUILDS
     features: str = ""
     surroundings: tuple = ()
 
@@ -77,6 +89,7 @@ class Places(NamedTuple):
     work: Path     # the matrix's own folder
     locales: Path  # where de_DE.UTF-8 is
     home: Path     # of another user
+    runs: Path     # that verdicts are about
 
     def environment(self, features: str, surroundings) -> dict:
         kept = {name: os.environ[name] for name in ("PATH", "HOME", "TMPDIR") if name in os.environ}
@@ -113,25 +126,30 @@ def call(command, **options) -> str:
     return done.stdout
 
 
-def build(work: Path, compiler: str, name: str) -> Path:
-    folder = work / re.sub(r"[^\w+]+", "-", f"{compiler} {name}")
-    options = list(FLAGS[name])
-    if compiler == "clang++" and name.endswith("LTO"):
-        options.append("-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld")
-    call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={compiler}",
-          "-DCMAKE_BUILD_TYPE=None", *options])
+def build(work: Path, name: str) -> Path:
+    folder = work / re.sub(r"[^\w+]+", "-", name)
+    call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", *BUILDS[name]])
     call(["cmake", "--build", folder, "--target", "impact-damper", "-j1"])
-    say(f"built with {compiler} {name}")
-    return folder / "src" / "impact-damper"
+    say(f"built {name}")
+    return folder / "src" / ("impact-damper.js" if name == "WebAssembly" else "impact-damper")
 
 
-def make_places(work: Path) -> Places:
-    places = Places(work, work / "locales", work / "another user")
+def tools_of(name: str) -> list:
+    if name in LINUX:
+        return [f"{name}-linux-gnu-g++", *RUNNERS[name]]
+    if name == "WebAssembly":
+        return ["em++", *RUNNERS[name]]
+    return [name.split()[0]] + ["ld.lld"] * name.startswith("clang++")
+
+
+def make_places(work: Path, runs: Path) -> Places:
+    places = Places(work, work / "locales", work / "another user", runs)
     places.home.mkdir(parents=True, exist_ok=True)
     shutil.copy(HERE / "hostile.gnuplot", places.home / ".gnuplot")
     other = places.folder(["folder"])
     for part in ("data/scenes", "figures", "tests/same_bits/scenes"):
         shutil.copytree(SOURCE / part, other / part, dirs_exist_ok=True)
+    shutil.copy(SOURCE / "data/claims.json", other / "data")
     if not (places.locales / "de_DE.UTF-8").exists():
         if not shutil.which("localedef") or not Path("/usr/share/i18n/locales/de_DE").exists():
             missing("there is no locale de_DE to make: make deps-check installs it")
@@ -172,7 +190,7 @@ def plans_of(catalogue: dict) -> list:
 
 
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
-    """All runs and tables of one setting, below `results`."""
+    """All runs, tables and verdicts of one setting, below `results`."""
     shutil.rmtree(results, ignore_errors=True)
     options = {"cwd": places.folder(setting.surroundings),
                "env": places.environment(setting.features, setting.surroundings)}
@@ -183,6 +201,10 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
         # By another process: what this one has open for writing, its other threads' children have, too, and no
         # program starts from a file that somebody may write.
         call(["cp", setting.program, program])
+
+    def ask(*words):
+        call([*RUNNERS.get(setting.build, []), program, *words], **options)
+
     for engine in ENGINES:
         runs, tables = results / engine / "runs", results / engine / "tables"
         runs.mkdir(parents=True)
@@ -194,34 +216,34 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
             members = max((count for scene, count in shown if scene == entry["scene"]), default=1)
             windows = [["--history-below", f"{w['amplitude']}:{w['length']}:{w['count']}"]
                        for w in entry.get("history_below", [])]
-            call([program, "run", "--scene", f"data/scenes/{entry['scene']}.json", "--engine", engine, "--record",
-                  ",".join(entry["record"]), *sum(windows, []), "--members", str(members), "-o", runs / f"{entry['scene']}.json"], **options)
+            ask("run", "--scene", f"data/scenes/{entry['scene']}.json", "--engine", engine, "--record",
+                ",".join(entry["record"]), *sum(windows, []), "--members", str(members), "-o", runs / f"{entry['scene']}.json")
         for scene in sorted((HERE / "scenes").glob("*.json")):
             for number, way in enumerate(WAYS[engine]):
-                call([program, "run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
-                      *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json"], **options)
+                ask("run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
+                    *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json")
         for entry in drawn_runs(catalogue):  # with an engine of their own
             file = runs / f"{entry['name']}.json"
             if engine == ENGINES[0]:
-                call([program, *rerun(entry, "data/scenes"), "--members", str(catalogue["members"]), "-o", file], **options)
+                ask(*rerun(entry, "data/scenes"), "--members", str(catalogue["members"]), "-o", file)
             else:
                 shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
                 shutil.copytree(results / ENGINES[0] / "runs" / f"{entry['name']}.members", runs / f"{entry['name']}.members")
         for entry in catalogue["responses"]:  # likewise
             file = runs / f"{entry['name']}.json"
             if engine == ENGINES[0]:
-                call([program, *respond(entry, "data/scenes"), "-o", file], **options)
+                ask(*respond(entry, "data/scenes"), "-o", file)
             else:
                 shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
         for plan in plans_of(catalogue):  # an engine of its own, too
             table = runs / f"{Path(plan).stem}.csv"
             if engine == ENGINES[0]:
-                call([program, "sweep", catalogues[engine].with_name(plan), "-o", table], **options)
+                ask("sweep", catalogues[engine].with_name(plan), "-o", table)
             else:
                 for file in (table, table.with_name(table.name + ".json")):
                     shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
-        call([program, "series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1",
-              "-o", tables], **options)
+        ask("series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1", "-o", tables)
+    ask("verify", "--runs", places.runs, "--members", MEMBERS_OF_CLAIMS, "-o", results / "verdicts.json")
     for table in results.rglob("*.csv.json"):  # names the program, of which each is another
         table.unlink()
 
@@ -247,7 +269,7 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
 
 
 def held_against(reference: Path, results: Path) -> list:
-    """What differs, as text; names are engine/runs/SCENE.json, engine/tables/figNN.dat, engine/figNN.svg."""
+    """What differs, as text; names are engine/runs/SCENE.json, engine/tables/figNN.dat, engine/figNN.svg, verdicts.json."""
     found = []
     names = {path.relative_to(root) for root in (reference, results) for kind in ("json", "dat", "svg")
              for path in root.rglob(f"*.{kind}")}
@@ -263,7 +285,7 @@ def settings_of(programs: dict) -> list:
     at_home, all_at_once = (), tuple(SURROUNDINGS)
     cells = []
     for name, program in programs.items():
-        chosen = [(usual, at_home), (reduced, all_at_once)]
+        chosen = [(usual, at_home)] + [(reduced, all_at_once)] * (name not in RUNNERS)
         if name == OWN:
             chosen += [(usual, all_at_once), (reduced, at_home)]
         if name == EACH_SURROUNDING_BY_ITSELF:
@@ -281,25 +303,27 @@ def main() -> int:
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
         missing(f"{own} is missing: make build")
-    compilers = [name for name in COMPILERS if name != "clang++" or not arguments.without_clang]
-    for tool in compilers + ["cmake", "ninja", "gnuplot"] + ["ld.lld"] * ("clang++" in compilers):
+    runs = arguments.build.resolve() / "runs/exact"
+    if not runs.exists():
+        missing(f"{runs} is missing: make verify")
+    wanted = [name for name in BUILDS if not (arguments.without_clang and name.startswith("clang++")) and
+              (not arguments.only or name.startswith(tuple(arguments.only.split(","))))]
+    for tool in ["cmake", "ninja", "gnuplot"] + sum(map(tools_of, wanted), []):
         if not shutil.which(tool):
-            missing(f"{tool} is missing: make deps-check installs it" +
+            missing(f"{tool} is missing: make deps-same-bits installs it" +
                     ("; --without-clang leaves its builds out" if tool in ("clang++", "ld.lld") else ""))
     begin = time.monotonic()
     work = arguments.build.resolve() / "same_bits"
     work.mkdir(exist_ok=True)
-    places = make_places(work)
+    places = make_places(work, runs)
     catalogues = small_catalogues(work)
 
     programs = {OWN: own}
-    wanted = [(compiler, name) for compiler in compilers for name in COMPILERS[compiler]
-              if not arguments.only or f"{compiler} {name}".startswith(tuple(arguments.only.split(",")))]
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        made = pool.map(lambda each: build(work, *each), wanted)
-    programs |= {" ".join(each): program for each, program in zip(wanted, made)}
+        made = pool.map(lambda name: build(work, name), wanted)
+    programs |= dict(zip(wanted, made))
     built = time.monotonic()
 
     cells = settings_of(programs)
@@ -345,10 +369,10 @@ def main() -> int:
         if len(found) > 3:
             print(f"  and {len(found) - 3} more")
     files = sum(1 for kind in ("json", "dat") for path in reference.rglob(f"*.{kind}"))
-    print(f"\nsame bits: {len(programs)} programs, {len(cells)} settings of {files} runs and tables, "
+    print(f"\nsame bits: {len(programs)} programs, {len(cells)} settings of {files} runs, tables and verdicts, "
           f"{len(drawings)} of {len(list((work / 'pictures-0').rglob('*.svg')))} pictures: " +
           (f"{len(wrong)} settings differ" if wrong else "no byte differs"))
-    if "clang++" not in compilers:
+    if arguments.without_clang:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
     if arguments.only:
         print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")

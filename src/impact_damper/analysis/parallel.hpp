@@ -52,10 +52,15 @@ void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
     }
   };
   {
-    std::vector<std::jthread> helpers;
+    struct Helpers {
+      std::vector<std::thread> threads;
+      ~Helpers() {
+        for (std::thread& each : threads) each.join();
+      }
+    } helpers;
     try {
       for (std::int64_t n = std::min(number_of(threads), count); n > 1; --n)
-        helpers.emplace_back(take_indices);
+        helpers.threads.emplace_back(take_indices);
     } catch (const std::system_error&) {
       // No more threads are to be had: those that there are do the work.
     }

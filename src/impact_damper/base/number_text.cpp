@@ -2,28 +2,45 @@
 
 #include <charconv>
 #include <cmath>
+#include <system_error>
+
+#include "impact_damper/base/number_by_printf.hpp"
 
 namespace impact_damper {
 namespace {
 
 template <typename Number>
-std::optional<Number> parse_whole(std::string_view text) {
-  Number value{};
+std::errc read(std::string_view text, Number& value) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) return std::nullopt;
+  return error == std::errc{} && stop != end ? std::errc::invalid_argument : error;
+}
+
+#ifdef __cpp_lib_to_chars  // <charconv> knows double
+template <typename... Form>
+std::string written(double value, Form... form) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, form...).ptr};
+}
+#else
+std::errc read(std::string_view text, double& value) { return by_printf::read(text, value); }
+std::string written(double value) { return by_printf::shortest_text(value); }
+std::string written(double value, std::chars_format, int digits) {
+  return by_printf::rounded_text(value, digits);
+}
+#endif
+
+template <typename Number>
+std::optional<Number> parse_whole(std::string_view text) {
+  Number value{};
+  if (read(text, value) != std::errc{}) return std::nullopt;
   return value;
 }
 
 }  // namespace
 
 void append_number(std::string& text, double value) {
-  if (value == 0 && std::signbit(value)) {
-    text += "-0.0";
-    return;
-  }
-  char digits[40];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  text += value == 0 && std::signbit(value) ? "-0.0" : written(value);
 }
 
 void append_number(std::string& text, std::int64_t value) {
@@ -39,8 +56,7 @@ std::string number_text(double value) {
 }
 
 std::string rounded_text(double value, int digits) {
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+  return written(value, std::chars_format::general, digits);
 }
 
 std::optional<double> parse_number(std::string_view text) {

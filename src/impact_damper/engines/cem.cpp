@@ -1,6 +1,5 @@
 #include "impact_damper/engines/cem.hpp"
 
-#include <charconv>
 #include <numbers>
 #include <string>
 
@@ -9,11 +8,7 @@
 namespace impact_damper {
 namespace {
 
-std::string rounded(double value) {
-  char text[32];
-  char* const end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
-  return {text, end};
-}
+std::string rounded(double value) { return rounded_text(value, 6); }
 // At most `value`, so that whoever types it in is not rejected.
 std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
 

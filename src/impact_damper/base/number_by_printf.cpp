@@ -1,0 +1,138 @@
+#include "impact_damper/base/number_by_printf.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace impact_damper::by_printf {
+namespace {
+
+template <class... Arguments>
+std::string printed(const char* format, Arguments... arguments) {
+  std::array<char, 400> text;  // the largest number has 309 digits
+  return {text.data(), std::size_t(std::snprintf(text.data(), text.size(), format, arguments...))};
+}
+
+// 0.d1d2d3... * 10^point, without zeros at the end.
+struct Decimal {
+  std::string digits;
+  int point;
+};
+
+Decimal decimal_of(double magnitude, int digits) {
+  std::string text = printed("%.*e", digits - 1, magnitude);  // d.ddde+xx
+  const std::size_t letter = text.find('e');
+  const int point = 1 + std::atoi(text.c_str() + letter + 1);
+  text.resize(letter);
+  std::erase(text, '.');
+  text.resize(text.find_last_not_of('0') + 1);
+  return {text, point};
+}
+
+double value_of(const Decimal& decimal) {
+  return std::strtod(printed("0.%se%d", decimal.digits.c_str(), decimal.point).c_str(), nullptr);
+}
+
+// The neighbour with as many digits, one unit of the last digit below.
+Decimal just_below(Decimal decimal) {
+  std::size_t i = decimal.digits.size();
+  while (i > 0 && decimal.digits[i - 1] == '0') decimal.digits[--i] = '9';
+  if (i > 0) --decimal.digits[i - 1];
+  return decimal;
+}
+
+Decimal just_above(Decimal decimal) {
+  std::size_t i = decimal.digits.size();
+  while (i > 0 && decimal.digits[i - 1] == '9') decimal.digits[--i] = '0';
+  if (i > 0) {
+    ++decimal.digits[i - 1];
+  } else {
+    decimal.digits.insert(0, 1, '1');
+    ++decimal.point;
+  }
+  return decimal;
+}
+
+// Of the decimal numbers that read back as `magnitude`, those with the fewest digits; of these the nearest.
+Decimal shortest(double magnitude) {
+  // Up to 15 digits of a normal number come back from a double unchanged, so whatever has fewer is found with
+  // zeros behind it. A subnormal number has fewer digits.
+  const int first = magnitude < 0x1p-1022 ? 1 : 15;
+  for (int digits = first; digits < 17; ++digits) {
+    const Decimal nearest = decimal_of(magnitude, digits);
+    if (value_of(nearest) == magnitude) return nearest;
+    // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
+    // where its neighbour, somewhat farther, does not.
+    Decimal full = nearest;
+    full.digits.resize(std::size_t(digits), '0');
+    for (const Decimal& neighbour : {just_below(full), just_above(full)})
+      if (value_of(neighbour) == magnitude) return neighbour;
+  }
+  return decimal_of(magnitude, 17);
+}
+
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+
+std::size_t skip_digits(std::string_view text, std::size_t i) {
+  while (i < text.size() && is_digit(text[i])) ++i;
+  return i;
+}
+
+// strtod takes more: blanks, a plus sign, hexadecimal digits.
+bool is_decimal(std::string_view text) {
+  std::size_t i = text.starts_with('-') ? 1 : 0;
+  const std::size_t whole = skip_digits(text, i);
+  std::size_t digits = whole - i;
+  i = whole;
+  if (i < text.size() && text[i] == '.') {
+    const std::size_t fraction = skip_digits(text, i + 1);
+    digits += fraction - (i + 1);
+    i = fraction;
+  }
+  if (digits == 0) return false;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    ++i;
+    if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+    const std::size_t exponent = skip_digits(text, i);
+    if (exponent == i) return false;
+    i = exponent;
+  }
+  return i == text.size();
+}
+
+}  // namespace
+
+std::string shortest_text(double value) {
+  if (!std::isfinite(value) || value == 0) return printed("%.0f", value);
+  const std::string sign = value < 0 ? "-" : "";
+  const auto [digits, point] = shortest(std::abs(value));
+  const int count = int(digits.size());
+  // Scientific where it is shorter. Both lengths follow from the exponent of the last digit.
+  const int last = point - count;
+  const bool one = count == 1;
+  if (last < -(count + 3) + one || last > 5 - one) {
+    const int exponent = point - 1;
+    return sign + digits.substr(0, 1) + (one ? "" : "." + digits.substr(1)) +
+           printed("e%c%02d", exponent < 0 ? '-' : '+', std::abs(exponent));
+  }
+  if (last >= 0) return printed("%.0f", value);
+  if (point <= 0) return sign + "0." + std::string(std::size_t(-point), '0') + digits;
+  return sign + digits.substr(0, std::size_t(point)) + "." + digits.substr(std::size_t(point));
+}
+
+std::string rounded_text(double value, int digits) { return printed("%.*g", digits, value); }
+
+std::errc read(std::string_view text, double& value) {
+  if (!is_decimal(text)) return std::errc::invalid_argument;
+  const std::string ended(text);
+  const double read = std::strtod(ended.c_str(), nullptr);
+  // Out of range is what is larger than all numbers, and what is not zero and read as zero.
+  const bool has_digit =
+      ended.substr(0, ended.find_first_of("eE")).find_first_of("123456789") != std::string::npos;
+  if (std::isinf(read) || (read == 0 && has_digit)) return std::errc::result_out_of_range;
+  value = read;
+  return {};
+}
+
+}  // namespace impact_damper::by_printf

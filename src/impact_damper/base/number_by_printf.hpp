@@ -1,0 +1,21 @@
+// Numbers as text and back by printf and strtod, with the very text of std::to_chars: for standard libraries
+// whose <charconv> knows integers only (LLVM's up to version 13, which WebAssembly is compiled with).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace impact_damper::by_printf {
+
+// What std::to_chars(value) writes: the shortest text that reads back as `value`.
+std::string shortest_text(double value);
+
+// What std::to_chars(value, std::chars_format::general, digits) writes.
+std::string rounded_text(double value, int digits);
+
+// What std::from_chars does with the whole of `text`: not {} if it is no number, or one out of range, or if
+// something follows it. Then `value` is left as it was.
+std::errc read(std::string_view text, double& value);
+
+}  // namespace impact_damper::by_printf
