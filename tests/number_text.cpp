@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/base/number_by_printf.hpp"
+#include "impact_damper/base/number_by_c_library.hpp"
 
 using namespace impact_damper;
 
@@ -63,20 +63,20 @@ std::vector<double> awkward_numbers() {
   return numbers;
 }
 
-TEST_CASE("by printf and strtod numbers have the text of to_chars, and are read as by from_chars") {
+TEST_CASE("by the C library numbers have the text of to_chars, and are read as by from_chars") {
   for (const double value : awkward_numbers()) {
     if (std::isnan(value)) continue;
     char text[400];
     const std::string shortest(text, std::to_chars(text, text + sizeof text, value).ptr);
-    CHECK(by_printf::shortest_text(value) == shortest);
+    CHECK(by_c_library::shortest_text(value) == shortest);
     for (const int digits : {1, 6, 17}) {
       const std::string rounded(
           text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr);
-      CHECK(by_printf::rounded_text(value, digits) == rounded);
+      CHECK(by_c_library::rounded_text(value, digits) == rounded);
     }
     if (!std::isfinite(value)) continue;
     double back = 7;
-    REQUIRE(by_printf::read(shortest, back) == std::errc{});
+    REQUIRE(by_c_library::read(shortest, back) == std::errc{});
     CHECK(std::bit_cast<std::uint64_t>(back) == std::bit_cast<std::uint64_t>(value));
   }
 }
@@ -91,7 +91,7 @@ TEST_CASE("strtod takes no text that from_chars does not take") {
     double expected = 7, value = 7;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), expected);
     const bool whole = error == std::errc{} && stop == text.data() + text.size();
-    CHECK((by_printf::read(text, value) == std::errc{}) == whole);
+    CHECK((by_c_library::read(text, value) == std::errc{}) == whole);
     if (whole) CHECK(value == expected);
     if (!whole) CHECK(value == 7);
   }

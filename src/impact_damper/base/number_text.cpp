@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "impact_damper/base/number_by_printf.hpp"
+#include "impact_damper/base/number_by_c_library.hpp"
 
 namespace impact_damper {
 namespace {
@@ -23,10 +23,10 @@ std::string written(double value, Form... form) {
   return {text, std::to_chars(text, text + sizeof text, value, form...).ptr};
 }
 #else
-std::errc read(std::string_view text, double& value) { return by_printf::read(text, value); }
-std::string written(double value) { return by_printf::shortest_text(value); }
+std::errc read(std::string_view text, double& value) { return by_c_library::read(text, value); }
+std::string written(double value) { return by_c_library::shortest_text(value); }
 std::string written(double value, std::chars_format, int digits) {
-  return by_printf::rounded_text(value, digits);
+  return by_c_library::rounded_text(value, digits);
 }
 #endif
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace impact_damper::by_printf {
+namespace impact_damper::by_c_library {
 
 // What std::to_chars(value) writes: the shortest text that reads back as `value`.
 std::string shortest_text(double value);
@@ -18,4 +18,4 @@ std::string rounded_text(double value, int digits);
 // something follows it. Then `value` is left as it was.
 std::errc read(std::string_view text, double& value);
 
-}  // namespace impact_damper::by_printf
+}  // namespace impact_damper::by_c_library

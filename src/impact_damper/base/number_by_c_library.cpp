@@ -1,11 +1,11 @@
-#include "impact_damper/base/number_by_printf.hpp"
+#include "impact_damper/base/number_by_c_library.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
-namespace impact_damper::by_printf {
+namespace impact_damper::by_c_library {
 namespace {
 
 template <class... Arguments>
@@ -135,4 +135,4 @@ std::errc read(std::string_view text, double& value) {
   return {};
 }
 
-}  // namespace impact_damper::by_printf
+}  // namespace impact_damper::by_c_library
