@@ -23,7 +23,7 @@ struct Decimal {
 Decimal decimal_of(double magnitude, int digits) {
   std::string text = printed("%.*e", digits - 1, magnitude);  // d.ddde+xx
   const std::size_t letter = text.find('e');
-  const int point = 1 + std::atoi(text.c_str() + letter + 1);
+  const int point = 1 + int(std::strtol(text.c_str() + letter + 1, nullptr, 10));
   text.resize(letter);
   std::erase(text, '.');
   text.resize(text.find_last_not_of('0') + 1);
@@ -60,7 +60,7 @@ Decimal shortest(double magnitude) {
   // zeros behind it. A subnormal number has fewer digits.
   const int first = magnitude < 0x1p-1022 ? 1 : 15;
   for (int digits = first; digits < 17; ++digits) {
-    const Decimal nearest = decimal_of(magnitude, digits);
+    Decimal nearest = decimal_of(magnitude, digits);
     if (value_of(nearest) == magnitude) return nearest;
     // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
     // where its neighbour, somewhat farther, does not.

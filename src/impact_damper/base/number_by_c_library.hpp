@@ -1,5 +1,6 @@
 // Numbers as text and back by printf and strtod, with the very text of std::to_chars: for standard libraries
-// whose <charconv> knows integers only (LLVM's up to version 13, which WebAssembly is compiled with).
+// whose <charconv> knows integers only (LLVM's up to version 13, which WebAssembly is compiled with). Right
+// only in the locale "C", the only one there.
 #pragma once
 
 #include <string>
