@@ -25,8 +25,8 @@ PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recomm
 BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-numerics-dev
 # What sweeps on several machines are tested with.
 CLUSTER_PACKAGES := python3 slurm-wlm munge parallel rsync
-# What WebAssembly is compiled and run with, and what is compiled for other processors.
-WASM_PACKAGES := emscripten nodejs node-acorn
+# What WebAssembly is compiled, run and tried with, and what is compiled for other processors.
+WASM_PACKAGES := emscripten nodejs node-acorn node-typescript python3 chromium
 MACHINE_PACKAGES := g++-aarch64-linux-gnu g++-riscv64-linux-gnu g++-s390x-linux-gnu qemu-user
 # What a bare system is made with.
 BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
@@ -34,8 +34,8 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits build install report-page figures verify paper docs test bench bench-record \
-  stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits reference archive clean
+.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install report-page figures verify paper docs test bench bench-record \
+  stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits wasm wasm-check reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -60,6 +60,9 @@ deps-paper:  ## the same for the report: make deps-paper paper
 
 deps-same-bits:  ## the same for other compilers and processors: make deps-same-bits same-bits
 	@.ci/install $(PACKAGES) $(CHECK_PACKAGES) $(WASM_PACKAGES) $(MACHINE_PACKAGES)
+
+deps-wasm:  ## the same for the package for browsers and node: make deps-wasm wasm
+	@.ci/install $(PACKAGES) $(WASM_PACKAGES)
 
 deps-bare:  ## the same for a bare system to try both commands of README.md in: make deps-bare bare
 	@.ci/install $(BARE_PACKAGES)
@@ -197,6 +200,14 @@ mutation:  ## plant faults in a copy of the library, one by one: do the fast tes
 
 same-bits:  ## the same bytes from other compilers, processors, WebAssembly and strange surroundings (a quarter of an hour)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
+
+wasm:  ## the library for browsers and node, as an npm package: build/wasm/
+	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
+	  >$(BUILD)/wasm.log || { cat $(BUILD)/wasm.log; echo "make $@: make deps-wasm installs what it needs" >&2; exit 1; }; \
+	cmake --build $(BUILD)/wasm --target npm_package && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz)"
+
+wasm-check: wasm build  ## the package's run files are the program's, in node and in a browser (minutes)
+	@tests/wasm/check.py $(BUILD)/src/impact-damper $(BUILD)/wasm/impact-damper-*.tgz $(BUILD)/wasm/check
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)

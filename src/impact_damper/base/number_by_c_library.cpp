@@ -59,11 +59,14 @@ Decimal shortest(double magnitude) {
   // Up to 15 digits of a normal number come back from a double unchanged, so whatever has fewer is found with
   // zeros behind it. A subnormal number has fewer digits.
   const int first = magnitude < 0x1p-1022 ? 1 : 15;
+  int exponent = 0;
+  const bool is_power_of_two = std::frexp(magnitude, &exponent) == 0.5;
   for (int digits = first; digits < 17; ++digits) {
     Decimal nearest = decimal_of(magnitude, digits);
     if (value_of(nearest) == magnitude) return nearest;
     // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
     // where its neighbour, somewhat farther, does not.
+    if (!is_power_of_two) continue;
     Decimal full = nearest;
     full.digits.resize(std::size_t(digits), '0');
     for (const Decimal& neighbour : {just_below(full), just_above(full)})

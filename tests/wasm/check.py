@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""The package for WebAssembly: installed from its tarball, in node and in a browser, the program's own bytes.
+
+    check.py PROGRAM TARBALL WORK
+
+PROGRAM is the native program, WORK a folder that is filled anew. Exit code 77: there is no node or no Chromium.
+"""
+import functools
+import http.server
+import json
+import shutil
+import struct
+import subprocess
+import sys
+import tarfile
+import threading
+import unittest
+from math import sin
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
+sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits")]
+import chromium  # noqa: E402
+from differences import compare_files  # noqa: E402
+
+PROGRAM, TARBALL, WORK = None, None, None
+CLOSED_FORM = [{"name": "exact"}, {"name": "restitution"}]
+# The component element method takes a hundred times as long: it has only the shorter scenes.
+ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
+SCENES = [(scene, engine) for folder, engines in (("data/scenes", CLOSED_FORM), ("tests/same_bits/scenes", ALL))
+          for scene in sorted((SOURCE / folder).glob("*.json")) for engine in engines]
+WINDOW = {"begin": 0, "end": 30, "count": 301}
+WRONG = ["{", "[]", '{"mass_ratio": -1}', '{"x0": 1, "until_time": 1, "foo": 2}', '{"x0": "Übung", "until_time": 1}',
+         '{"x0": 1, "until_time": 1e400}']
+
+
+def call(*words, cwd=None) -> str:
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=cwd)
+    if done.returncode:
+        raise AssertionError(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def install(folder: Path):
+    """As npm does for a package that needs no other; by npm where there is one."""
+    folder.mkdir(parents=True)
+    (folder / "package.json").write_text('{"name": "stranger", "private": true, "type": "module"}')
+    if shutil.which("npm"):
+        call("npm", "install", "--offline", "--no-audit", "--no-fund", TARBALL, cwd=folder)
+        return
+    print("no npm: the tarball is unpacked instead", file=sys.stderr)
+    with tarfile.open(TARBALL) as tar:
+        tar.extractall(folder / "node_modules")
+    (folder / "node_modules/package").rename(folder / "node_modules/impact-damper")
+
+
+def jobs(folder: Path) -> list:
+    return [{"scene": scene.read_text(), "options": {"engine": engine, "history": WINDOW},
+             "file": str(folder / f"{scene.stem}-{engine['name']}.json")} for scene, engine in SCENES]
+
+
+def run_natively(folder: Path):
+    folder.mkdir(parents=True)
+    for scene, engine in SCENES:
+        step = ["--time-step", str(engine["time_step"])] if "time_step" in engine else []
+        call(PROGRAM, "run", "--scene", scene, "--engine", engine["name"], *step,
+             "--record", "half_cycles,impacts,contacts,energy,history",
+             "--history", f"{WINDOW['begin']}:{WINDOW['end']}:{WINDOW['count']}",
+             "-o", folder / f"{scene.stem}-{engine['name']}.json")
+
+
+def run_in_node(stranger: Path, folder: Path) -> str:
+    folder.mkdir(parents=True)
+    todo = stranger / "jobs.json"
+    todo.write_text(json.dumps(jobs(folder)))
+    shutil.copy(HERE / "runs.mjs", stranger)
+    return call("node", "runs.mjs", todo, cwd=stranger)
+
+
+def different(one: Path, other: Path) -> list:
+    names = sorted(path.name for path in one.glob("*.json"))
+    return [str(found) for found in (compare_files(name, str(one / name), str(other / name)) for name in names) if found]
+
+
+def plant_wrong_bit(module: Path):
+    """The last bit of the sine of 1/16 in the table that the module's sine begins with (elementary_tables.cpp)."""
+    entry = struct.pack("<d", round(sin(1 / 16) * 2**52) / 2**52)
+    data = module.read_bytes()
+    if data.count(entry) == 0:
+        raise AssertionError("the sine's table is not in the module")
+    module.write_bytes(data.replace(entry, bytes([entry[0] ^ 1]) + entry[1:]))
+
+
+class Served:
+    """Files by HTTP on this machine: browsers load no module from a file."""
+
+    def __init__(self, folder: Path):
+        class Handler(http.server.SimpleHTTPRequestHandler):
+            def log_message(self, *_):
+                pass
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=folder))
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        self.address = f"http://127.0.0.1:{self.server.server_port}"
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(WORK, ignore_errors=True)
+        cls.stranger = WORK / "stranger"
+        install(cls.stranger)
+        cls.package = cls.stranger / "node_modules/impact-damper"
+        run_natively(WORK / "native")
+
+    def test_in_node_run_files_are_the_programs(self):
+        self.assertEqual(run_in_node(self.stranger, WORK / "node"), "")
+        self.assertEqual(different(WORK / "native", WORK / "node"), [])
+
+    def test_one_wrong_bit_in_the_sine_is_noticed(self):
+        faulty = WORK / "faulty"
+        shutil.copytree(self.stranger, faulty)
+        plant_wrong_bit(faulty / "node_modules/impact-damper/impact-damper.wasm")
+        run_in_node(faulty, WORK / "wrong")
+        self.assertNotEqual(different(WORK / "native", WORK / "wrong"), [])
+
+    def test_a_scene_is_rejected_in_the_programs_words(self):
+        folder = WORK / "rejected"
+        folder.mkdir()
+        todo = [{"scene": text, "options": {}, "file": str(folder / f"{i}.txt")} for i, text in enumerate(WRONG)]
+        (self.stranger / "wrong.json").write_text(json.dumps(todo))
+        shutil.copy(HERE / "runs.mjs", self.stranger)
+        call("node", "runs.mjs", "wrong.json", cwd=self.stranger)
+        for i, text in enumerate(WRONG):
+            with self.subTest(text):
+                scene = folder / f"{i}.json"
+                scene.write_text(text)
+                done = subprocess.run([PROGRAM, "run", "--scene", scene], capture_output=True, text=True)
+                kind, *words = (folder / f"{i}.txt").read_text().splitlines()
+                self.assertEqual(kind, "invalid")
+                self.assertEqual("\n".join(words), done.stderr.strip().replace(str(scene), "scene"))
+
+    def test_the_example_prints_what_the_program_computes(self):
+        shutil.copy(self.package / "example.mjs", self.stranger)
+        printed = call("node", "example.mjs", cwd=self.stranger)
+        file = WORK / "example.json"
+        call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", "0.6", "--x0", "6", "--until-amplitude", "0.25",
+             "--record", "half_cycles,impacts", "-o", file)
+        run = json.loads(file.read_text())
+        self.assertIn(f"{run['end_time'] / 6.283185307179586:.1f} periods, {len(run['impacts']['time'])} impacts", printed)
+        self.assertIn(f"largest amplitude {run['half_cycles']['amplitude'][0]:.3f}", printed)
+
+    def test_a_run_that_is_no_longer_wanted_ends_at_once(self):
+        script = """
+          import { run } from "impact-damper";
+          const scene = { x0: 6, mass_ratio: 0.02, restitution: 0.6, until_time: 1e6 };
+          const wanted = new AbortController();
+          const begin = performance.now();
+          const long = run(scene, { engine: { name: "cem", time_step: 1e-6 }, signal: wanted.signal });
+          const queued = run(scene, { engine: "cem", signal: AbortSignal.abort("never wanted") });
+          const next = run({ ...scene, until_time: 10 });
+          setTimeout(() => wanted.abort("enough"), 200);
+          const ends = await Promise.allSettled([long, queued, next]);
+          console.log(JSON.stringify([ends[0].reason, ends[1].reason, ends[2].value.end_time]));
+        """
+        (self.stranger / "aborted.mjs").write_text(script)
+        self.assertEqual(json.loads(call("timeout", "60", "node", "aborted.mjs", cwd=self.stranger)), ["enough", "never wanted", 10])
+
+    def test_the_types_are_right(self):
+        if not shutil.which("tsc"):
+            self.skipTest("no TypeScript: make deps-wasm installs it")
+        shutil.copy(HERE / "types.ts", self.stranger)
+        call("tsc", "--noEmit", "--strict", "--target", "es2022", "--module", "node16", "--moduleResolution", "node16",
+             "--lib", "es2022,dom", "types.ts", cwd=self.stranger)
+
+    def test_in_a_browser_run_files_are_the_programs(self):
+        folder = WORK / "browser"
+        folder.mkdir()
+        shutil.copy(HERE / "page.html", folder)
+        (folder / "package").symlink_to(self.package)
+        served = Served(folder)
+        with chromium.Page() as page:
+            page.call("Page.navigate", url=f"{served.address}/page.html")
+            while "Page.loadEventFired" not in page.events:
+                page.answer()
+            for job in jobs(folder):
+                options = json.dumps({**job["options"], "file": True})
+                text = page.does(f"run({json.dumps(job['scene'])}, {options}).then((run) => run.file)")
+                Path(job["file"]).write_text(text)
+            foreign = [said for said in page.messages if served.address not in said]
+        self.assertEqual(foreign, [])
+        self.assertEqual(different(WORK / "native", folder), [])
+
+
+if __name__ == "__main__":
+    PROGRAM, TARBALL, WORK = (Path(argument).resolve() for argument in sys.argv[1:4])
+    if not shutil.which("node") or not chromium.program():
+        print("there is no node or no Chromium: make deps-wasm deps-check", file=sys.stderr)
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])
