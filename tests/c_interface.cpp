@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
@@ -107,6 +109,36 @@ std::string error_of(const char* scene, const char* engine, const impact_damper_
 }
 
 }  // namespace
+
+TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
+  const auto run_of = [](const char* scene) {
+    impact_damper_run* run = nullptr;
+    REQUIRE(impact_damper_simulate(scene, "exact", nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
+    return run;
+  };
+  impact_damper_run* run =
+      run_of(R"({"mass_ratio": 0.1, "restitution": 0.4, "x0": 6, "until_amplitude": 0.5})");
+  const Run wanted = simulate({.mass_ratio = 0.1, .restitution = 0.4, .x0 = 6, .until_amplitude = 0.5},
+                              Exact{}, {.contacts = true});
+  const LossFactor loss = averaged_loss_factor(*wanted.half_cycles);
+  std::vector<double> amplitude(wanted.half_cycles->amplitude.size()), time = amplitude, eta = amplitude;
+  const std::size_t rows = impact_damper_loss_factor(run, amplitude.data(), time.data(), eta.data());
+  REQUIRE(rows > 10);
+  for (std::vector<double>* column : {&amplitude, &time, &eta}) column->resize(rows);
+  CHECK(amplitude == loss.amplitude);
+  CHECK(time == loss.time);
+  CHECK(eta == loss.eta);
+  CHECK(impact_damper_bounce_down_end(run) == end_of_bounce_down(wanted).value());
+  impact_damper_free(run);
+
+  run = run_of(R"({"x0": 0.1, "until_time": 8})");
+  CHECK(impact_damper_loss_factor(run, amplitude.data(), time.data(), eta.data()) == 0);
+  CHECK(std::isnan(impact_damper_bounce_down_end(run)));
+  impact_damper_free(run);
+  run = run_of(R"({"dampers": [{"mass_ratio": 0.1, "restitution": 0.4}], "x0": 6, "until_amplitude": 0.5})");
+  CHECK(std::isnan(impact_damper_bounce_down_end(run)));
+  impact_damper_free(run);
+}
 
 TEST_CASE("every number of a run file is a column for C, with the same bits") {
   const impact_damper_window window = {0, 50, 101};

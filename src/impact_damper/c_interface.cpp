@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -232,6 +234,28 @@ const char* impact_damper_column_name(const impact_damper_run* run, size_t index
 
 const char* impact_damper_stop_reason(const impact_damper_run* run) {
   return impact_damper::name_of(run->run.stop_reason).data();  // of a literal, which '\0' ends
+}
+
+size_t impact_damper_loss_factor(const impact_damper_run* run, double* amplitude, double* time, double* eta) {
+  try {
+    const impact_damper::LossFactor loss = impact_damper::averaged_loss_factor(run->run.half_cycles.value());
+    std::ranges::copy(loss.amplitude, amplitude);
+    std::ranges::copy(loss.time, time);
+    std::ranges::copy(loss.eta, eta);
+    return loss.eta.size();
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+double impact_damper_bounce_down_end(const impact_damper_run* run) {
+  try {
+    if (run->run.scene.dampers.empty())
+      return impact_damper::as_double(impact_damper::end_of_bounce_down(run->run));
+  } catch (const std::exception&) {
+    // There was not enough memory to find it.
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 char* impact_damper_run_text(const impact_damper_run* run) {

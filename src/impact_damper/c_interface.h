@@ -58,6 +58,17 @@ const char* impact_damper_column_name(const impact_damper_run* run, size_t index
  * valid after impact_damper_free(). */
 const char* impact_damper_stop_reason(const impact_damper_run* run);
 
+/* The averaged loss factor, per radian, from the peaks of the half cycles: `eta` at `amplitude` and `time`,
+ * in the order of time, as in Figures 8 to 14 (analysis/loss_factor.hpp). Each of the three arrays must have
+ * place for as many numbers as "half_cycles/amplitude" has rows; the result is how many were filled, 0 for a
+ * run of 10 half cycles or fewer. Needs memory for as many numbers; 0 without it, too. */
+size_t impact_damper_loss_factor(const impact_damper_run* run, double* amplitude, double* time, double* eta);
+
+/* The amplitude at which bounce-down ended: that of the last of the first four or more successive half cycles
+ * in each of which the mass sticks to a wall (analysis/regimes.hpp). NaN if there were none, if the run ends
+ * among them, and for a scene with a list of dampers. */
+double impact_damper_bounce_down_end(const impact_damper_run* run);
+
 /* The text of the run file, as `impact-damper run` writes it, ended by '\0'; the caller must free() it. NULL
  * if there is not enough memory, or if a number of the run is not finite. */
 char* impact_damper_run_text(const impact_damper_run* run);

@@ -9,7 +9,7 @@ export class ImpactDamperError extends Error {
 }
 
 // What may be left out of a run; all else is always in it.
-export const groups = ["half_cycles", "impacts", "contacts", "energy", "history"];
+export const groups = ["half_cycles", "impacts", "contacts", "energy", "history", "loss"];
 
 const kinds = [undefined, "invalid", "numerical", "memory"]; // impact_damper_status
 const longestError = 16384;
@@ -116,6 +116,16 @@ export async function load(bytes) {
     }
   }
 
+  function lossOf(run, take) {
+    const rows = take(4);
+    module.impact_damper_column(run, putText("half_cycles/amplitude", take), rows);
+    const most = view().getUint32(rows, true);
+    const places = [0, 1, 2].map(() => take(8 * most + 8)); // never nothing
+    const count = module.impact_damper_loss_factor(run, ...places);
+    const [amplitude, time, eta] = places.map((place) => new Float64Array(module.memory.buffer, place, count).slice());
+    return { amplitude, time, eta };
+  }
+
   function fileOf(run) {
     const text = module.impact_damper_run_text(run);
     if (text === 0) throw new ImpactDamperError("memory", "not enough memory for the run file");
@@ -138,6 +148,8 @@ export async function load(bytes) {
       if (status !== 0) throw new ImpactDamperError(kinds[status], textAt(error));
       try {
         const result = columnsOf(run, record, take);
+        result.bounce_down_end = module.impact_damper_bounce_down_end(run);
+        if (record.includes("loss")) result.loss = lossOf(run, take);
         result.stop_reason = textAt(module.impact_damper_stop_reason(run));
         if (file) result.file = fileOf(run);
         return result;

@@ -10,7 +10,7 @@ export interface Scene {
 
 export type EngineName = "exact" | "restitution" | "cem";
 
-export type Group = "half_cycles" | "impacts" | "contacts" | "energy" | "history";
+export type Group = "half_cycles" | "impacts" | "contacts" | "energy" | "history" | "loss";
 
 /** Equally spaced samples of the motion, both ends included; times are divided by 1/Omega_n. */
 export interface Window {
@@ -50,6 +50,10 @@ export interface Run {
   contacts?: Columns & Record<"begin" | "end" | "wall", Float64Array>;
   energy?: Columns & { impact_loss: Float64Array; residual: number };
   history?: Columns & Record<"time" | "x" | "v", Float64Array>;
+  /** The averaged loss factor per radian, from the peaks, as in the paper's Figures 8 to 14. */
+  loss?: Record<"amplitude" | "time" | "eta", Float64Array>;
+  /** The amplitude at which the mass no longer sticks in each half cycle; NaN if it never did, or does so to the end. */
+  bounce_down_end: number;
   file?: string;
 }
 
