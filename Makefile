@@ -201,14 +201,14 @@ mutation:  ## plant faults in a copy of the library, one by one: do the fast tes
 same-bits:  ## the same bytes from other compilers, processors, WebAssembly and strange surroundings (a quarter of an hour)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
-wasm:  ## the library for browsers and node, as an npm package: build/wasm/
+wasm:  ## the library for browsers and node, as an npm package, and a page with a damper to play with: build/wasm/
 	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
 	  >$(BUILD)/wasm.log || { cat $(BUILD)/wasm.log; echo "make $@: make deps-wasm installs what it needs" >&2; exit 1; }; \
-	cmake --build $(BUILD)/wasm --target npm_package && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz)"
+	cmake --build $(BUILD)/wasm --target damper_page && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the page: $(BUILD)/wasm/damper.html"
 
-wasm-check: wasm $(BUILD)/build.ninja  ## the package's run files are the program's, in node and in a browser (minutes)
+wasm-check: wasm $(BUILD)/build.ninja  ## the page works, and the package's run files are the program's, in node and in a browser (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
-	tests/wasm/check.py $(BUILD)/src/impact-damper $(BUILD)/wasm/impact-damper-*.tgz $(BUILD)/wasm/check
+	tests/wasm/check.py $(BUILD)/src/impact-damper $(BUILD)/wasm/impact-damper-*.tgz $(BUILD)/wasm/damper.html $(BUILD)/wasm/check
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The package for WebAssembly: installed from its tarball, in node and in a browser, the program's own bytes.
 
-    check.py PROGRAM TARBALL WORK
+    check.py PROGRAM TARBALL PAGE WORK
 
-PROGRAM is the native program, WORK a folder that is filled anew. Exit code 77: there is no node or no Chromium.
+PROGRAM is the native program, PAGE the page with a damper to play with, WORK a folder that is filled anew. Exit code 77: there is no node or no Chromium.
 """
 import functools
 import http.server
@@ -24,7 +24,7 @@ sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits")]
 import chromium  # noqa: E402
 from differences import compare_files  # noqa: E402
 
-PROGRAM, TARBALL, WORK = None, None, None
+PROGRAM, TARBALL, PAGE, WORK = None, None, None, None
 CLOSED_FORM = [{"name": "exact"}, {"name": "restitution"}]
 # The component element method takes a hundred times as long: it has only the shorter scenes.
 ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
@@ -193,8 +193,129 @@ class Package(unittest.TestCase):
         self.assertEqual(different(WORK / "native", folder), [])
 
 
+class DamperToPlayWith(unittest.TestCase):
+    """The page, opened from a folder as a reader does."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = chromium.Page()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+
+    def setUp(self):
+        self.browser.messages.clear()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.messages, [], "nothing is asked for outside, and nothing goes wrong")
+
+    def open(self, link="", page=None, width=1280, scheme="light"):
+        self.browser.open(page or PAGE, width, scheme)
+        if link:
+            self.browser.does(f"location.replace('#{link}'); location.reload(); 0")
+            self.browser.events.clear()
+            while "Page.loadEventFired" not in self.browser.events:
+                self.browser.answer()
+        return self.settled()
+
+    def settled(self) -> str:
+        """What the page tells of the run when it has it."""
+        return self.browser.does("""new Promise((resolve, reject) => {
+          const end = performance.now() + 60000;
+          const look = () => {
+            const told = document.querySelector("[role=status]")?.textContent || document.querySelector("[role=alert]")?.textContent;
+            if (told && !document.querySelector("[aria-busy]")) resolve(told);
+            else if (performance.now() < end) setTimeout(look, 10);
+            else reject(new Error("the page tells nothing"));
+          };
+          look();
+        })""")
+
+    def types(self, name: str, value: str) -> str:
+        self.browser.does(f"""(() => {{
+          const field = document.querySelector("[aria-label^='{name}'][type=number]");
+          field.value = "{value}";
+          field.dispatchEvent(new Event("change"));
+        }})()""")
+        return self.settled()
+
+    def told_by_the_program(self, restitution: float) -> str:
+        file = WORK / f"told-{restitution}.json"
+        call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", restitution, "--x0", "6", "--until-time", "2000",
+             "--until-amplitude", "0.05", "--record", "half_cycles,impacts", "-o", file)
+        run = json.loads(file.read_text())
+        return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
+
+    def test_restitution_is_lowered_and_bounce_down_ends_at_two(self):
+        told = self.open()
+        for words in self.told_by_the_program(0.6):
+            self.assertIn(words, told)
+        told = self.types("restitution", "0.4")
+        for words in self.told_by_the_program(0.4):
+            self.assertIn(words, told)
+        # The paper's claim, and what the program finds by the same rule (claim bounce-down-04).
+        self.assertRegex(told, r"bounce-down ends at amplitude (1\.9|2\.0)")
+
+    def test_a_link_carries_the_parameters(self):
+        told = self.open("mass_ratio=0.1&restitution=0.8&x0=3&engine=restitution")
+        link = self.browser.does("location.hash")
+        self.assertEqual(link, "#mass_ratio=0.1&restitution=0.8&damping_ratio=0&wall_stiffness=10000&x0=3&engine=restitution")
+        self.assertEqual(self.open(link[1:]), told)
+
+    def test_what_is_not_valid_is_rejected_in_the_programs_words_and_the_decay_stays(self):
+        before = self.open()
+        self.types("restitution", "1.5")
+        self.assertIn("/restitution: must be", self.browser.does("document.querySelector('[role=alert]').textContent"))
+        self.types("restitution", "0.6")
+        self.assertEqual(self.browser.does("document.querySelector('[role=alert]').textContent"), "")
+        self.assertEqual(self.settled(), before)
+
+    def test_the_keyboard_moves_through_the_decay(self):
+        before = self.open()
+        self.browser.does("document.querySelector('.time').focus()")
+        for _ in range(3):
+            self.browser.presses("PageUp")
+        told = self.browser.does("""new Promise((resolve) => setTimeout(() =>
+          resolve(document.querySelector("[role=status]").textContent), 1000))""")
+        self.assertNotEqual(told.split("At period")[1], before.split("At period")[1])
+        self.assertGreater(self.browser.does("Number(document.querySelector('.time').value)"), 0)
+
+    def test_it_plays_and_pauses(self):
+        self.open()
+        at = "Number(document.querySelector('.time').value)"
+        press = "document.querySelector('.player button').click()"
+        self.assertEqual(self.browser.does(at), 0)
+        self.browser.does(press)
+        self.browser.does(f"new Promise((resolve) => {{ const look = () => {at} > 1 ? resolve() : setTimeout(look, 20); look(); }})")
+        self.browser.does(press)
+        moment = self.browser.does(at)
+        self.browser.does("new Promise((resolve) => setTimeout(resolve, 200))")
+        self.assertEqual(self.browser.does(at), moment)
+
+    def test_it_fits_a_phone_and_a_dark_screen(self):
+        for width in (390, 1280):
+            for scheme in ("light", "dark"):
+                with self.subTest(f"{width}, {scheme}"):
+                    self.open(width=width, scheme=scheme)
+                    self.assertLessEqual(self.browser.does("document.documentElement.scrollWidth"), width)
+                    self.browser.screenshot(WORK / f"page-{width}-{scheme}.png")
+
+    def test_every_control_has_a_name(self):
+        self.open()
+        self.assertEqual(self.browser.does("""[...document.querySelectorAll("input, select, button, svg")].filter((each) =>
+          !each.getAttribute("aria-label") && !each.textContent.trim()).map((each) => each.outerHTML)"""), [])
+
+    def test_a_page_that_needs_the_network_is_noticed(self):
+        faulty = WORK / "faulty.html"
+        faulty.write_text(PAGE.read_text().replace("<style>", '<script src="http://127.0.0.1:9/library.js"></script><style>'))
+        self.open(page=faulty)
+        self.assertTrue(any("127.0.0.1:9" in said for said in self.browser.messages))
+        self.browser.messages.clear()
+
+
 if __name__ == "__main__":
-    PROGRAM, TARBALL, WORK = (Path(argument).resolve() for argument in sys.argv[1:4])
+    PROGRAM, TARBALL, PAGE, WORK = (Path(argument).resolve() for argument in sys.argv[1:5])
     if not shutil.which("node") or not chromium.program():
         print("there is no node or no Chromium: make deps-wasm deps-check", file=sys.stderr)
         sys.exit(77)

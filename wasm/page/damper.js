@@ -242,6 +242,7 @@ export function mountDamper(place, simulate) {
         showMoment();
       } catch (error) {
         problem.textContent = error.message;
+        place.removeAttribute("aria-busy");
       }
     }
     asked = false;
