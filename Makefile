@@ -126,19 +126,22 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
-paper: $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
+# Where there is a compiler for it, the report's page has a damper to play with.
+MODULE := $(if $(shell command -v em++),$(BUILD)/wasm/package/impact-damper.wasm)
+paper: $(if $(MODULE),wasm) $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
 	@$(alone) cmake --build $(BUILD) --target figures-exact runs-exact || exit; \
 	$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts-exact.json \
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	echo "Setting the report"; \
-	paper/report/make.py $(BUILD) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
+	paper/report/make.py $(BUILD) $(MODULE:%=--module %) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
 docs:  ## reference documentation of the library's headers, build/docs/html (doxygen)
 	@$(alone) mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
 	echo "The reference documentation: $(BUILD)/docs/html/index.html"
 
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
-	@$(alone) cp $(BUILD)/paper/report.html docs/report.html
+	@$(alone) [ -n "$(MODULE)" ] || { echo "make $@: make deps-wasm installs what the damper in it needs" >&2; exit 1; }; \
+	cp $(BUILD)/paper/report.html docs/report.html
 
 # CTest's label `long` is on what takes about ten seconds or more (tests/CMakeLists.txt). What a test needs that another
 # one makes, a fixture, is made in each of the two calls.

@@ -9,6 +9,7 @@ the table of all claims; as HTML and as LaTeX.
 """
 import csv
 import io
+import json
 import re
 import subprocess
 from html import escape
@@ -136,6 +137,17 @@ def made_from(values: Values, number: str) -> str:
         f"stamp {values.stamps[number]} · {values.version}."
 
 
+def damper_html(values: Values, number: str) -> str:
+    """The place for a damper to play with (wasm/page/start.js), beside figures of one motion and of its phases."""
+    figure = values.figures[number]
+    if figure["table"] not in ("motion", "phase"):
+        return ""
+    scene = json.loads((values.source / f"data/scenes/{scenes_of(values, number)[0]}.json").read_text(encoding="utf-8"))
+    parameters = {name: scene[name] for name in ("mass_ratio", "restitution", "damping_ratio", "wall_stiffness", "x0") if name in scene}
+    begin = {"parameters": parameters} | ({"amplitude": figure["window"]} if "window" in figure else {})
+    return f"\n<div data-damper='{json.dumps(begin)}' data-words='Play with the damper of Figure {number}'></div>"
+
+
 def picture_html(svg: str, name: str, words: str) -> str:
     """An SVG to stand inline: no head, scaled by the page, described, its ids its own; without empty groups, colours and
     coordinates without spaces and zeros that say nothing."""
@@ -217,7 +229,7 @@ class Html(Form):
 <figcaption>""") + f"\n\n**Figure {number}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
 </figcaption>
 {claims}
-</figure>""")
+</figure>{damper_html(values, number)}""")
 
     def picture(self, letter: str, file: Path, caption: str) -> str:
         name = file.stem.replace("_", "-")

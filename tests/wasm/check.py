@@ -8,6 +8,7 @@ PROGRAM is the native program, PAGE the page with a damper to play with, WORK a 
 import functools
 import http.server
 import json
+import re
 import shutil
 import struct
 import subprocess
@@ -193,8 +194,8 @@ class Package(unittest.TestCase):
         self.assertEqual(different(WORK / "native", folder), [])
 
 
-class DamperToPlayWith(unittest.TestCase):
-    """The page, opened from a folder as a reader does."""
+class InABrowser(unittest.TestCase):
+    """A page, opened from a folder as a reader does."""
 
     @classmethod
     def setUpClass(cls):
@@ -210,15 +211,6 @@ class DamperToPlayWith(unittest.TestCase):
     def tearDown(self):
         self.assertEqual(self.browser.messages, [], "nothing is asked for outside, and nothing goes wrong")
 
-    def open(self, link="", page=None, width=1280, scheme="light"):
-        self.browser.open(page or PAGE, width, scheme)
-        if link:
-            self.browser.does(f"location.replace('#{link}'); location.reload(); 0")
-            self.browser.events.clear()
-            while "Page.loadEventFired" not in self.browser.events:
-                self.browser.answer()
-        return self.settled()
-
     def settled(self) -> str:
         """What the page tells of the run when it has it."""
         return self.browser.does("""new Promise((resolve, reject) => {
@@ -232,6 +224,49 @@ class DamperToPlayWith(unittest.TestCase):
           look();
         })""")
 
+    def told_by_the_program(self, restitution: float) -> tuple:
+        """Of the decay from amplitude 6 with 2 % of the mass, what the page tells, too."""
+        file = WORK / f"told-{restitution}.json"
+        call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", restitution, "--x0", "6", "--until-time", "2000",
+             "--until-amplitude", "0.05", "--record", "half_cycles,impacts", "-o", file)
+        run = json.loads(file.read_text())
+        return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
+
+
+class Report(InABrowser):
+    """docs/report.html, as it is kept."""
+
+    def test_each_damper_begins_at_its_figure_and_tells_what_the_program_does(self):
+        self.browser.open(SOURCE / "docs/report.html", 1280)
+        windows = {figure["title"]: figure.get("window") for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]
+                   if figure["table"] in ("motion", "phase")}
+        places = self.browser.does("document.querySelectorAll('[data-damper]').length")
+        self.assertEqual(places, len(windows))
+        for place, window in enumerate(windows.values()):
+            with self.subTest(place):
+                self.browser.does(f"""(() => {{
+                  document.querySelector('.damper')?.remove();
+                  document.querySelector('.open-damper').click();
+                }})()""")
+                told = self.settled()
+                for words in self.told_by_the_program(0.6):
+                    self.assertIn(words, told)
+                amplitude = float(re.search(r"At period .*: amplitude ([\d.]+)", told)[1])
+                self.assertTrue(window is None or 0.9 * window < amplitude <= 1.005 * window, f"{amplitude} at {window}")
+
+
+class DamperToPlayWith(InABrowser):
+    """The page that is nothing but a damper."""
+
+    def open(self, link="", page=None, width=1280, scheme="light"):
+        self.browser.open(page or PAGE, width, scheme)
+        if link:
+            self.browser.does(f"location.replace('#{link}'); location.reload(); 0")
+            self.browser.events.clear()
+            while "Page.loadEventFired" not in self.browser.events:
+                self.browser.answer()
+        return self.settled()
+
     def types(self, name: str, value: str) -> str:
         self.browser.does(f"""(() => {{
           const field = document.querySelector("[aria-label^='{name}'][type=number]");
@@ -239,13 +274,6 @@ class DamperToPlayWith(unittest.TestCase):
           field.dispatchEvent(new Event("change"));
         }})()""")
         return self.settled()
-
-    def told_by_the_program(self, restitution: float) -> str:
-        file = WORK / f"told-{restitution}.json"
-        call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", restitution, "--x0", "6", "--until-time", "2000",
-             "--until-amplitude", "0.05", "--record", "half_cycles,impacts", "-o", file)
-        run = json.loads(file.read_text())
-        return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
 
     def test_restitution_is_lowered_and_bounce_down_ends_at_two(self):
         told = self.open()

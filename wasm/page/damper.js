@@ -186,10 +186,11 @@ class Control {
 }
 
 /**
- * Puts a damper into `place`. `simulate(scene, options)` gives a promise of a run, as core.js has it. Parameters come
- * from the address, as in #mass_ratio=0.02&restitution=0.4, and go there.
+ * Puts a damper into `place`. `simulate(scene, options)` gives a promise of a run, as core.js has it. It begins with
+ * `parameters`, at the first half cycle whose amplitude is at most `amplitude`. With `linked`, parameters come from the
+ * address, as in #mass_ratio=0.02&restitution=0.4, and go there.
  */
-export function mountDamper(place, simulate) {
+function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun, linked = false } = {}) {
   const decay = new Plot({ title: "Decay: drag along it", x: { words: "periods" }, y: { words: "amplitude", logarithmic: true } });
   const loss = new Plot({ title: "Loss factor over amplitude", x: { words: "amplitude", logarithmic: true }, y: { words: "η", logarithmic: true } });
   const phase = new Plot({ title: "The secondary mass in its cavity", x: { words: "place y" }, y: { words: "velocity" } });
@@ -238,8 +239,11 @@ export function mountDamper(place, simulate) {
         const result = await simulate(scene(), { engine: engine.value, record: ["half_cycles", "impacts", "history", "loss"], history });
         problem.textContent = "";
         motion = result;
-        if (fresh || !run) show(result);
-        showMoment();
+        const first = !run;
+        if (fresh || first) show(result);
+        const row = first ? run.half_cycles.amplitude.findIndex((each) => each <= begun) : -1;
+        if (row >= 0) goTo(run.half_cycles.peak_time[row]);
+        else showMoment();
       } catch (error) {
         problem.textContent = error.message;
         place.removeAttribute("aria-busy");
@@ -249,9 +253,11 @@ export function mountDamper(place, simulate) {
   }
 
   function renew() {
-    const link = new URLSearchParams(controls.map(({ parameter, value }) => [parameter.name, value]));
-    link.set("engine", engine.value);
-    globalThis.history.replaceState(null, "", `#${link}`);
+    if (linked) {
+      const link = new URLSearchParams(controls.map(({ parameter, value }) => [parameter.name, value]));
+      link.set("engine", engine.value);
+      globalThis.history.replaceState(null, "", `#${link}`);
+    }
     place.setAttribute("aria-busy", "true");
     ask({ fresh: true });
   }
@@ -361,8 +367,8 @@ export function mountDamper(place, simulate) {
   function setAll(values) {
     controls.forEach((control) => control.set(Number(values[control.parameter.name])));
   }
-  const given = Object.fromEntries(new URLSearchParams(globalThis.location.hash.slice(1)));
-  setAll({ ...usual, ...given });
-  if (given.engine === "restitution") engine.value = given.engine;
+  const link = linked ? Object.fromEntries(new URLSearchParams(globalThis.location.hash.slice(1))) : {};
+  setAll({ ...usual, ...given, ...link });
+  if (link.engine === "restitution") engine.value = link.engine;
   renew();
 }
