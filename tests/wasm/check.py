@@ -109,7 +109,6 @@ class Served:
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(WORK, ignore_errors=True)
         cls.stranger = WORK / "stranger"
         install(cls.stranger)
         cls.package = cls.stranger / "node_modules/impact-damper"
@@ -228,7 +227,7 @@ class InABrowser(unittest.TestCase):
         """Of the decay from amplitude 6 with 2 % of the mass, what the page tells, too."""
         file = WORK / f"told-{restitution}.json"
         call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", restitution, "--x0", "6", "--until-time", "2000",
-             "--until-amplitude", "0.05", "--record", "half_cycles,impacts", "-o", file)
+             "--until-amplitude", "0.01", "--record", "half_cycles,impacts", "-o", file)
         run = json.loads(file.read_text())
         return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
 
@@ -252,7 +251,7 @@ class Report(InABrowser):
                 for words in self.told_by_the_program(0.6):
                     self.assertIn(words, told)
                 amplitude = float(re.search(r"At period .*: amplitude ([\d.]+)", told)[1])
-                self.assertTrue(window is None or 0.9 * window < amplitude <= 1.005 * window, f"{amplitude} at {window}")
+                self.assertTrue(window is None or 0.8 * window < amplitude <= 1.005 * window, f"{amplitude} at {window}")
 
 
 class DamperToPlayWith(InABrowser):
@@ -347,4 +346,6 @@ if __name__ == "__main__":
     if not shutil.which("node") or not chromium.program():
         print("there is no node or no Chromium: make deps-wasm deps-check", file=sys.stderr)
         sys.exit(77)
+    shutil.rmtree(WORK, ignore_errors=True)
+    WORK.mkdir(parents=True)
     unittest.main(argv=sys.argv[:1])

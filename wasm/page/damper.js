@@ -6,7 +6,7 @@ const period = 2 * Math.PI;
 const windowLength = 4 * period;
 const samplesPerPeriod = 200;
 const untilTime = 2000;
-const untilAmplitude = 0.05;
+const untilAmplitude = 0.01;
 
 const parameters = [
   { name: "mass_ratio", symbol: "ν", words: "mass ratio", from: 0.001, to: 1, logarithmic: true },
