@@ -15,7 +15,7 @@ SOURCE, NEW, PAGE = (Path(each) for each in sys.argv[1:4])
 
 
 def lines_of(file: Path) -> list:
-    text = re.sub(r"\b[0-9a-f]{12}\b( with changes)?|\bunknown\b", "COMMIT", file.read_text(encoding="utf-8"))
+    text = re.sub(r"\b[0-9a-f]{12}\b(\s+with\s+changes)?|\bunknown\b", "COMMIT", file.read_text(encoding="utf-8"))
     text = re.sub('(?<=id="damper-module">)[^<]*', "", text)
     return re.sub(r"\b\d{4}-\d\d-\d\d\b", "DAY", text).split("\n")
 
