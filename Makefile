@@ -34,7 +34,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install report-page figures verify paper docs test bench bench-record \
+.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install report-page figures verify paper docs test bench bench-record bench-wasm \
   stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits wasm wasm-check reference archive clean
 
 help:  ## list the targets
@@ -161,6 +161,10 @@ bench:  ## measure run time beside error (ten to twenty minutes), print and draw
 
 bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
 	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
+
+bench-wasm: wasm $(BUILD)/build.ninja  ## what a decay takes in node, beside the library (a minute)
+	@$(alone) $(with_tests) cmake --build $(BUILD) --target decay_time || exit; \
+	bench/wasm.py $(BUILD)/bench-build/decay_time $(BUILD)/wasm/package data/scenes/nu2-e06.json data/scenes/nu2-e04.json
 
 stress:  ## what the engines must stand: a million random scenes, aimed ones, 4000 of each kind against the oracle (half an hour)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target stress

@@ -128,7 +128,17 @@ TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
   CHECK(amplitude == loss.amplitude);
   CHECK(time == loss.time);
   CHECK(eta == loss.eta);
+  std::size_t rows_of_it = 0;
   CHECK(impact_damper_bounce_down_end(run) == end_of_bounce_down(wanted).value());
+  impact_damper_free(run);
+
+  // What is not recorded is not there.
+  REQUIRE(impact_damper_simulate_recording(R"({"x0": 6, "until_time": 30})", "exact", IMPACT_DAMPER_IMPACTS,
+                                           nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
+  CHECK(impact_damper_column(run, "impacts/time", &rows_of_it) != nullptr);
+  CHECK(impact_damper_column(run, "contacts/begin", &rows_of_it) == nullptr);
+  CHECK(impact_damper_column(run, "energy/residual", &rows_of_it) == nullptr);
+  CHECK(std::isnan(impact_damper_bounce_down_end(run)));
   impact_damper_free(run);
 
   run = run_of(R"({"x0": 0.1, "until_time": 8})");

@@ -172,11 +172,13 @@ Engine engine_of(const std::string& name) {
   throw std::invalid_argument("engine: must be " + listed(names, "or") + ", got " + name);
 }
 
-std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
+std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine, unsigned recorded,
                                           const impact_damper_window* history) {
   if (scene == nullptr || engine == nullptr) throw std::invalid_argument("scene, engine: must not be NULL");
   Record record;
-  record.impacts = record.contacts = record.energy = true;
+  record.impacts = (recorded & IMPACT_DAMPER_IMPACTS) != 0;
+  record.contacts = (recorded & IMPACT_DAMPER_CONTACTS) != 0;
+  record.energy = (recorded & IMPACT_DAMPER_ENERGY) != 0;
   if (history != nullptr) {
     const auto count = std::min<std::size_t>(history->count, most_samples + 1);  // more are rejected, too
     record.history = {{history->begin, history->end, static_cast<std::int64_t>(count)}};
@@ -203,9 +205,18 @@ void tell(const char* problem, char* error, std::size_t error_size) {
 impact_damper_status impact_damper_simulate(const char* scene, const char* engine,
                                             const impact_damper_window* history, impact_damper_run** run,
                                             char* error, size_t error_size) {
+  return impact_damper_simulate_recording(
+      scene, engine, IMPACT_DAMPER_IMPACTS | IMPACT_DAMPER_CONTACTS | IMPACT_DAMPER_ENERGY, history, run,
+      error, error_size);
+}
+
+impact_damper_status impact_damper_simulate_recording(const char* scene, const char* engine, unsigned record,
+                                                      const impact_damper_window* history,
+                                                      impact_damper_run** run, char* error,
+                                                      size_t error_size) {
   *run = nullptr;
   try {
-    *run = impact_damper::run_of(scene, engine, history).release();
+    *run = impact_damper::run_of(scene, engine, record, history).release();
     return IMPACT_DAMPER_DONE;
   } catch (const impact_damper::NumericalError& problem) {
     impact_damper::tell(problem.what(), error, error_size);
@@ -253,7 +264,7 @@ double impact_damper_bounce_down_end(const impact_damper_run* run) {
     if (run->run.scene.dampers.empty())
       return impact_damper::as_double(impact_damper::end_of_bounce_down(run->run));
   } catch (const std::exception&) {
-    // There was not enough memory to find it.
+    // Contacts were not recorded, or there was not enough memory.
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

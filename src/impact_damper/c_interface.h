@@ -40,6 +40,19 @@ impact_damper_status impact_damper_simulate(const char* scene, const char* engin
                                             const impact_damper_window* history, impact_damper_run** run,
                                             char* error, size_t error_size);
 
+/* What a run records beside its half cycles. What is not recorded takes no time: energy is most of it. */
+typedef enum impact_damper_record {
+  IMPACT_DAMPER_IMPACTS = 1,
+  IMPACT_DAMPER_CONTACTS = 2,
+  IMPACT_DAMPER_ENERGY = 4
+} impact_damper_record;
+
+/* The same, recording only `record`, a sum of the above or 0. */
+impact_damper_status impact_damper_simulate_recording(const char* scene, const char* engine, unsigned record,
+                                                      const impact_damper_window* history,
+                                                      impact_damper_run** run, char* error,
+                                                      size_t error_size);
+
 /* A column by its names in a run file, "half_cycles/amplitude", "history/x", and its number of rows. A number
  * that stands alone is a column of one row: "end_time", "energy/residual". All numbers are dimensionless,
  * also of a scene in units, except "units/length_m" and the others that say what a unit is in SI. An absent
@@ -66,7 +79,7 @@ size_t impact_damper_loss_factor(const impact_damper_run* run, double* amplitude
 
 /* The amplitude at which bounce-down ended: that of the last of the first four or more successive half cycles
  * in each of which the mass sticks to a wall (analysis/regimes.hpp). NaN if there were none, if the run ends
- * among them, and for a scene with a list of dampers. */
+ * among them, for a scene with a list of dampers, and if contacts were not recorded. */
 double impact_damper_bounce_down_end(const impact_damper_run* run);
 
 /* The text of the run file, as `impact-damper run` writes it, ended by '\0'; the caller must free() it. NULL

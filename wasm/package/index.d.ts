@@ -24,7 +24,7 @@ export interface Window {
 export interface Options {
   /** Default "exact"; an object has the members of `engine` in a run file, of which only `name` must be given. */
   engine?: EngineName | { name: EngineName; [option: string]: unknown };
-  /** What the result is to hold; default all. */
+  /** What the result is to hold; default all. What is left out takes no time, energy most of all. */
   record?: Group[];
   /** Which part of the motion is sampled; without it none is. */
   history?: Window;
@@ -52,7 +52,10 @@ export interface Run {
   history?: Columns & Record<"time" | "x" | "v", Float64Array>;
   /** The averaged loss factor per radian, from the peaks, as in the paper's Figures 8 to 14. */
   loss?: Record<"amplitude" | "time" | "eta", Float64Array>;
-  /** The amplitude at which the mass no longer sticks in each half cycle; NaN if it never did, or does so to the end. */
+  /**
+   * The amplitude at which the mass no longer sticks in each half cycle; NaN if it never did, or does so to the end, and
+   * without "contacts".
+   */
   bounce_down_end: number;
   file?: string;
 }

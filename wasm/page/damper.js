@@ -236,7 +236,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
       const begin = Math.max(0, Math.min(now, (run?.end_time ?? now) - windowLength));
       const history = { begin, end: begin + windowLength, count: 4 * samplesPerPeriod + 1 };
       try {
-        const result = await simulate(scene(), { engine: engine.value, record: ["half_cycles", "impacts", "history", "loss"], history });
+        const result = await simulate(scene(), { engine: engine.value, record: ["half_cycles", "impacts", "contacts", "history", "loss"], history });
         problem.textContent = "";
         motion = result;
         const first = !run;
