@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""The package for WebAssembly: installed from its tarball, in node and in a browser, the program's own bytes.
+"""The package for browsers and node: installed from its tarball, its run files are the program's, byte for byte, and the
+pages with a damper to play with work.
 
     check.py PROGRAM TARBALL PAGE WORK
 
-PROGRAM is the native program, PAGE the page with a damper to play with, WORK a folder that is filled anew. Exit code 77: there is no node or no Chromium.
+PROGRAM is the native program, PAGE the page that is nothing but a damper, WORK a folder that is filled anew. Exit code
+77: there is no node or no Chromium.
 """
 import functools
 import http.server
