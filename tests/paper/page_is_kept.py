@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """docs/report.html is the report of this state of the sources, but for commits, days and the module of the damper to play
-with, which is compiled for make report-page only; tests/wasm/check.py looks at what that one computes.
+with, which is not kept.
 
     page_is_kept.py SOURCE NEW PAGE
 

@@ -7,7 +7,9 @@ pages with a damper to play with work.
 PROGRAM is the native program, PAGE the page that is nothing but a damper, WORK a folder that is filled anew. Exit code
 77: there is no node or no Chromium.
 """
+import base64
 import functools
+import gzip
 import http.server
 import json
 import re
@@ -235,10 +237,20 @@ class InABrowser(unittest.TestCase):
 
 
 class Report(InABrowser):
-    """docs/report.html, as it is kept."""
+    """docs/report.html with the module, as make paper makes it."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        with tarfile.open(TARBALL) as tar:
+            module = tar.extractfile("package/impact-damper.wasm").read()
+        kept = (SOURCE / "docs/report.html").read_text(encoding="utf-8")
+        place = 'id="damper-module">'
+        cls.page = WORK / "report.html"
+        cls.page.write_text(kept.replace(place, place + base64.b64encode(gzip.compress(module)).decode()), encoding="utf-8")
 
     def test_each_damper_begins_at_its_figure_and_tells_what_the_program_does(self):
-        self.browser.open(SOURCE / "docs/report.html", 1280)
+        self.browser.open(self.page, 1280)
         windows = {figure["title"]: figure.get("window") for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]
                    if figure["table"] in ("motion", "phase")}
         places = self.browser.does("document.querySelectorAll('[data-damper]').length")
