@@ -39,12 +39,14 @@ int report(Arguments& arguments) {
   reject_csv_name(arguments, output, "a page of HTML; impact-damper run --format csv writes CSV");
   if (figures && !fs::is_directory(*figures))
     arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
+  const bool without_figures = arguments.flag("--without-figures");
+  if (without_figures && figures) arguments.reject("--figures", "must not be given with --without-figures");
   arguments.finish();
   if (output) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
-  require_gnuplot();
+  if (!without_figures) require_gnuplot();
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 
   const Subject subject{scene_name.empty() ? "a scene" : fs::path(scene_name).stem().string(),
@@ -56,7 +58,7 @@ int report(Arguments& arguments) {
   warn_of_early_end("impact-damper report", findings.run, file.scales);
   const std::vector<Drawing> drawings = drawings_of(findings);
   std::map<std::string, std::string> svgs;
-  {
+  if (!without_figures) {
     DrawingBoard board;
     for (const Drawing& drawing : drawings) {
       progress("drawing figure " + drawing.name);
@@ -90,13 +92,18 @@ Command report_command() {
   add("--members", "N",
       "perturbed initial conditions that are simulated, the scene's own\namong them; 1 to 100, default 16");
   add("--figures", "FOLDER", "write each figure there as well, as SVG");
+  command.options.push_back({.name = "--without-figures",
+                             .help = "text and tables only, for where there is no gnuplot",
+                             .group = "Output",
+                             .takes = Option::Takes::nothing});
   add("-o,--output", "FILE", "write the page there instead of to stdout");
   command.options.push_back(threads_option());
   command.footer =
       "The page is one HTML file that needs no other and no network. The scene is that of impact-damper "
       "run;\n"
-      "given in kilograms, newtons per metre and millimetres, the page speaks in both. gnuplot must be "
-      "there.\n\n"
+      "given in kilograms, newtons per metre and millimetres, the page speaks in both. Figures are "
+      "drawn\n"
+      "by gnuplot, which must be there.\n\n"
       "Examples:\n"
       "  impact-damper report --scene data/examples/mast.json -o mast.html\n"
       "  impact-damper report --mass-ratio 0.05 --x0 3 --until-amplitude 0.05 -o mine.html";

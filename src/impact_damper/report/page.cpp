@@ -68,6 +68,7 @@ std::string figure_html(const Drawing& drawing, const std::string& svg, bool sev
 std::string section_html(const Section& section, const std::vector<Drawing>& drawings,
                          const std::map<std::string, std::string>& svgs, bool several) {
   std::string html = "<section id=\"" + section.id + "\">\n<h2>" + section.title + "</h2>\n" + section.html;
+  if (svgs.empty()) return html + "</section>\n";
   bool drawn = section.drawings.empty();
   for (const Drawing& drawing : drawings) {
     if (std::ranges::find(section.drawings, drawing.name) == section.drawings.end()) continue;
@@ -78,9 +79,10 @@ std::string section_html(const Section& section, const std::vector<Drawing>& dra
   return html + "</section>\n";
 }
 
-std::string made_html(const Findings& findings) {
-  return "<p>By <code>impact-damper report</code>, version " + escaped(provenance().version) +
-         ", with the engine <code>" + std::string(name_of(findings.subject.engine)) +
+std::string made_html(const Findings& findings, bool with_figures) {
+  return "<p>By <code>impact-damper report" + std::string(with_figures ? "" : " --without-figures") +
+         "</code>, version " + escaped(provenance().version) + ", with the engine <code>" +
+         std::string(name_of(findings.subject.engine)) +
          "</code>. Equal scene, equal bytes. The scene as the program keeps it, for <code>impact-damper run "
          "--scene</code>:</p>\n"
          "<pre><code>" +
@@ -103,7 +105,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
                       const std::map<std::string, std::string>& svgs, std::string_view frame,
                       const std::map<std::string, std::string_view>& parts) {
   const Subject& subject = findings.subject;
-  const std::vector<Section> sections{
+  std::vector<Section> sections{
       {"scene", "The scene", scene_html(findings), {}},
       {"decay", findings.forced() ? "Amplitude over time" : "Decay", decay_html(findings), {"decay"}},
       findings.forced()
@@ -124,8 +126,9 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
       {"loads", "What the walls bear", loads_html(findings), {}},
       {"energy", "Where the energy goes", energy_html(findings), {}},
       {"prediction", "How far this can be predicted", prediction_html(findings), {"prediction"}},
-      {"made", "How this page was made", made_html(findings), {}},
+      {"made", "How this page was made", made_html(findings, !svgs.empty()), {}},
   };
+  if (svgs.empty()) std::erase_if(sections, [](const Section& section) { return section.id == "phase"; });
   const std::string name = escaped(subject.name);
   std::string body = "<header>\n<h1>Impact damper: " + name + "</h1>\n";
   if (!subject.description.empty()) body += "<p>" + escaped(subject.description) + "</p>\n";

@@ -13,7 +13,7 @@
 
 namespace impact_damper {
 
-// `svgs`: of each of the `drawings` its picture, by name. `frame` is the page with {{title}}, {{body}} and
+// `svgs`: of each of the `drawings` its picture, by name; of none, and the page has no figures. `frame` is the page with {{title}}, {{body}} and
 // the names of the `parts` that are put into it, as {{page.css}}.
 std::string page_html(const Findings& findings, const std::vector<Drawing>& drawings,
                       const std::map<std::string, std::string>& svgs, std::string_view frame,

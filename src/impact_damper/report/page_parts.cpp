@@ -106,7 +106,7 @@ std::string theory_sentences(const Findings& findings) {
   if (e == 1)
     return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the secondary mass and back.";
   if (e == 0)
-    return "With <i>e</i> = 0 there is no rebound, and the closed forms drawn for other restitutions do not "
+    return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not "
            "hold.";
   const double eta = peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio;
   std::string text =

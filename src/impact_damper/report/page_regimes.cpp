@@ -88,7 +88,7 @@ std::string motion_html(const Findings& findings) {
   const std::vector<double>& time = findings.run.history->time;
   std::string text;
   if (findings.several()) {
-    text = "Drawn is the damper that took most of the energy, number " + std::to_string(findings.shown + 1);
+    text = "Chosen is the damper that took most of the energy, number " + std::to_string(findings.shown + 1);
     if (findings.chosen) text += ", and about the best damping the one that strikes most often then";
     text += "; dimensionless lengths are divided by its clearance. ";
   }
