@@ -127,22 +127,21 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
 # Where there is a compiler for it, the report's page has a damper to play with.
-MODULE := $(if $(shell command -v em++),$(BUILD)/wasm/package/impact-damper.wasm)
-paper: $(if $(MODULE),wasm) $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
+WASM := $(if $(shell command -v em++),$(BUILD)/wasm)
+paper: $(if $(WASM),wasm) $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
 	@$(alone) cmake --build $(BUILD) --target figures-exact runs-exact || exit; \
 	$(BUILD)/src/impact-damper verify --catalogue figures/catalogue.json -o $(BUILD)/verdicts-exact.json \
 	  >$(BUILD)/verdicts-exact.txt || { cat $(BUILD)/verdicts-exact.txt; exit 1; }; \
 	echo "Setting the report"; \
-	paper/report/make.py $(BUILD) $(MODULE:%=--module %) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
+	paper/report/make.py $(BUILD) $(WASM:%=--wasm %) && echo "The report: $(BUILD)/paper/report.pdf and report.html"
 
 docs:  ## reference documentation of the library's headers, build/docs/html (doxygen)
 	@$(alone) mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
 	echo "The reference documentation: $(BUILD)/docs/html/index.html"
 
-# Without the module of the damper: what is compiled is not kept among sources.
+# Without damper and checks: what is compiled is not kept among sources.
 report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
-	@$(alone) sed 's/\(id="damper-module">\)[^<]*/\1/' $(BUILD)/paper/report.html >$(BUILD)/paper/kept.html && \
-	cp $(BUILD)/paper/kept.html docs/report.html
+	@$(alone) paper/report/make.py $(BUILD) --html --out $(BUILD)/paper/kept && cp $(BUILD)/paper/kept/report.html docs/report.html
 
 # CTest's label `long` is on what takes about ten seconds or more (tests/CMakeLists.txt). What a test needs that another
 # one makes, a fixture, is made in each of the two calls.
@@ -212,7 +211,7 @@ same-bits:  ## the same bytes from other compilers, processors, WebAssembly and 
 wasm:  ## the library for browsers and node, as an npm package, and a page with a damper to play with: build/wasm/
 	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
 	  >$(BUILD)/wasm.log || { cat $(BUILD)/wasm.log; echo "make $@: make deps-wasm installs what it needs" >&2; exit 1; }; \
-	cmake --build $(BUILD)/wasm --target damper_page && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the page: $(BUILD)/wasm/damper.html"
+	cmake --build $(BUILD)/wasm --target pages && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the page: $(BUILD)/wasm/damper.html"
 
 wasm-check: wasm $(BUILD)/build.ninja  ## the page works, and the package's run files are the program's, in node and in a browser (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \

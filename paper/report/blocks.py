@@ -8,6 +8,7 @@ the table of all claims; as HTML and as LaTeX.
     {{references}}, {{claims}}               references.md; the table of all claims
 """
 import csv
+import hashlib
 import io
 import json
 import re
@@ -15,6 +16,7 @@ import subprocess
 from html import escape
 from pathlib import Path
 
+from pages import own_html
 from values import Mistake, Values, stem_of
 
 # Mathematics in the words of claims, which are plain ASCII: what is set, and as which formula.
@@ -148,6 +150,13 @@ def damper_html(values: Values, number: str) -> str:
     return f"\n<div data-damper='{json.dumps(begin)}' data-words='Play with the damper of Figure {number}'></div>"
 
 
+def own_damper_html(values: Values, number: str) -> str:
+    """The place for one's own damper (wasm/page/own.js), beside the charts to design one by."""
+    if values.figures[number]["table"] != "design_charts":
+        return ""
+    return f"\n<div data-own='{own_html()}' data-words='Your own damper, in kilograms and millimetres'></div>"
+
+
 def picture_html(svg: str, name: str, words: str) -> str:
     """An SVG to stand inline: no head, scaled by the page, described, its ids its own; without empty groups, colours and
     coordinates without spaces and zeros that say nothing."""
@@ -224,12 +233,13 @@ class Html(Form):
         claims = f"""<div class="wide rows"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th>
 <th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
 <tbody>{rows}</tbody></table></div>""" if rows else ""
-        return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(figure)}.svg">
+        cited = f' data-table="build/series/exact/{stem_of(figure)}.dat" data-sha256="{values.sha256[number]}"' if table else ""
+        return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(figure)}.svg"{cited}>
 <div class="drawing">{picture_html(svg, stem_of(figure), figure['title'])}</div>{data}
 <figcaption>""") + f"\n\n**Figure {number}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
 </figcaption>
 {claims}
-</figure>{damper_html(values, number)}""")
+</figure>{damper_html(values, number)}{own_damper_html(values, number)}""")
 
     def picture(self, letter: str, file: Path, caption: str) -> str:
         name = file.stem.replace("_", "-")
@@ -244,15 +254,21 @@ class Html(Form):
         buttons = f'<button type="button" aria-pressed="true">all {sum(counts.values())}</button>' + "".join(
             f'<button type="button" aria-pressed="false" data-verdict="{verdict.replace(" ", "-")}">{count} {verdict}</button>'
             for verdict, count in counts.items())
+
+        def cited(name: str) -> str:
+            line = self.values.lines.get(name)
+            return f' data-sha256="{hashlib.sha256(line.encode()).hexdigest()}"' if line else ""
+
         rows = "".join(
-            f'<tr id="claim-{name}"><th scope="row" data-head="name"><code>{name}</code></th>'
+            f'<tr id="claim-{name}"{cited(name)}><th scope="row" data-head="name"><code>{name}</code></th>'
             f'<td data-head="where">{where(sections[name])}</td>'
             f'<td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
             f'<td data-head="ours" data-value="{self.values.verdicts.get(name, {}).get("ours")}">{self.words(ours)}</td>'
             f'<td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
             for name, statement, paper, ours, verdict in all_rows(self.values))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("name", "where", "claim", "paper", "ours", "verdict"))
-        return raw("html", f"""<div class="claims"><div class="switches" role="group" aria-label="Claims shown">{buttons}</div>
+        return raw("html", f"""<div class="check" data-check-all></div>
+<div class="claims"><div class="switches" role="group" aria-label="Claims shown">{buttons}</div>
 <div class="wide rows" tabindex="0" role="region" aria-label="All claims"><table><caption>Ours is the median of the ensemble;
 in brackets its extremes.</caption>
 <thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>""")

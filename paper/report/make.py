@@ -2,10 +2,11 @@
 """Makes the report: BUILD/paper/report.html and, unless --html, BUILD/paper/report.pdf, both from text.md, with
 docs/mathematics.md as the appendix.
 
-    paper/report/make.py BUILD [--html] [--verdicts FILE] [--module FILE] [--out FOLDER]
+    paper/report/make.py BUILD [--html] [--verdicts FILE] [--wasm FOLDER] [--out FOLDER]
 
-BUILD holds the figures, tables and runs of the exact engine (make figures) and its verdicts (make verify). With the
-module (make wasm) some figures of the page have a damper to play with beside them. Equal
+BUILD holds the figures, tables and runs of the exact engine (make figures) and its verdicts (make verify). With what
+`make wasm` builds in FOLDER the page has a damper to play with beside some figures, and makes its tables and verdicts anew
+where its reader asks for it. Equal
 results and commit, equal bytes. Files appear whole or not at all. Exit codes: 1 the text names what is not there, or a
 tool fails; 2 usage.
 """
@@ -18,16 +19,15 @@ import sys
 import tempfile
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
 sys.dont_write_bytecode = True
+sys.path.append(str(SOURCE / "wasm/page"))
 from blocks import Html, Latex, filled  # noqa: E402
 from formulas import tidied  # noqa: E402
 from mathematics import appendix  # noqa: E402
 from values import Mistake, Values  # noqa: E402
-
-HERE = Path(__file__).resolve().parent
-SOURCE = HERE.parents[1]
-sys.path.append(str(SOURCE / "wasm/page"))
-from damper_page import pieces  # noqa: E402
+from pages import damper_pieces, project_pieces  # noqa: E402
 
 
 def called(command: list, **options) -> str:
@@ -68,7 +68,7 @@ def whole(text: str, values: Values, form) -> str:
     return filled(text, values, form) + "\n\n" + appendix(values, form)
 
 
-def html_of(text: str, values: Values, module: Path) -> str:
+def html_of(text: str, values: Values, wasm: Path) -> str:
     parts = SOURCE / "paper/page"
     frame = (HERE / "frame.html").read_text(encoding="utf-8")
     for name in ("page.css", "figures.js", "claims.js"):  # a dollar sign is pandoc's
@@ -79,8 +79,8 @@ def html_of(text: str, values: Values, module: Path) -> str:
     page = re.sub(r"<table>\n<(?:colgroup|thead).*?</table>", r'<div class="wide">\g<0></div>', page, flags=re.S)
     page = re.sub(r'((?:section-number">|data-number="))0\.', r"\1", page)  # headings are shifted, numbers are not
     page = re.sub("<th(?=[ >])(?! scope)", '<th scope="col"', page)  # pandoc's tables have heads of columns only
-    damper = pieces(module)
-    return re.sub("@damper[.]([a-z]+)@", lambda found: damper[found[1]], page)
+    pieces = {"damper": damper_pieces(wasm), "project": project_pieces(wasm, values.build / "commands.json")}
+    return re.sub("@(damper|project)[.]([a-z]+)@", lambda found: pieces[found[1]][found[2]], page)
 
 
 def kept_together(latex: str) -> str:
@@ -124,7 +124,7 @@ def main() -> int:
     parser.add_argument("build", type=Path, help="build folder with figures and verdicts")
     parser.add_argument("--html", action="store_true", help="no PDF: needs pandoc, but no LaTeX")
     parser.add_argument("--verdicts", type=Path, help="default BUILD/verdicts-exact.json")
-    parser.add_argument("--module", type=Path, help="impact-damper.wasm (make wasm); without it the page has no damper")
+    parser.add_argument("--wasm", type=Path, help="BUILD/wasm (make wasm); without it the page has no damper and no checks")
     parser.add_argument("--out", type=Path, help="default BUILD/paper")
     asked = parser.parse_args()
     build = asked.build.resolve()
@@ -133,7 +133,7 @@ def main() -> int:
         values.out = (asked.out or build / "paper").resolve()
         values.out.mkdir(parents=True, exist_ok=True)
         text = (HERE / "text.md").read_text(encoding="utf-8")
-        put(html_of(text, values, asked.module), values.out / "report.html")
+        put(html_of(text, values, asked.wasm), values.out / "report.html")
         if not asked.html:
             put(pdf_of(text, values), values.out / "report.pdf")
     except Mistake as mistake:

@@ -115,10 +115,12 @@ class Values:
         self.claims = {each["id"]: each for each in stated["claims"]}
         self.open = stated["open"]  # statements without a measure: no claims
         self.verdicts = {each["claim"]: each for each in read(verdicts_file)["verdicts"]}
+        # As the program writes each of them.
+        self.lines = {json.loads(line)["claim"]: line for line in re.findall(r'^ *(\{"claim".*\}),?$', verdicts_file.read_text(), re.M)}
         self.catalogue = read(source / "figures/catalogue.json")
         self.figures = {each["figure"]: each for each in self.catalogue["figures"]}
         self.bench = read(source / "bench/results/bench.json")
-        self.tables, self.stamps = {}, {}
+        self.tables, self.sha256, self.stamps = {}, {}, {}
         self.state = state_of(source, build / "src/impact-damper")
         self.version = re.search(r"project\(impact-damper VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]
         self.authors = " and ".join(read(source / "paper/facts.json")["authors"])
@@ -156,7 +158,8 @@ class Values:
             stamped = source / "figures" / figure["script"] if figure["table"] == "drawing" else table
             if not stamped.exists():
                 raise Mistake(f"{stamped} is missing: make figures")
-            self.stamps[number] = hashlib.sha256(stamped.read_bytes()).hexdigest()[:8]
+            self.sha256[number] = hashlib.sha256(stamped.read_bytes()).hexdigest()
+            self.stamps[number] = self.sha256[number][:8]
             self.known[f"stamp.{number}"] = f"{self.stamps[number]} · {self.version}"
             if figure["table"] != "drawing":
                 for block, columns in blocks_of(table).items():

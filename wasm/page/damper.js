@@ -29,14 +29,6 @@ const rounded = (value, digits = 3) => String(Number(value.toPrecision(digits)))
 
 const counted = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
 
-function make(tag, attributes = {}, ...children) {
-  const drawn = ["svg", "g", "path", "rect", "circle", "line", "text"].includes(tag);
-  const element = drawn ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
-
 // The last index with column[index] <= value, of an ascending column; -1 if there is none.
 function lastAtMost(column, value) {
   let low = -1;
