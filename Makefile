@@ -215,7 +215,7 @@ wasm:  ## the library for browsers and node, as an npm package, and a page with 
 
 wasm-check: wasm $(BUILD)/build.ninja  ## the page works, and the package's run files are the program's, in node and in a browser (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
-	tests/wasm/check.py $(BUILD)/src/impact-damper $(BUILD)/wasm/impact-damper-*.tgz $(BUILD)/wasm/damper.html $(BUILD)/wasm/check
+	tests/wasm/check.py $(BUILD)
 
 reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)

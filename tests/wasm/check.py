@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """The package for browsers and node: installed from its tarball, its run files are the program's, byte for byte, and the
-pages with a damper to play with work.
+pages work: in the report the cited tables and verdicts are made anew.
 
-    check.py PROGRAM TARBALL PAGE WORK
+    check.py BUILD
 
-PROGRAM is the native program, PAGE the page that is nothing but a damper, WORK a folder that is filled anew. Exit code
+BUILD holds the native program, commands.json and wasm/; it is worked in BUILD/wasm/check, which is filled anew. Exit code
 77: there is no node or no Chromium.
 """
-import base64
 import functools
-import gzip
 import http.server
 import json
 import re
@@ -25,11 +23,13 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
-sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits")]
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits"), str(SOURCE / "wasm/page")]
 import chromium  # noqa: E402
+import pages  # noqa: E402
 from differences import compare_files  # noqa: E402
 
-PROGRAM, TARBALL, PAGE, WORK = None, None, None, None
+PROGRAM, TARBALL, WASM, WORK = None, None, None, None
 CLOSED_FORM = [{"name": "exact"}, {"name": "restitution"}]
 # The component element method takes a hundred times as long: it has only the shorter scenes.
 ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
@@ -236,18 +236,72 @@ class InABrowser(unittest.TestCase):
         return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
 
 
-class Report(InABrowser):
-    """docs/report.html with the module, as make paper makes it."""
+def report_page(wasm: Path, page: Path) -> Path:
+    """docs/report.html with all that is compiled, as make paper makes it."""
+    compiled = {"damper-module": pages.damper_pieces(wasm)["module"]} | {
+        f"project-{name}": piece for name, piece in pages.project_pieces(wasm, WASM.parent / "commands.json").items()
+        if name in ("program", "archive", "worker")}
+    text = (SOURCE / "docs/report.html").read_text(encoding="utf-8")
+    for name, piece in compiled.items():
+        place = f'id="{name}"></script>'
+        if place not in text:
+            raise AssertionError(f"docs/report.html has no {place}")
+        text = text.replace(place, place.replace("><", f">{piece}<"))
+    page.write_text(text, encoding="utf-8")
+    return page
 
+
+class Report(InABrowser):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        with tarfile.open(TARBALL) as tar:
-            module = tar.extractfile("package/impact-damper.wasm").read()
-        kept = (SOURCE / "docs/report.html").read_text(encoding="utf-8")
-        place = 'id="damper-module">'
-        cls.page = WORK / "report.html"
-        cls.page.write_text(kept.replace(place, place + base64.b64encode(gzip.compress(module)).decode()), encoding="utf-8")
+        cls.page = report_page(WASM, WORK / "report.html")
+
+    def checked(self, place: str, seconds: int) -> str:
+        """What is told when the button there has been pressed."""
+        return self.browser.does(f"""new Promise((resolve, reject) => {{
+          const place = document.querySelector("{place}"), told = place.querySelector("output");
+          place.querySelector("button").click();
+          const end = performance.now() + {seconds} * 1000;
+          const look = () => {{
+            if (told.dataset.state && told.dataset.state !== "working") resolve(told.textContent);
+            else if (performance.now() < end) setTimeout(look, 20);
+            else reject(new Error("not checked in time: " + told.textContent));
+          }};
+          look();
+        }})""")
+
+    def test_all_tables_and_verdicts_are_the_cited_ones(self):
+        self.browser.open(self.page, 1280)
+        cited = json.loads((SOURCE / "data/reference/manifest.json").read_text())["figures"]
+        tables = {each["figure"]: each["tables"][0]["sha256"] for each in cited if each["tables"]}
+        self.assertGreaterEqual(tables.keys(), {str(number) for number in range(1, 16)})
+        verdicts = len(json.loads((SOURCE / "data/reference/verdicts.json").read_text())["verdicts"])
+        told = self.checked("[data-check-all]", 1200)
+        self.assertIn(f"{len(tables)} of {len(tables)} tables and {verdicts} of {verdicts} verdicts are the cited ones", told)
+        for figure, sha256 in tables.items():
+            self.assertEqual(self.browser.does(f"document.querySelector('#figure-{figure} .check output').textContent"),
+                             f"equal: SHA-256 here {sha256}, cited {sha256}")
+
+    def test_one_claim_is_checked_by_itself(self):
+        self.browser.open(self.page, 1280)
+        self.assertRegex(self.checked("#claim-bounce-down-end-04", 120), "^equal: SHA-256 here ([0-9a-f]{8}), cited \\1$")
+
+    def test_a_table_of_another_version_is_noticed(self):
+        faulty = WORK / "other-version.html"
+        cited = re.search('id="figure-8"[^>]*data-sha256="([0-9a-f]{64})"', self.page.read_text(encoding="utf-8"))[1]
+        other = "0" * 64
+        faulty.write_text(self.page.read_text(encoding="utf-8").replace(cited, other), encoding="utf-8")
+        self.browser.open(faulty, 1280)
+        self.assertEqual(self.checked("#figure-8 .check", 120), f"different: SHA-256 here {cited}, cited {other}")
+
+    def test_one_wrong_bit_in_the_programs_sine_is_noticed(self):
+        shutil.copytree(WASM / "program", WORK / "wrong-bit/program")
+        shutil.copytree(WASM / "package", WORK / "wrong-bit/package")
+        plant_wrong_bit(WORK / "wrong-bit/program/impact-damper.wasm")
+        self.browser.open(report_page(WORK / "wrong-bit", WORK / "wrong-bit.html"), 1280)
+        self.assertRegex(self.checked("#figure-1 .check", 120), "^different: ")
+        self.assertRegex(self.checked("#claim-bounce-down-end-04", 120), "^different: ")
 
     def test_each_damper_begins_at_its_figure_and_tells_what_the_program_does(self):
         self.browser.open(self.page, 1280)
@@ -272,7 +326,7 @@ class DamperToPlayWith(InABrowser):
     """The page that is nothing but a damper."""
 
     def open(self, link="", page=None, width=1280, scheme="light"):
-        self.browser.open(page or PAGE, width, scheme)
+        self.browser.open(page or WASM / "damper.html", width, scheme)
         if link:
             self.browser.does(f"location.replace('#{link}'); location.reload(); 0")
             self.browser.events.clear()
@@ -349,17 +403,73 @@ class DamperToPlayWith(InABrowser):
 
     def test_a_page_that_needs_the_network_is_noticed(self):
         faulty = WORK / "faulty.html"
-        faulty.write_text(PAGE.read_text().replace("<style>", '<script src="http://127.0.0.1:9/library.js"></script><style>'))
+        faulty.write_text((WASM / "damper.html").read_text().replace("<style>", '<script src="http://127.0.0.1:9/library.js"></script><style>'))
         self.open(page=faulty)
         self.assertTrue(any("127.0.0.1:9" in said for said in self.browser.messages))
         self.browser.messages.clear()
 
 
+class OwnDamper(InABrowser):
+    """The form for one's own damper, and the page that the program writes about it."""
+
+    def open(self, width=1280, scheme="light"):
+        self.browser.open(WASM / "own.html", width, scheme)
+        self.settled()
+
+    def types(self, field: str, value: str):
+        self.browser.does(f"""(() => {{
+          const field = document.querySelector("[aria-label^='{field}']");
+          field.value = "{value}";
+          field.dispatchEvent(new Event("change"));
+        }})()""")
+
+    def kept(self, link: str) -> str:
+        return self.browser.does(f"fetch([...document.querySelectorAll('.own a')].find((a) => a.textContent === '{link}').href).then((it) => it.text())")
+
+    def test_the_page_is_the_one_that_the_program_writes_about_the_saved_scene(self):
+        self.open()
+        self.types("name", "my mast")
+        self.types("coefficient of restitution", "0.4")
+        self.settled()
+        folder = WORK / "own"
+        folder.mkdir()
+        (folder / "my mast.json").write_text(self.kept("Save the scene"), encoding="utf-8")
+        self.assertEqual(json.loads((folder / "my mast.json").read_text()),
+                         json.loads((SOURCE / "data/examples/mast.json").read_text()) | {"restitution": 0.4})
+        call(PROGRAM, "report", "--scene", "my mast.json", "--without-figures", "-o", "program's.html", cwd=folder)
+        self.assertEqual(self.kept("Save the page"), (folder / "program's.html").read_text(encoding="utf-8"))
+        shown = self.browser.does("document.querySelector('iframe').contentDocument.body.innerText")
+        self.assertIn("Impact damper: my mast", shown)
+        self.assertIn("To damp a given amplitude choose a clearance of", shown)
+
+    def test_a_scene_that_is_not_valid_is_rejected_in_the_programs_words(self):
+        self.open()
+        self.types("coefficient of restitution", "1.5")
+        self.settled()
+        scene = WORK / "mast.json"
+        scene.write_text(self.kept("Save the scene"), encoding="utf-8")
+        done = subprocess.run([PROGRAM, "report", "--scene", "mast.json"], cwd=WORK, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(self.browser.does("document.querySelector('[role=alert]').textContent"), done.stderr.strip())
+        self.types("coefficient of restitution", "0.5")
+        self.assertIn("to the last byte", self.settled())
+
+    def test_it_fits_a_phone_and_a_dark_screen(self):
+        for width in (390, 1280):
+            for scheme in ("light", "dark"):
+                with self.subTest(f"{width}, {scheme}"):
+                    self.open(width, scheme)
+                    self.assertLessEqual(self.browser.does("document.documentElement.scrollWidth"), width)
+                    self.browser.screenshot(WORK / f"own-{width}-{scheme}.png")
+
+
 if __name__ == "__main__":
-    PROGRAM, TARBALL, PAGE, WORK = (Path(argument).resolve() for argument in sys.argv[1:5])
+    BUILD = Path(sys.argv[1]).resolve()
+    PROGRAM, WASM = BUILD / "src/impact-damper", BUILD / "wasm"
+    TARBALL, WORK = next(WASM.glob("impact-damper-*.tgz")), WASM / "check"
     if not shutil.which("node") or not chromium.program():
         print("there is no node or no Chromium: make deps-wasm deps-check", file=sys.stderr)
         sys.exit(77)
     shutil.rmtree(WORK, ignore_errors=True)
     WORK.mkdir(parents=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
