@@ -26,7 +26,7 @@ BENCH_PACKAGES := libboost-dev libsundials-dev libsiconos-kernel-dev libsiconos-
 # What sweeps on several machines are tested with.
 CLUSTER_PACKAGES := python3 slurm-wlm munge parallel rsync
 # What WebAssembly is compiled, run and tried with, and what is compiled for other processors.
-WASM_PACKAGES := emscripten nodejs node-acorn node-typescript python3 chromium
+WASM_PACKAGES := emscripten nodejs node-acorn node-typescript python3 chromium firefox-esr
 MACHINE_PACKAGES := g++-aarch64-linux-gnu g++-riscv64-linux-gnu g++-s390x-linux-gnu qemu-user
 # What a bare system is made with.
 BARE_PACKAGES := debootstrap debian-archive-keyring gpgv

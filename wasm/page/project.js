@@ -1,6 +1,6 @@
 // What comes behind the program's start code in a worker of the page: the project in memory, and the program, which makes
 // the runs, tables and verdicts anew by the commands that made those of the page (figures/CMakeLists.txt).
-let project; // of { program, files, commands }
+let project;
 
 async function unpacked(bytes) {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
@@ -8,7 +8,8 @@ async function unpacked(bytes) {
 
 async function opened({ program, archive }) {
   const { files, commands } = JSON.parse(new TextDecoder().decode(await unpacked(archive)));
-  return { program: await WebAssembly.compile(await unpacked(program)), commands,
+  const module = await unpacked(program);
+  return { module: new Uint8Array(module), program: await WebAssembly.compile(module), commands,
            sources: new Map(Object.entries(files)), made: new Map() };
 }
 
@@ -30,6 +31,7 @@ async function called(words, from, makes) {
   const put = (name) => FS.writeFile(name, fileOf(project, name));
   for (const name of [...project.sources.keys(), ...from, ...makes]) FS.mkdirTree(`/${name}`.replace(/[^/]*$/, ""));
   for (const name of new Set([...project.sources.keys(), ...from])) put(name);
+  FS.writeFile("/proc/self/exe", project.module); // of an uncommitted state a sweep tells the program's own digest
   const code = callMain(words);
   if (code !== 0) throw new Error(complaints.join("\n"));
   return makes.map((name) => FS.readFile(name));
