@@ -106,9 +106,10 @@ Ended run(std::vector<std::string> words) {
 
 }  // namespace
 
-void require_gnuplot() {
+void require_gnuplot(std::string_view otherwise) {
   if (!is_in_path("gnuplot"))
-    throw IoError("gnuplot: cannot be found in PATH: it draws the figures, install it (Debian: gnuplot-nox)");
+    throw IoError("gnuplot: cannot be found in PATH: it draws the figures, install it (Debian: gnuplot-nox)" +
+                  std::string(otherwise));
 }
 
 DrawingBoard::DrawingBoard() {

@@ -4,14 +4,16 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "impact_damper/report/drawings.hpp"
 
 namespace impact_damper::cli {
 
-// Throws IoError if there is no gnuplot in PATH, saying what to install. Before a long computation.
-void require_gnuplot();
+// Throws IoError if there is no gnuplot in PATH, saying what to install, or what else to do. Before a long
+// computation.
+void require_gnuplot(std::string_view otherwise = "");
 
 // A folder of its own in the system's folder for temporary files, holding what figures/draw needs; it goes
 // with this object, and with the program when that is interrupted. One at a time.

@@ -46,7 +46,7 @@ int report(Arguments& arguments) {
     require_writable(*output);
     if_interrupted_say(left_as_it_was(*output));
   }
-  if (!without_figures) require_gnuplot();
+  if (!without_figures) require_gnuplot(", or give --without-figures");
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 
   const Subject subject{scene_name.empty() ? "a scene" : fs::path(scene_name).stem().string(),

@@ -4,6 +4,7 @@
 """
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -56,7 +57,7 @@ temporary.mkdir()
 temporary = temporary.resolve()
 
 for path in ("", "/nowhere", str(here.resolve())):
-    report(*SHORT, "-o", "page.html", code=5, words=["gnuplot: cannot be found in PATH", "install it"], PATH=path)
+    report(*SHORT, "-o", "page.html", code=5, words=["gnuplot: cannot be found in PATH", "install it", "--without-figures"], PATH=path)
 report(*SHORT, "-o", "page.html", code=4, words=["figure decay cannot be drawn", "out of ink"],
        PATH=fake_gnuplot("echo out of ink >&2; exit 1"))
 real = shutil.which("gnuplot")
@@ -64,6 +65,14 @@ report(*SHORT, "-o", "page.html", code=4, words=["cannot be drawn", "not quite"]
        PATH=fake_gnuplot(f'{real} "$@"; echo not quite >&2'))
 report(*SHORT, "-o", "no/such/page.html", code=5, words=["no/such/page.html: cannot be written"])
 report(*SHORT, "-o", "/dev/full", code=5, words=["/dev/full: cannot be written: No space left on device"])
+
+# Without figures the page says the same, and of the phases, which are only drawn, nothing.
+whole = report(*SHORT, code=0).stdout.replace("impact-damper report</code>", "impact-damper report --without-figures</code>")
+for part in ("<figure.*?</figure>\n", '<section id="phase">.*?</section>\n', '<li><a href="#phase">.*?</li>\n'):
+    check(re.search(part, whole, re.S), f"the page has no {part}")
+    whole = re.sub(part, "", whole, flags=re.S)
+check(report(*SHORT, "--without-figures", code=0, PATH="/nowhere").stdout == whole, "a page without figures says something else")
+report(*SHORT, "--without-figures", "--figures", ".", code=2, words=["--figures: must not be given with --without-figures"])
 
 # What gnuplot is told in the user's own settings does not matter.
 plain = report(*SHORT, code=0).stdout
