@@ -147,7 +147,7 @@ def damper_html(values: Values, number: str) -> str:
     scene = json.loads((values.source / f"data/scenes/{scenes_of(values, number)[0]}.json").read_text(encoding="utf-8"))
     parameters = {name: scene[name] for name in ("mass_ratio", "restitution", "damping_ratio", "wall_stiffness", "x0") if name in scene}
     begin = {"parameters": parameters} | ({"amplitude": figure["window"]} if "window" in figure else {})
-    return f"\n<div data-damper='{json.dumps(begin)}' data-words='Play with the damper of Figure {number}'></div>"
+    return f"\n<div id='damper-{number}' data-damper='{json.dumps(begin)}' data-words='Play with the damper of Figure {number}'></div>"
 
 
 def own_damper_html(values: Values, number: str) -> str:

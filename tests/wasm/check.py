@@ -278,6 +278,17 @@ class Report(InABrowser):
         super().setUpClass()
         cls.page = report_page(WASM, WORK / "report.html")
 
+    def test_a_link_leads_to_a_damper_and_its_parameters(self):
+        self.browser.open(self.page, 1280)
+        self.browser.does("location.replace('#damper-4&restitution=0.4'); location.reload(); 0")
+        self.browser.events.clear()
+        while "Page.loadEventFired" not in self.browser.events:
+            self.browser.answer()
+        told = self.settled()
+        for words in self.told_by_the_program(0.4):
+            self.assertIn(words, told)
+        self.assertEqual(self.browser.does("[...document.querySelectorAll('.damper')].map((each) => each.id)"), ["damper-4"])
+
     def test_all_tables_and_verdicts_are_the_cited_ones(self):
         self.browser.open(self.page, 1280)
         cited = json.loads((SOURCE / "data/reference/manifest.json").read_text())["figures"]
@@ -328,6 +339,8 @@ class Report(InABrowser):
                 told = self.settled()
                 for words in self.told_by_the_program(0.6):
                     self.assertIn(words, told)
+                link = self.browser.does("document.querySelector('.player a').getAttribute('href')")
+                self.assertEqual(self.browser.does(f"document.getElementById('{link[1:].split('&')[0]}').matches('.damper')"), True)
                 amplitude = float(re.search(r"At period .*: amplitude ([\d.]+)", told)[1])
                 self.assertTrue(window is None or 0.8 * window < amplitude <= 1.005 * window, f"{amplitude} at {window}")
 
@@ -365,8 +378,19 @@ class DamperToPlayWith(InABrowser):
     def test_a_link_carries_the_parameters(self):
         told = self.open("mass_ratio=0.1&restitution=0.8&x0=3&engine=restitution")
         link = self.browser.does("location.hash")
-        self.assertEqual(link, "#mass_ratio=0.1&restitution=0.8&damping_ratio=0&wall_stiffness=10000&x0=3&engine=restitution")
+        self.assertEqual(link, "#mass_ratio=0.1&restitution=0.8&damping_ratio=0&wall_stiffness=10000"
+                         "&force_amplitude=0&force_frequency=1&x0=3&engine=restitution")
         self.assertEqual(self.open(link[1:]), told)
+
+    def test_under_a_force_the_motion_is_the_programs(self):
+        told = self.open("mass_ratio=0.02&restitution=0.6&x0=1&force_amplitude=0.006&force_frequency=0.99")
+        file = WORK / "forced.json"
+        call(PROGRAM, "run", "--mass-ratio", "0.02", "--restitution", "0.6", "--x0", "1", "--force-amplitude", "0.006",
+             "--force-frequency", "0.99", "--until-time", repr(150 * 6.283185307179586), "--record", "half_cycles,impacts", "-o", file)
+        run = json.loads(file.read_text())
+        amplitude = f"{run['half_cycles']['amplitude'][-1]:.3g}"
+        self.assertIn(f"150 periods to amplitude {amplitude}, {len(run['impacts']['time'])} impacts; under a force", told)
+        self.assertNotIn("loss factor", told)
 
     def test_what_is_not_valid_is_rejected_in_the_programs_words_and_the_decay_stays(self):
         before = self.open()

@@ -7,12 +7,15 @@ const windowLength = 4 * period;
 const samplesPerPeriod = 200;
 const untilTime = 2000;
 const untilAmplitude = 0.01;
+const untilTimeForced = 150 * period;
 
 const parameters = [
   { name: "mass_ratio", symbol: "ν", words: "mass ratio", from: 0.001, to: 1, logarithmic: true },
   { name: "restitution", symbol: "e", words: "restitution", from: 0.05, to: 0.95 },
   { name: "damping_ratio", symbol: "ζ", words: "damping ratio", from: 0, to: 0.05 },
   { name: "wall_stiffness", symbol: "k", words: "wall stiffness", from: 100, to: 100000, logarithmic: true },
+  { name: "force_amplitude", symbol: "f₀", words: "force", from: 0, to: 0.05 },
+  { name: "force_frequency", symbol: "ω", words: "its frequency", from: 0.5, to: 2, logarithmic: true },
   { name: "x0", symbol: "x₀", words: "release", from: 0.5, to: 20, logarithmic: true },
 ];
 
@@ -23,7 +26,9 @@ const presets = [
   { words: "ν = 10 %, e = 0.6", mass_ratio: 0.1, restitution: 0.6 },
   { words: "ν = 2 %, e = 0.6, ζ = 0.8 %", mass_ratio: 0.02, restitution: 0.6, damping_ratio: 0.008 },
 ];
-const usual = { mass_ratio: 0.02, restitution: 0.6, damping_ratio: 0, wall_stiffness: 10000, x0: 6 };
+const usual = {
+  mass_ratio: 0.02, restitution: 0.6, damping_ratio: 0, wall_stiffness: 10000, force_amplitude: 0, force_frequency: 1, x0: 6,
+};
 
 const rounded = (value, digits = 3) => String(Number(value.toPrecision(digits))).replace("-", "−");
 
@@ -179,10 +184,10 @@ class Control {
 
 /**
  * Puts a damper into `place`. `simulate(scene, options)` gives a promise of a run, as core.js has it. It begins with
- * `parameters`, at the first half cycle whose amplitude is at most `amplitude`. With `linked`, parameters come from the
- * address, as in #mass_ratio=0.02&restitution=0.4, and go there.
+ * `parameters`, at the first half cycle whose amplitude is at most `amplitude`. The page's address carries the parameters if
+ * the page is the damper's `own`, as in #mass_ratio=0.02&restitution=0.4; else a link does, which begins with the place's id.
  */
-function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun, linked = false } = {}) {
+function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun, own = false } = {}) {
   const decay = new Plot({ title: "Decay: drag along it", x: { words: "periods" }, y: { words: "amplitude", logarithmic: true } });
   const loss = new Plot({ title: "Loss factor over amplitude", x: { words: "amplitude", logarithmic: true }, y: { words: "η", logarithmic: true } });
   const phase = new Plot({ title: "The secondary mass in its cavity", x: { words: "place y" }, y: { words: "velocity" } });
@@ -194,13 +199,14 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   const play = make("button", { type: "button" }, "Play");
   const speed = make("input", { type: "range", min: -2, max: 2, step: 0.1, value: 0, "aria-label": "speed" });
   const time = make("input", { type: "range", min: 0, max: 1, step: "any", value: 0, class: "time", "aria-label": "time" });
+  const link = make("a", {}, "link to this damper");
   const summary = make("p", { role: "status" });
   const problem = make("p", { role: "alert", class: "problem" });
   place.classList.add("damper");
   place.replaceChildren(
     make("div", { class: "controls" }, make("div", { class: "choices" }, preset, engine), ...controls.map(({ element }) => element)),
     drawing.element,
-    make("div", { class: "player" }, play, make("label", {}, "speed ", speed), time),
+    make("div", { class: "player" }, play, make("label", {}, "speed ", speed), time, ...(own ? [] : [link])),
     problem, summary,
     make("div", { class: "plots" }, decay.element, loss.element, phase.element));
 
@@ -209,10 +215,11 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   let now = 0;
   let playing = false;
 
+  const valueOf = (name) => controls.find(({ parameter }) => parameter.name === name).value;
+  const isForced = () => valueOf("force_amplitude") !== 0;
   const scene = () => ({
     ...Object.fromEntries(controls.map(({ parameter, value }) => [parameter.name, value])),
-    until_time: untilTime,
-    until_amplitude: Math.min(untilAmplitude, controls.at(-1).value / 10),
+    ...(isForced() ? { until_time: untilTimeForced } : { until_time: untilTime, until_amplitude: Math.min(untilAmplitude, valueOf("x0") / 10) }),
   });
 
   // The last request counts: what is asked for while the worker works waits, and only the newest of it.
@@ -228,7 +235,9 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
       const begin = Math.max(0, Math.min(now, (run?.end_time ?? now) - windowLength));
       const history = { begin, end: begin + windowLength, count: 4 * samplesPerPeriod + 1 };
       try {
-        const result = await simulate(scene(), { engine: engine.value, record: ["half_cycles", "impacts", "contacts", "history", "loss"], history });
+        // Of a forced motion there is no loss factor to measure: its amplitude does not fall by losses alone.
+        const record = ["half_cycles", "impacts", "contacts", "history", ...(isForced() ? [] : ["loss"])];
+        const result = await simulate(scene(), { engine: engine.value, record, history });
         problem.textContent = "";
         motion = result;
         const first = !run;
@@ -245,11 +254,10 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   }
 
   function renew() {
-    if (linked) {
-      const link = new URLSearchParams(controls.map(({ parameter, value }) => [parameter.name, value]));
-      link.set("engine", engine.value);
-      globalThis.history.replaceState(null, "", `#${link}`);
-    }
+    const parts = new URLSearchParams(controls.map(({ parameter, value }) => [parameter.name, value]));
+    parts.set("engine", engine.value);
+    if (own) globalThis.history.replaceState(null, "", `#${parts}`);
+    else link.href = `#${place.id}&${parts}`;
     place.setAttribute("aria-busy", "true");
     ask({ fresh: true });
   }
@@ -265,11 +273,12 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     decay.scale({ from: 0, to: periods }, { from: Math.min(least, largest / 10), to: largest });
     decay.draw(peak_time.map((each) => each / period), amplitude);
     decay.ruleAt(run.bounce_down_end);
+    run.loss ??= { time: [], amplitude: [], eta: [] };
     const eta = run.loss.eta.filter((each) => each > 0);
     loss.scale({ from: Math.min(least, largest / 10), to: largest },
       { from: eta.reduce((least, each) => Math.min(least, each), 1) * 0.8, to: eta.reduce((most, each) => Math.max(most, each), 1e-6) * 1.25 });
     loss.draw(run.loss.amplitude, run.loss.eta);
-    const words = Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
+    const words = isForced() ? "under a force" : Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
     summary.dataset.run = `${rounded(run.end_time / period)} periods to amplitude ${rounded(amplitude.at(-1) ?? 0)}, ${counted(run.impacts.time.length, "impact")}; ${words}`;
     place.removeAttribute("aria-busy");
   }
@@ -359,8 +368,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   function setAll(values) {
     controls.forEach((control) => control.set(Number(values[control.parameter.name])));
   }
-  const link = linked ? Object.fromEntries(new URLSearchParams(globalThis.location.hash.slice(1))) : {};
-  setAll({ ...usual, ...given, ...link });
-  if (link.engine === "restitution") engine.value = link.engine;
+  setAll({ ...usual, ...given });
+  if (given.engine === "restitution") engine.value = given.engine;
   renew();
 }
