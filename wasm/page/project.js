@@ -79,7 +79,7 @@ async function verdictsOn(ids, tell) {
   const some = claims.filter(({ id }) => ids.includes(id));
   const runs = [...new Set(some.flatMap(runsOf))];
   await make(runs, tell);
-  tell({ done: 0, count: 1, command: `verify, of ${some.length} claims` });
+  tell({ done: 0, count: 1, command: "verify" });
   const [chosen, verdicts] = ["build/claims.json", "build/verdicts.json"];
   project.made.set(chosen, JSON.stringify({ schema, claims: some }));
   const words = ["verify", "--runs", "build/runs/exact", "--claims", chosen, "--threads", "1", "-o", verdicts];
