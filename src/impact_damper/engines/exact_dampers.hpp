@@ -352,10 +352,12 @@ class ExactOfDampers {
       if (!masses_.held[j] && !masses_.stays_off_walls(j, most, t, margin)) return false;
     return true;
   }
-  // So a search finds what is not before an event but with it.
+  // The end of a search for events beside one that is known at `time`: what happens with it, but comes out
+  // some roundings later, is found as well.
   static Real just_after(const Real& time) { return time * (1 + 8 * std::numeric_limits<Real>::epsilon()); }
   static Wall opposite(Wall wall) { return wall == Wall::left ? Wall::right : Wall::left; }
-  // Keeps in events_ those that come first, at `until`.
+  // Adds an event to events_, which holds those of one time, the earliest that is known; that is `until`, and
+  // the motion is followed so far. An earlier event takes the place of all, a later one is left out.
   void consider(const Event& event, Real& until) {
     if (event.time > until) return;
     if (event.time < until) events_.clear();

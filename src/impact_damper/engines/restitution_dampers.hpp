@@ -231,7 +231,8 @@ class RestitutionOfDampers {
     const Real a = absolute(now.force) / mass_;
     const Real span = tracker_.search().span;
     if (!(a > 0)) return false;
-    chattering_.clear();
+    const Real all_lose = find_chattering(a, now.side);
+    if (chattering_.empty()) return false;
     Real m3{0}, m4{0};
     bool has_bounds = false;
     const Real epsilon = std::numeric_limits<Real>::epsilon(), tolerance = options_.accumulation_tolerance;
@@ -245,30 +246,8 @@ class RestitutionOfDampers {
       return duration < span &&
              (m3 + m4 * duration + 2 * system_.zeta * a / mass_) * duration <= tolerance * a;
     };
-    // Who may join: all that go no farther from their walls than moves x by rounding. All of them lose energy
-    // each time that one kicks the others off their walls.
-    Real all_lose{0};
-    const Real moves_little = epsilon * (absolute(x_) + absolute(v_)) / 8, per_moves = 2 * a * mass_;
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real& u1 = masses_.u1[i];
-      const Real square =
-          masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
-      // Most often too far, which is told without a division; first, as no processor foresees the side.
-      if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != now.side) continue;
-      const Real moves = masses_.nu[i] * square / per_moves;
-      if (!(moves <= moves_little)) continue;
-      all_lose += loses(i);
-      if (masses_.held[i]) continue;
-      chattering_.push_back({i, square_root(square), moves, Real(0)});
-    }
-    if (chattering_.empty()) return false;
-    // The duration (M17.6), and what ends too late for it.
     std::erase_if(chattering_, [&](Chattering& each) {
-      const std::size_t i = each.index;
-      const Real share = masses_.nu[i] / (mass_ + masses_.nu[i]);
-      const Real lost = (1 - masses_.e[i]) + 2 * share * (all_lose - loses(i)) / mass_;
-      const Real more = lost < 1 ? Real(2 * (1 - lost) / lost) : Real(0);
-      each.lasts = (masses_.u1[i] + each.speed + more * each.speed) / a;
+      each.lasts = duration_of(each, all_lose, a);
       return !(8 * each.moves <= epsilon * (absolute(x_) + absolute(v_) * each.lasts)) ||
              !ends_soon(each.lasts);
     });
@@ -279,15 +258,53 @@ class RestitutionOfDampers {
     });
     const std::optional<Joining> found = most_that_join(a, ends_soon);
     if (!found) return false;
-    const Joining& joining = *found;
-    const Real gained = joining.momentum / (mass_ + joining.mass);
-
+    join(Real(found->momentum / (mass_ + found->mass)), now.side, a);
+    return true;
+  }
+  struct Chattering {
+    std::size_t index;
+    Real speed;  // with which it comes back to its wall
+    Real moves;  // by how much x at most
+    Real lasts;
+  };
+  // Puts into chattering_ all on `side` that fly no farther from their walls than moves x by rounding, where
+  // x has the acceleration a. Returns what these, and those that stick there, lose each time that one kicks
+  // the others off their walls.
+  Real find_chattering(const Real& a, const Real& side) {
+    chattering_.clear();
+    Real all_lose{0};
+    const Real moves_little = std::numeric_limits<Real>::epsilon() * (absolute(x_) + absolute(v_)) / 8,
+               per_moves = 2 * a * mass_;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Real& u1 = masses_.u1[i];
+      const Real square =
+          masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
+      // Most often too far, which is told without a division; first, as no processor foresees the side.
+      if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != side) continue;
+      const Real moves = masses_.nu[i] * square / per_moves;
+      if (!(moves <= moves_little)) continue;
+      all_lose += loses(i);
+      if (masses_.held[i]) continue;
+      chattering_.push_back({i, square_root(square), moves, Real(0)});
+    }
+    return all_lose;
+  }
+  // How long it chatters (M17.6), where all of find_chattering() lose all_lose.
+  Real duration_of(const Chattering& one, const Real& all_lose, const Real& a) const {
+    const std::size_t i = one.index;
+    const Real share = masses_.nu[i] / (mass_ + masses_.nu[i]);
+    const Real lost = (1 - masses_.e[i]) + 2 * share * (all_lose - loses(i)) / mass_;
+    const Real more = lost < 1 ? Real(2 * (1 - lost) / lost) : Real(0);
+    return (masses_.u1[i] + one.speed + more * one.speed) / a;
+  }
+  // All of chattering_ stick from now on, and x' has gained that much.
+  void join(const Real& gained, const Real& side, const Real& a) {
     const bool alone = chattering_.size() == 1 && !some_rest_;
     for (Chattering& each : chattering_) {
       const std::size_t i = each.index;
       if (alone) {  // (M6.2)
         const ForcedMotion<Real, Force> motion(oscillator(), force(), tracker_.now(), x_, v_);
-        const Real change = now.side * motion.beginning()[3];
+        const Real change = side * motion.beginning()[3];
         each.lasts -= each.lasts * each.lasts *
                       (change / (3 * a) + system_.zeta * masses_.e[i] * masses_.nu[i] / (1 + masses_.nu[i]));
       }
@@ -306,14 +323,7 @@ class RestitutionOfDampers {
       if (!masses_.held[i]) masses_.u1[i] -= masses_.away[i] * gained;
     v_ += gained;
     for (const Chattering& each : chattering_) stick(each.index, each.lasts);
-    return true;
   }
-  struct Chattering {
-    std::size_t index;
-    Real speed;  // with which it comes back to its wall
-    Real moves;  // by how much x at most
-    Real lasts;
-  };
   // What the first of chattering_ amount to.
   struct Joining {
     Real mass{0}, momentum{0}, kick{0}, moves{0}, duration{0};
