@@ -430,6 +430,24 @@ class DamperToPlayWith(InABrowser):
                     self.assertLessEqual(self.browser.does("document.documentElement.scrollWidth"), width)
                     self.browser.screenshot(WORK / f"page-{width}-{scheme}.png")
 
+    def test_who_wants_little_motion_has_it_slow_and_without_flashes(self):
+        def speed_and_flash(motion: str) -> list:
+            self.open()
+            self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": motion}])
+            self.browser.does("location.reload(); 0")
+            self.browser.events.clear()
+            while "Page.loadEventFired" not in self.browser.events:
+                self.browser.answer()
+            self.settled()
+            return self.browser.does("""(() => {
+              const [still, struck] = document.querySelectorAll(".wall");
+              struck.classList.add("struck");
+              return [document.querySelector("[aria-label=speed]").value, getComputedStyle(struck).fill !== getComputedStyle(still).fill];
+            })()""")
+
+        self.assertEqual(speed_and_flash("no-preference"), ["0", True])
+        self.assertEqual(speed_and_flash("reduce"), ["-1", False])
+
     def test_every_control_has_a_name(self):
         self.open()
         self.assertEqual(self.browser.does("""[...document.querySelectorAll("input, select, button, svg")].filter((each) =>
