@@ -375,6 +375,25 @@ class DamperToPlayWith(InABrowser):
         # The paper's claim, and what the program finds by the same rule (claim bounce-down-04).
         self.assertRegex(told, r"bounce-down ends at amplitude (1\.9|2\.0)")
 
+    def test_who_moves_in_time_while_a_new_decay_is_simulated_sees_the_new_one(self):
+        self.open()
+        self.browser.does("""(() => {
+          const time = document.querySelector(".time"), field = document.querySelector("[aria-label^='restitution'][type=number]");
+          const move = (to) => { time.value = to; time.dispatchEvent(new Event("input")); };
+          move(500);
+          field.value = "0.4";
+          field.dispatchEvent(new Event("change"));
+          move(900);
+        })()""")
+        told = self.settled()
+        for words in self.told_by_the_program(0.4):
+            self.assertIn(words, told)
+
+    def test_an_emptied_field_is_no_zero(self):
+        before = self.open()
+        self.assertEqual(self.types("restitution", ""), before)
+        self.assertEqual(self.browser.does("document.querySelector('[aria-label^=restitution][type=number]').value"), "0.6")
+
     def test_a_link_carries_the_parameters(self):
         told = self.open("mass_ratio=0.1&restitution=0.8&x0=3&engine=restitution")
         link = self.browser.does("location.hash")
@@ -478,8 +497,10 @@ class InFirefox(InABrowser):
             self.assertIn(words, told)
         self.browser.open(WASM / "own.html")
         self.settled()
-        page = WORK / "mast.html"
-        call(PROGRAM, "report", "--scene", SOURCE / "data/examples/mast.json", "--without-figures", "-o", page)
+        (WORK / "firefox").mkdir()
+        scene, page = WORK / "firefox/mast.json", WORK / "firefox/mast.html"
+        scene.write_text(self.browser.does(KEPT % "Save the scene"), encoding="utf-8")
+        call(PROGRAM, "report", "--scene", scene, "--without-figures", "-o", page)
         self.assertEqual(self.browser.does(KEPT % "Save the page"), page.read_text(encoding="utf-8"))
 
 
@@ -508,8 +529,9 @@ class OwnDamper(InABrowser):
         folder = WORK / "own"
         folder.mkdir()
         (folder / "my mast.json").write_text(self.kept("Save the scene"), encoding="utf-8")
-        self.assertEqual(json.loads((folder / "my mast.json").read_text()),
-                         json.loads((SOURCE / "data/examples/mast.json").read_text()) | {"restitution": 0.4})
+        mast = json.loads((SOURCE / "data/examples/mast.json").read_text()) | {"restitution": 0.4}
+        del mast["description"]
+        self.assertEqual(json.loads((folder / "my mast.json").read_text()), mast)
         call(PROGRAM, "report", "--scene", "my mast.json", "--without-figures", "-o", "program's.html", cwd=folder)
         self.assertEqual(self.kept("Save the page"), (folder / "program's.html").read_text(encoding="utf-8"))
         shown = self.browser.does("document.querySelector('iframe').contentDocument.body.innerText")
@@ -524,9 +546,81 @@ class OwnDamper(InABrowser):
         scene.write_text(self.kept("Save the scene"), encoding="utf-8")
         done = subprocess.run([PROGRAM, "report", "--scene", "mast.json"], cwd=WORK, capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
-        self.assertEqual(self.browser.does("document.querySelector('[role=alert]').textContent"), done.stderr.strip())
+        self.assertEqual(self.alert(), done.stderr.strip().replace("mast.json: /restitution:", "coefficient of restitution (restitution):"))
+        self.assertEqual(self.field("coefficient of restitution", "getAttribute('aria-invalid')"), "true")
+        self.assert_page_is_stale()
         self.types("coefficient of restitution", "0.5")
-        self.assertIn("to the last byte", self.settled())
+        self.assertIn("Simulated by the program", self.settled())
+        self.assertEqual(self.alert(), "")
+        self.assertEqual(self.field("coefficient of restitution", "getAttribute('aria-invalid')"), None)
+
+    def test_what_is_no_number_is_taken_for_none(self):
+        self.open()
+        for text in ("1,5", "abc", "1e400", "1e"):
+            with self.subTest(text):
+                self.types("damping ratio", text)
+                self.assertEqual(self.alert(), f"damping ratio: must be a number such as 0.002, got '{text}'")
+                self.assertEqual(self.field("damping ratio", "value"), text)
+                self.assert_page_is_stale()
+        self.types("damping ratio", "")
+        self.assertIn("Simulated by the program", self.settled())
+        self.assertNotIn("damping_ratio", json.loads(self.kept("Save the scene")))
+
+    def test_a_name_is_that_of_a_file(self):
+        self.open()
+        for name in ("figures/catalogue", "../x", "a\\\\b"):
+            with self.subTest(name):
+                self.types("name", name)
+                self.assertIn("name: must be that of a file, without a slash", self.alert())
+                self.assert_page_is_stale()
+        self.types("name", "<b>x<~b>.json")
+        self.settled()
+        self.assertEqual(self.browser.does("document.querySelector('iframe').contentDocument.querySelector('h1').textContent"), "Impact damper: <b>x<~b>")
+        self.types("name", "")
+        self.settled()
+        self.assertEqual(self.browser.does("document.querySelector('.own a[download$=html]').download"), "my damper.html")
+
+    def test_the_newest_scene_is_shown_and_saved_under_its_name(self):
+        self.open()
+        for field, value in (("name", "one"), ("released at", ""), ("exciting force", "2"), ("its frequency", "3.15"),
+                             ("ends below", ""), ("ends after", "600"), ("name", "two"),
+                             ("exciting force", ""), ("its frequency", ""), ("released at", "50")):
+            self.types(field, value)
+        self.settled()
+        self.assertEqual(self.browser.does("document.querySelector('.own a[download$=html]').download"), "two.html")
+        page = self.kept("Save the page")
+        self.assertIn("Impact damper: two", page)
+        self.assertIn("From an amplitude of", page)
+
+    def test_its_contents_lead_to_its_sections_and_its_height_is_that_of_the_page(self):
+        self.open()
+        page = "document.querySelector('iframe').contentDocument"
+        for link in range(self.browser.does(f"{page}.querySelectorAll('nav a').length")):
+            self.browser.does(f"{page}.querySelectorAll('nav a')[{link}].click()")
+            title = self.browser.does(f"{page}.querySelectorAll('nav a')[{link}].textContent")
+            top = self.browser.does(f"[...{page}.querySelectorAll('h2')].find((h) => h.textContent === '{title}').getBoundingClientRect().top")
+            self.assertGreaterEqual(top, 0)
+            self.assertEqual(self.browser.does(f"{page}.querySelector('h1').textContent"), "Impact damper: mast")
+        heights = "(() => { const f = document.querySelector('iframe'); return [f.clientHeight, f.contentDocument.documentElement.scrollHeight]; })()"
+        for restitution in ("0.5", "0.4", "0.3", "0.6"):
+            self.types("coefficient of restitution", restitution)
+            self.settled()
+        self.browser.does("new Promise((resolve) => setTimeout(resolve, 500))")  # a new layout
+        own, content = self.browser.does(heights)
+        self.assertLessEqual(content, own)
+        self.assertLess(own, self.browser.does(f"{page}.body.getBoundingClientRect().height") + 60)
+
+    def alert(self) -> str:
+        return self.browser.does("document.querySelector('[role=alert]').textContent")
+
+    def field(self, name: str, what: str):
+        return self.browser.does(f"document.querySelector('[aria-label^=\"{name}\"]').{what}")
+
+    def assert_page_is_stale(self):
+        self.assertEqual(self.browser.does("document.querySelector('[role=status]').textContent"),
+                         "The page below is that of the scene before the last change.")
+        self.assertEqual(self.browser.does("[document.querySelector('.own').matches('[data-stale]'), "
+                                           "[...document.querySelectorAll('.own a')].map((each) => each.hidden)]"), [True, [False, True]])
 
     def test_it_fits_a_phone_and_a_dark_screen(self):
         for width in (390, 1280):

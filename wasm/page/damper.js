@@ -165,7 +165,9 @@ class Control {
       changed();
     });
     this.field.addEventListener("change", () => {
-      this.set(Number(this.field.value));
+      // What is no number is not taken for one.
+      if (!Number.isFinite(this.field.valueAsNumber)) return this.set(this.value);
+      this.set(this.field.valueAsNumber);
       changed();
     });
   }
@@ -192,7 +194,10 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   const loss = new Plot({ title: "Loss factor over amplitude", x: { words: "amplitude", logarithmic: true }, y: { words: "η", logarithmic: true } });
   const phase = new Plot({ title: "The secondary mass in its cavity", x: { words: "place y" }, y: { words: "velocity" } });
   const drawing = new Drawing();
-  const controls = parameters.map((parameter) => new Control(parameter, () => renew()));
+  const controls = parameters.map((parameter) => new Control(parameter, () => {
+    preset.value = "";
+    renew();
+  }));
   const engine = make("select", { "aria-label": "engine" }, make("option", { value: "exact" }, "compliant walls"), make("option", { value: "restitution" }, "rigid walls"));
   const preset = make("select", { "aria-label": "a case of the paper" }, make("option", { value: "" }, "a case of the paper"),
     ...presets.map(({ words }, i) => make("option", { value: i }, words)));
@@ -223,31 +228,35 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     ...(isForced() ? { until_time: untilTimeForced } : { until_time: untilTime, until_amplitude: Math.min(untilAmplitude, valueOf("x0") / 10) }),
   });
 
-  // The last request counts: what is asked for while the worker works waits, and only the newest of it.
+  // What is asked for while the worker works waits, and is asked for once: a new decay, if any of it was, and the stretch of
+  // it that is wanted by then.
   let asked = false;
   let waiting;
-  async function ask(options) {
-    waiting = options;
+  async function ask({ fresh: isFresh = false }) {
+    waiting = { fresh: isFresh || waiting?.fresh };
     if (asked) return;
     asked = true;
     while (waiting) {
       const { fresh } = waiting;
       waiting = undefined;
+      const forced = isForced();
       const begin = Math.max(0, Math.min(now, (run?.end_time ?? now) - windowLength));
       const history = { begin, end: begin + windowLength, count: 4 * samplesPerPeriod + 1 };
       try {
         // Of a forced motion there is no loss factor to measure: its amplitude does not fall by losses alone.
-        const record = ["half_cycles", "impacts", "contacts", "history", ...(isForced() ? [] : ["loss"])];
+        const record = ["half_cycles", "impacts", "contacts", "history", ...(forced ? [] : ["loss"])];
         const result = await simulate(scene(), { engine: engine.value, record, history });
         problem.textContent = "";
+        delete place.dataset.stale;
         motion = result;
         const first = !run;
-        if (fresh || first) show(result);
+        if (fresh || first) show(result, forced);
         const row = first ? run.half_cycles.amplitude.findIndex((each) => each <= begun) : -1;
         if (row >= 0) goTo(run.half_cycles.peak_time[row]);
         else showMoment();
       } catch (error) {
-        problem.textContent = error.message;
+        problem.textContent = `${error.message}\nWhat is shown is the decay before the last change.`;
+        place.dataset.stale = "";
         place.removeAttribute("aria-busy");
       }
     }
@@ -263,7 +272,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     ask({ fresh: true });
   }
 
-  function show(result) {
+  function show(result, forced) {
     run = result;
     now = Math.min(now, run.end_time);
     time.max = run.end_time;
@@ -279,7 +288,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     loss.scale({ from: Math.min(least, largest / 10), to: largest },
       { from: eta.reduce((least, each) => Math.min(least, each), 1) * 0.8, to: eta.reduce((most, each) => Math.max(most, each), 1e-6) * 1.25 });
     loss.draw(run.loss.amplitude, run.loss.eta);
-    const words = isForced() ? "under a force" : Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
+    const words = forced ? "under a force" : Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
     summary.dataset.run = `${rounded(run.end_time / period)} periods to amplitude ${rounded(amplitude.at(-1) ?? 0)}, ${counted(run.impacts.time.length, "impact")}; ${words}`;
     place.removeAttribute("aria-busy");
   }
@@ -359,10 +368,14 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   });
   decay.svg.addEventListener("pointermove", (event) => event.buttons && dragTo(event));
   time.addEventListener("input", () => goTo(Number(time.value)));
-  engine.addEventListener("change", renew);
+  engine.addEventListener("change", () => {
+    preset.value = "";
+    renew();
+  });
   preset.addEventListener("change", () => {
     if (preset.value === "") return;
     setAll({ ...usual, ...presets[preset.value] });
+    engine.value = "exact";
     renew();
   });
 

@@ -2,38 +2,42 @@
 // the runs, tables and verdicts anew by the commands that made those of the page (figures/CMakeLists.txt).
 let project;
 
-async function unpacked(bytes) {
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-}
-
-async function opened({ program, archive }) {
+async function unpackedProject({ program, archive }) {
   const { files, commands } = JSON.parse(new TextDecoder().decode(await unpacked(archive)));
   const module = await unpacked(program);
-  return { module: new Uint8Array(module), program: await WebAssembly.compile(module), commands,
+  return { module: new Uint8Array(module), compiled: await WebAssembly.compile(module), commands,
            sources: new Map(Object.entries(files)), made: new Map() };
 }
 
-const fileOf = ({ sources, made }, name) => made.get(name) ?? sources.get(name);
+const contentOf = (name) => project.made.get(name) ?? project.sources.get(name);
 
-// Calls the program, which finds the project's own files and those called `from` below its current folder. Returns what it
-// wrote to the files `makes`; throws what it complained of.
-async function called(words, from, makes) {
-  const complaints = [];
-  const { FS, callMain } = await loadProgram({
-    thisProgram: "impact-damper",
-    print: () => {},
-    printErr: (line) => complaints.push(line),
-    instantiateWasm(imports, received) {
-      WebAssembly.instantiate(project.program, imports).then((instance) => received(instance));
-      return {};
-    },
+// The program, with files of its own, of which there are none yet; its complaints are put into `complaints`.
+function loaded(complaints) {
+  return new Promise((resolve, reject) => {
+    loadProgram({
+      thisProgram: "impact-damper",
+      print: () => {},
+      printErr: (line) => complaints.push(line),
+      onAbort: (what) => reject(new Error(what)),
+      instantiateWasm(imports, received) {
+        WebAssembly.instantiate(project.compiled, imports).then(received, reject);
+        return {};
+      },
+    }).then(resolve, reject);
   });
-  const put = (name) => FS.writeFile(name, fileOf(project, name));
-  for (const name of [...project.sources.keys(), ...from, ...makes]) FS.mkdirTree(`/${name}`.replace(/[^/]*$/, ""));
-  for (const name of new Set([...project.sources.keys(), ...from])) put(name);
-  FS.writeFile("/proc/self/exe", project.module); // of an uncommitted state a sweep tells the program's own digest
-  const code = callMain(words);
-  if (code !== 0) throw new Error(complaints.join("\n"));
+}
+
+// Calls the program, which finds the project's own files and `files`, a map of names to contents, below its current folder.
+// Returns what it wrote to the files `makes`; throws what it complained of.
+async function runProgram(words, files, makes) {
+  const complaints = [];
+  const { FS, callMain } = await loaded(complaints);
+  const given = new Map([...project.sources, ...files]);
+  for (const name of [...given.keys(), ...makes]) FS.mkdirTree(`/${name}`.replace(/[^/]*$/, ""));
+  for (const [name, content] of given) FS.writeFile(name, content);
+  // Built from sources that are not committed a sweep writes the SHA-256 of its program, which it reads here.
+  FS.writeFile("/proc/self/exe", project.module);
+  if (callMain(words) !== 0) throw new Error(complaints.join("\n"));
   return makes.map((name) => FS.readFile(name));
 }
 
@@ -43,7 +47,7 @@ function commandsFor(names) {
   const found = new Set();
   const visit = (name) => {
     const command = makers.get(name);
-    if (fileOf(project, name) || found.has(command)) return;
+    if (contentOf(name) || found.has(command)) return;
     if (!command) throw new Error(`${name}: nothing makes it`);
     command.from.forEach(visit);
     found.add(command);
@@ -52,18 +56,20 @@ function commandsFor(names) {
   return [...found];
 }
 
-async function make(names, tell) {
+const withContents = (names) => names.map((name) => [name, contentOf(name)]);
+
+async function makeFiles(names, tell) {
   const commands = commandsFor(names);
   for (const [done, { words, from, makes }] of commands.entries()) {
     tell({ done, count: commands.length, command: words.join(" ") });
-    const files = await called(words, from, makes);
-    makes.forEach((name, i) => project.made.set(name, files[i]));
+    const contents = await runProgram(words, withContents(from), makes);
+    makes.forEach((name, i) => project.made.set(name, contents[i]));
   }
 }
 
 // The runs and responses that a claim of data/claims.json rests on, with the members of their ensembles.
 function runsOf(claim) {
-  const catalogue = JSON.parse(fileOf(project, "figures/catalogue.json"));
+  const catalogue = JSON.parse(contentOf("figures/catalogue.json"));
   const calls = [claim.measure, ...Object.values(claim.also ?? {})];
   const names = new Set(calls.flatMap((call) => [...(call.scenes ?? []), ...(call.responses ?? [])]));
   for (const { name, scene } of catalogue.runs)
@@ -75,16 +81,15 @@ function runsOf(claim) {
 
 // The lines of the file of verdicts on these claims, by id.
 async function verdictsOn(ids, tell) {
-  const { schema, claims } = JSON.parse(fileOf(project, "data/claims.json"));
+  const { schema, claims } = JSON.parse(contentOf("data/claims.json"));
   const some = claims.filter(({ id }) => ids.includes(id));
   const runs = [...new Set(some.flatMap(runsOf))];
-  await make(runs, tell);
+  await makeFiles(runs, tell);
   tell({ done: 0, count: 1, command: "verify" });
-  const [chosen, verdicts] = ["build/claims.json", "build/verdicts.json"];
-  project.made.set(chosen, JSON.stringify({ schema, claims: some }));
-  const words = ["verify", "--runs", "build/runs/exact", "--claims", chosen, "--threads", "1", "-o", verdicts];
-  const [file] = await called(words, [chosen, ...runs], [verdicts]);
-  const lines = new TextDecoder().decode(file).split("\n").filter((line) => line.includes('"claim": '));
+  const words = ["verify", "--runs", "build/runs/exact", "--claims", "chosen.json", "--threads", "1", "-o", "verdicts.json"];
+  const files = [["chosen.json", JSON.stringify({ schema, claims: some })], ...withContents(runs)];
+  const [verdicts] = await runProgram(words, files, ["verdicts.json"]);
+  const lines = new TextDecoder().decode(verdicts).split("\n").filter((line) => line.includes('"claim": '));
   return new Map(lines.map((line) => line.replace(/^ +|,$/g, "")).map((line) => [JSON.parse(line).claim, line]));
 }
 
@@ -93,33 +98,36 @@ async function sha256(content) {
   return [...new Uint8Array(await crypto.subtle.digest("SHA-256", bytes))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-async function answered({ table, claims, report }, tell) {
-  if (report) {
-    project.made.set(report.name, report.scene);
-    const words = ["report", "--scene", report.name, "--without-figures", "--threads", "1", "-o", "page.html"];
-    const [page] = await called(words, [report.name], ["page.html"]);
-    return { page: new TextDecoder().decode(page) };
-  }
+// A request is one of: { table }, its file's name; { claims }, their ids; { report: { name, scene } }, the page about a scene
+// file of that name, which has no slash. `anew`: of what was made before nothing is used.
+async function answerTo({ table, claims, report, anew }, tell) {
+  if (anew) project.made.clear();
   if (table) {
-    await make([table], tell);
+    await makeFiles([table], tell);
     return { sha256: await sha256(project.made.get(table)) };
   }
-  const hashes = [];
-  for (const [id, line] of await verdictsOn(claims, tell)) hashes.push([id, await sha256(line)]);
-  return { sha256: Object.fromEntries(hashes) };
+  if (claims) {
+    const hashes = [];
+    for (const [id, line] of await verdictsOn(claims, tell)) hashes.push([id, await sha256(line)]);
+    return { sha256: Object.fromEntries(hashes) };
+  }
+  const words = ["report", "--scene", report.name, "--without-figures", "--threads", "1", "-o", "/page/page.html"];
+  const [page] = await runProgram(words, [[report.name, report.scene]], ["page/page.html"]);
+  return { page: new TextDecoder().decode(page) };
 }
 
-let ready; // the project, opened
+let ready; // the project, unpacked
 let last = Promise.resolve(); // the request before
 onmessage = ({ data }) => {
   if (data.program) {
-    ready = opened(data);
+    ready = unpackedProject(data);
+    ready.catch(() => {}); // told to whoever asks
     return;
   }
   last = last.then(async () => {
     try {
       project = await ready;
-      postMessage(await answered(data, (progress) => postMessage({ progress })));
+      postMessage({ answer: await answerTo(data, (progress) => postMessage({ progress })) });
     } catch (error) {
       postMessage({ error: error.message });
     }
