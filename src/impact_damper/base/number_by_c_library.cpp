@@ -1,5 +1,6 @@
 #include "impact_damper/base/number_by_c_library.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -54,16 +55,40 @@ Decimal just_above(Decimal decimal) {
   return decimal;
 }
 
+constexpr int most_digits = 17;  // enough for every double
+struct Rounded {
+  Decimal decimal;
+  bool is_far;  // reads back as another double
+};
+// The number with 15 or 16 digits, rounded from the 17 of `full`: printf and strtod are slow where long double
+// has 128 bits in software, and this needs them seldom.
+Rounded rounded(const Decimal& full, double magnitude, int digits) {
+  std::string padded = full.digits;
+  padded.resize(most_digits, '0');
+  const std::size_t count = std::size_t(digits);
+  const int rest = std::atoi(padded.c_str() + count), unit = digits == most_digits - 1 ? 10 : 100;
+  // Half a unit: what stands behind the seventeenth digit decides.
+  if (2 * rest == unit) return {decimal_of(magnitude, digits), false};
+  Decimal decimal{padded.substr(0, count), full.point};
+  if (2 * rest > unit) decimal = just_above(decimal);
+  decimal.digits.resize(decimal.digits.find_last_not_of('0') + 1);
+  // What reads back as a double is no farther from it than 2^-53 of it, at most 11.2 units of the seventeenth
+  // digit, and that digit is rounded by half a unit.
+  return {decimal, std::min(rest, unit - rest) > 12};
+}
+
 // Of the decimal numbers that read back as `magnitude`, those with the fewest digits; of these the nearest.
 Decimal shortest(double magnitude) {
   // Up to 15 digits of a normal number come back from a double unchanged, so whatever has fewer is found with
   // zeros behind it. A subnormal number has fewer digits.
-  const int first = magnitude < 0x1p-1022 ? 1 : 15;
+  const bool is_subnormal = magnitude < 0x1p-1022;
   int exponent = 0;
   const bool is_power_of_two = std::frexp(magnitude, &exponent) == 0.5;
-  for (int digits = first; digits < 17; ++digits) {
-    Decimal nearest = decimal_of(magnitude, digits);
-    if (value_of(nearest) == magnitude) return nearest;
+  const Decimal all = decimal_of(magnitude, most_digits);
+  for (int digits = is_subnormal ? 1 : 15; digits < most_digits; ++digits) {
+    const auto [nearest, is_far] =
+        is_subnormal ? Rounded{decimal_of(magnitude, digits), false} : rounded(all, magnitude, digits);
+    if (!is_far && value_of(nearest) == magnitude) return nearest;
     // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
     // where its neighbour, somewhat farther, does not.
     if (!is_power_of_two) continue;
@@ -72,7 +97,7 @@ Decimal shortest(double magnitude) {
     for (const Decimal& neighbour : {just_below(full), just_above(full)})
       if (value_of(neighbour) == magnitude) return neighbour;
   }
-  return decimal_of(magnitude, 17);
+  return all;
 }
 
 bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
