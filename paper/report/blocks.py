@@ -13,11 +13,14 @@ import io
 import json
 import re
 import subprocess
+import sys
 from html import escape
 from pathlib import Path
 
-from pages import own_html
 from values import Mistake, Values, stem_of
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "wasm/page"))
+from pages import own_html  # noqa: E402
 
 # Mathematics in the words of claims, which are plain ASCII: what is set, and as which formula.
 GREEK = {"eta": r"\eta", "nu": r"\nu", "zeta": r"\zeta", "pi": r"\pi"}

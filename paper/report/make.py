@@ -19,15 +19,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-SOURCE = HERE.parents[1]
 sys.dont_write_bytecode = True
-sys.path.append(str(SOURCE / "wasm/page"))
 from blocks import Html, Latex, filled  # noqa: E402
 from formulas import tidied  # noqa: E402
 from mathematics import appendix  # noqa: E402
 from values import Mistake, Values  # noqa: E402
 from pages import damper_pieces, project_pieces  # noqa: E402
+
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
 
 
 def called(command: list, **options) -> str:
