@@ -60,13 +60,14 @@ struct Rounded {
   Decimal decimal;
   bool is_far;  // reads back as another double
 };
-// The number with 15 or 16 digits, rounded from the 17 of `full`: printf and strtod are slow where long double
-// has 128 bits in software, and this needs them seldom.
+// The number with 15 or 16 digits, rounded from the 17 of `full`: printf and strtod are slow where long
+// double has 128 bits in software, and this needs them seldom.
 Rounded rounded(const Decimal& full, double magnitude, int digits) {
   std::string padded = full.digits;
   padded.resize(most_digits, '0');
   const std::size_t count = std::size_t(digits);
-  const int rest = std::atoi(padded.c_str() + count), unit = digits == most_digits - 1 ? 10 : 100;
+  const long rest = std::strtol(padded.c_str() + count, nullptr, 10),
+             unit = digits == most_digits - 1 ? 10 : 100;
   // Half a unit: what stands behind the seventeenth digit decides.
   if (2 * rest == unit) return {decimal_of(magnitude, digits), false};
   Decimal decimal{padded.substr(0, count), full.point};
@@ -84,11 +85,12 @@ Decimal shortest(double magnitude) {
   const bool is_subnormal = magnitude < 0x1p-1022;
   int exponent = 0;
   const bool is_power_of_two = std::frexp(magnitude, &exponent) == 0.5;
-  const Decimal all = decimal_of(magnitude, most_digits);
+  Decimal all = decimal_of(magnitude, most_digits);
   for (int digits = is_subnormal ? 1 : 15; digits < most_digits; ++digits) {
-    const auto [nearest, is_far] =
+    const Rounded candidate =
         is_subnormal ? Rounded{decimal_of(magnitude, digits), false} : rounded(all, magnitude, digits);
-    if (!is_far && value_of(nearest) == magnitude) return nearest;
+    const Decimal& nearest = candidate.decimal;
+    if (!candidate.is_far && value_of(nearest) == magnitude) return nearest;
     // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
     // where its neighbour, somewhat farther, does not.
     if (!is_power_of_two) continue;
