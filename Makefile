@@ -126,7 +126,7 @@ verify: $(BUILD)/build.ninja  ## hold the results against the paper, claim by cl
 	$(BUILD)/src/impact-damper verify --runs $(BUILD)/runs/$(ENGINE) $(MEMBERS) \
 	  --catalogue figures/catalogue.json -o $(BUILD)/verdicts-$(ENGINE).json
 
-# Where there is a compiler for it, the report's page has a damper to play with.
+# Where there is a compiler for it, the report's page has a damper to play with, and checks.
 WASM := $(if $(shell command -v em++),$(BUILD)/wasm)
 paper: $(if $(WASM),wasm) $(BUILD)/build.ninja  ## the report, build/paper/report.pdf and report.html, from the exact engine's results
 	@$(alone) cmake --build $(BUILD) --target figures-exact runs-exact || exit; \
@@ -208,12 +208,12 @@ mutation:  ## plant faults in a copy of the library, one by one: do the fast tes
 same-bits:  ## the same bytes from other compilers, processors, WebAssembly and strange surroundings (a quarter of an hour)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
-wasm:  ## the library for browsers and node, as an npm package, and a page with a damper to play with: build/wasm/
+wasm:  ## the library for browsers and node, as an npm package, and pages to play with a damper and to try one's own: build/wasm/
 	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
 	  >$(BUILD)/wasm.log || { cat $(BUILD)/wasm.log; echo "make $@: make deps-wasm installs what it needs" >&2; exit 1; }; \
-	cmake --build $(BUILD)/wasm --target pages && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the page: $(BUILD)/wasm/damper.html"
+	cmake --build $(BUILD)/wasm --target pages && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the pages: $(BUILD)/wasm/damper.html and own.html"
 
-wasm-check: wasm $(BUILD)/build.ninja  ## the page works, and the package's run files are the program's, in node and in a browser (minutes)
+wasm-check: wasm $(BUILD)/build.ninja  ## the pages work, and the package's run files are the program's, in node and in a browser (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
 	tests/wasm/check.py $(BUILD)
 

@@ -103,7 +103,7 @@ Command report_command() {
       "run;\n"
       "given in kilograms, newtons per metre and millimetres, the page speaks in both. Figures are "
       "drawn\n"
-      "by gnuplot, which must be there.\n\n"
+      "by gnuplot, which must be there if there are to be any.\n\n"
       "Examples:\n"
       "  impact-damper report --scene data/examples/mast.json -o mast.html\n"
       "  impact-damper report --mass-ratio 0.05 --x0 3 --until-amplitude 0.05 -o mine.html";

@@ -1,5 +1,6 @@
-// What comes behind the program's start code in a worker of the page: the project in memory, and the program, which makes
-// the runs, tables and verdicts anew by the commands that made those of the page (figures/CMakeLists.txt).
+// Stands behind unpacked.js and the program's start code (emscripten's loadProgram) in a worker's script. Holds the project's
+// files in memory, and makes runs, tables and verdicts anew by the commands that made those of the page
+// (figures/CMakeLists.txt).
 let project;
 
 async function unpackedProject({ program, archive }) {
@@ -11,7 +12,8 @@ async function unpackedProject({ program, archive }) {
 
 const contentOf = (name) => project.made.get(name) ?? project.sources.get(name);
 
-// The program, with files of its own, of which there are none yet; its complaints are put into `complaints`.
+// A fresh instance of the program with a file system of its own, still empty. What it writes to its standard error comes
+// into `complaints`; its standard output is not needed, results are read from files.
 function loaded(complaints) {
   return new Promise((resolve, reject) => {
     loadProgram({
@@ -27,21 +29,21 @@ function loaded(complaints) {
   });
 }
 
-// Calls the program, which finds the project's own files and `files`, a map of names to contents, below its current folder.
-// Returns what it wrote to the files `makes`; throws what it complained of.
+// Calls the program with the arguments `words` in a folder with the project's files and `files`, pairs of name and content.
+// Returns the contents of the files `makes`; throws what the program wrote to its standard error if it fails.
 async function runProgram(words, files, makes) {
   const complaints = [];
   const { FS, callMain } = await loaded(complaints);
   const given = new Map([...project.sources, ...files]);
   for (const name of [...given.keys(), ...makes]) FS.mkdirTree(`/${name}`.replace(/[^/]*$/, ""));
   for (const [name, content] of given) FS.writeFile(name, content);
-  // Built from sources that are not committed a sweep writes the SHA-256 of its program, which it reads here.
+  // If the program was built from uncommitted sources, its sweeps record the SHA-256 of the program, read from this file.
   FS.writeFile("/proc/self/exe", project.module);
   if (callMain(words) !== 0) throw new Error(complaints.join("\n"));
   return makes.map((name) => FS.readFile(name));
 }
 
-// The commands that make these files and what they are made from, as far as it is not there, in their order.
+// The commands that are needed to make these files, inputs first, without those whose files are there already.
 function commandsFor(names) {
   const makers = new Map(project.commands.flatMap((command) => command.makes.map((name) => [name, command])));
   const found = new Set();
@@ -67,7 +69,8 @@ async function makeFiles(names, tell) {
   }
 }
 
-// The runs and responses that a claim of data/claims.json rests on, with the members of their ensembles.
+// The files that a claim of data/claims.json rests on: of each run and response that its measures name, with the members of
+// ensembles; and of the scene's run beside a further run of it, as `verify` reads both.
 function runsOf(claim) {
   const catalogue = JSON.parse(contentOf("figures/catalogue.json"));
   const calls = [claim.measure, ...Object.values(claim.also ?? {})];
@@ -79,7 +82,7 @@ function runsOf(claim) {
     file === begin + "json" || file.startsWith(begin + "members/")));
 }
 
-// The lines of the file of verdicts on these claims, by id.
+// The lines of the file of verdicts on these claims, by id: as text, since their hashes are compared.
 async function verdictsOn(ids, tell) {
   const { schema, claims } = JSON.parse(contentOf("data/claims.json"));
   const some = claims.filter(({ id }) => ids.includes(id));
@@ -98,8 +101,8 @@ async function sha256(content) {
   return [...new Uint8Array(await crypto.subtle.digest("SHA-256", bytes))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-// A request is one of: { table }, its file's name; { claims }, their ids; { report: { name, scene } }, the page about a scene
-// file of that name, which has no slash. `anew`: of what was made before nothing is used.
+// A request is { table: file name }, { claims: [id, ...] } or { report: { name, scene } }, where `name` is a file's name without
+// a slash and `scene` its text. With `anew` everything that was made before is discarded first.
 async function answerTo({ table, claims, report, anew }, tell) {
   if (anew) project.made.clear();
   if (table) {
@@ -111,17 +114,17 @@ async function answerTo({ table, claims, report, anew }, tell) {
     for (const [id, line] of await verdictsOn(claims, tell)) hashes.push([id, await sha256(line)]);
     return { sha256: Object.fromEntries(hashes) };
   }
-  const words = ["report", "--scene", report.name, "--without-figures", "--threads", "1", "-o", "/page/page.html"];
-  const [page] = await runProgram(words, [[report.name, report.scene]], ["page/page.html"]);
+  const words = ["report", "--scene", report.name, "--without-figures", "--threads", "1", "-o", "page.html"];
+  const [page] = await runProgram(words, [[report.name, report.scene]], ["page.html"]);
   return { page: new TextDecoder().decode(page) };
 }
 
 let ready; // the project, unpacked
-let last = Promise.resolve(); // the request before
+let last = Promise.resolve(); // settles when all earlier requests have been answered
 onmessage = ({ data }) => {
   if (data.program) {
     ready = unpackedProject(data);
-    ready.catch(() => {}); // told to whoever asks
+    ready.catch(() => {}); // each request tells of the failure
     return;
   }
   last = last.then(async () => {
