@@ -208,15 +208,21 @@ class Contact {
       return last_.phase.emplace(system_.forcing.phase(begin_ + t));
     }
   }
-  // An oscillator's response to the force; p: its propagator until t.
-  [[gnu::always_inline]] DrivenResponse<Real> response(const Oscillator<Real>& oscillator, const Real& t,
-                                                       const Propagator<Real>& p) const {
+  // What carries a part over a time t.
+  struct Carrier {
+    Propagator<Real> propagator;
+    DrivenResponse<Real> driven{};
+  };
+  [[gnu::always_inline]] Carrier carrier(const Oscillator<Real>& oscillator, const Real& t) const {
     if constexpr (!forced) {
-      return {};
+      return {oscillator.propagate(t)};
     } else {
       Last& last = last_.at_time(t);
-      auto& known = &oscillator == &system_.slow ? last.slow : last.fast;
-      if (!known) known = oscillator.respond(system_.forcing, phase_, t, p);
+      std::optional<Carrier>& known = &oscillator == &system_.slow ? last.slow : last.fast;
+      if (!known) {
+        known.emplace(Carrier{oscillator.propagate(t)});
+        known->driven = oscillator.respond(system_.forcing, phase_, t, known->propagator);
+      }
       return *known;
     }
   }
@@ -393,14 +399,11 @@ class Contact {
     // Under forcing x' and q' of a part differ from its v and w by drive.x f and drive.q f, from the start
     // on.
     if (t == 0 && !system_.forcing) return from;
-    const Propagator<Real> p = oscillator.propagate(t);
+    const auto [p, driven] = carrier(oscillator, t);
     const Real s1 = -oscillator.b() * p.s;
     ContactState<Real> to{p.c * from.x + p.s * from.v, s1 * from.x + p.v * from.v,
                           p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
-    if (system_.forcing) {
-      const DrivenResponse<Real> driven = response(oscillator, t, p);
-      add_driven(to, oscillator, drive, driven, t);
-    }
+    if (system_.forcing) add_driven(to, oscillator, drive, driven, t);
     return to;
   }
 
@@ -412,13 +415,12 @@ class Contact {
   // what both parts have in common.
   ContactState<Real> change(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
                             const ContactState<Real>& drive, const Real& t, bool is_short = true) const {
-    const Propagator<Real> p = oscillator.propagate(t);
+    const auto [p, driven] = carrier(oscillator, t);
     const Real s1 = -oscillator.b() * p.s, v1 = p.c1 - 2 * oscillator.a() * p.s;
     ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
       // (M5.10): what both parts have in common in x and q is left out where it would cancel.
-      const DrivenResponse<Real> driven = response(oscillator, t, p);
       if (is_short && driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {
@@ -490,7 +492,7 @@ class Contact {
   struct Last {
     Real time{-1};
     std::optional<SinCos<Real>> phase{};
-    std::optional<DrivenResponse<Real>> slow{}, fast{};
+    std::optional<Carrier> slow{}, fast{};
     Last& at_time(const Real& t) {
       if (t != time) *this = {t};
       return *this;
