@@ -146,6 +146,31 @@ class Package(unittest.TestCase):
                 self.assertEqual(kind, "invalid")
                 self.assertEqual("\n".join(words), done.stderr.strip().replace(str(scene), "scene"))
 
+    def test_a_module_for_one_damper_rejects_lists(self):
+        script = """
+          import { load, loadWithLists } from "impact-damper/core";
+          const list = '{"x0": 1, "until_time": 9, "dampers": [{"mass_ratio": 0.01}, {"mass_ratio": 0.02}]}';
+          const told = [(await load()).simulate('{"x0": 1, "until_time": 9}').end_time];
+          for (const engine of ["exact", "restitution", "cem"]) {
+            told.push((await loadWithLists()).simulate(list, { engine }).end_time);
+            try {
+              (await load()).simulate(list, { engine });
+            } catch (error) {
+              told.push([error.kind, error.message]);
+            }
+          }
+          console.log(JSON.stringify(told));
+        """
+        (self.stranger / "lists.mjs").write_text(script)
+        told = json.loads(call("node", "lists.mjs", cwd=self.stranger))
+        words = ["invalid", "dampers: this module knows no lists of dampers, impact-damper-lists.wasm does"]
+        self.assertEqual(told, [9] + 3 * [9, words])
+
+    def test_the_module_for_one_damper_is_small(self):
+        script = ('const { brotliCompressSync } = require("zlib"), { readFileSync } = require("fs");'
+                  'console.log(brotliCompressSync(readFileSync(process.argv[1])).length);')
+        self.assertLess(int(call("node", "-e", script, self.package / "impact-damper.wasm")), 150_000)
+
     def test_the_example_prints_what_the_program_computes(self):
         shutil.copy(self.package / "example.mjs", self.stranger)
         printed = call("node", "example.mjs", cwd=self.stranger)

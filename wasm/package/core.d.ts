@@ -11,5 +11,11 @@ export interface Simulator {
   ): Run;
 }
 
-/** Compiles the module, from the bytes of impact-damper.wasm; without them it is read, or fetched, from beside core.js. */
+/**
+ * Compiles a module: from its bytes, or the package's own impact-damper.wasm, which is read, or fetched, from beside core.js.
+ * That one rejects scenes with a list of dampers.
+ */
 export function load(bytes?: BufferSource): Promise<Simulator>;
+
+/** The same with lists of dampers, impact-damper-lists.wasm: a third larger. */
+export function loadWithLists(): Promise<Simulator>;

@@ -1,5 +1,5 @@
 // Simulates for index.js in a thread of its own, in browsers and in node.
-import { load } from "./core.js";
+import { load, loadWithLists } from "./core.js";
 
 const port = globalThis.process?.versions?.node
   ? (await import("node:worker_threads")).parentPort
@@ -14,10 +14,22 @@ function answer(message) {
   port.postMessage(message, buffersOf(message.run));
 }
 
-const loading = load();
+// Each module is compiled when it is first needed.
+let forOne, forLists;
+function simulatorFor(scene) {
+  let listed = false;
+  try {
+    listed = "dampers" in JSON.parse(scene);
+  } catch {
+    // No scene: what is wrong with it is for either module to say.
+  }
+  return listed ? (forLists ??= loadWithLists()) : (forOne ??= load());
+}
+
 const listen = async ({ data }) => {
   try {
-    answer({ run: (await loading).simulate(data.scene, data.options) });
+    const simulator = await simulatorFor(data.scene);
+    answer({ run: simulator.simulate(data.scene, data.options) });
   } catch (error) {
     answer({ error: { kind: error.kind, message: error.message } });
   }
