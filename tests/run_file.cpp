@@ -651,23 +651,32 @@ TEST_CASE("a run file of several dampers numbers them from 1 and has columns of 
 }
 
 TEST_CASE("a run of several dampers reads back as it was, and only where it may") {
-  const Run run = run_of_several();
-  const std::string text = run_text(run);
-  const Run back = parse_run("r.json", text, DamperList::allowed);
-  same(back, run);
-  CHECK(back.half_cycles->impacts_by_damper == run.half_cycles->impacts_by_damper);
-  CHECK(back.impacts->damper == run.impacts->damper);
-  CHECK(back.contacts->damper == run.contacts->damper);
-  REQUIRE(back.history->dampers.size() == 2);
-  REQUIRE(back.energy->dampers.size() == 2);
-  for (std::size_t i = 0; i < 2; ++i) {
-    CHECK(back.history->dampers[i].y == run.history->dampers[i].y);
-    CHECK(back.history->dampers[i].w == run.history->dampers[i].w);
+  Run other = run_of_several();  // zero where the first is not, and the other way round
+  other.scene.dampers[0].y0 = 0;
+  other.scene.dampers[0].w0 = 2;
+  other.energy->dampers[0] = {};
+  for (const Run& run : {run_of_several(), other}) {
+    const std::string text = run_text(run);
+    const Run back = parse_run("r.json", text, DamperList::allowed);
+    same(back, run);
+    CHECK(back.half_cycles->impacts_by_damper == run.half_cycles->impacts_by_damper);
+    CHECK(back.impacts->damper == run.impacts->damper);
+    CHECK(back.contacts->damper == run.contacts->damper);
+    REQUIRE(back.history->dampers.size() == 2);
+    REQUIRE(back.energy->dampers.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(back.history->dampers[i].y == run.history->dampers[i].y);
+      CHECK(back.history->dampers[i].w == run.history->dampers[i].w);
+      const DamperEnergy &read = back.energy->dampers[i], &kept = run.energy->dampers[i];
+      for (const DamperEnergyField& field : damper_energy_fields)
+        CHECK(read.*field.member == kept.*field.member);
+      CHECK(read.bounce_downs == kept.bounce_downs);
+    }
+    CHECK(run_text(back) == text);
+    CHECK(problems(text) ==
+          Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response sweep only: "
+                "give one damper without a list"});
   }
-  CHECK(run_text(back) == text);
-  CHECK(problems(text) ==
-        Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response sweep only: "
-              "give one damper without a list"});
 }
 
 TEST_CASE("columns of dampers that are not those of the scene are rejected") {

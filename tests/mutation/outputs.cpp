@@ -2,10 +2,9 @@
 //
 //   exact/impacts.time scaled negated shifted
 //
-// Run entries for each engine ("exact", "restitution", "cem") and once more as they are written ("file") and
-// read
-// ("read"), table columns, measures. The keys are those of the run files, the columns those of the
-// catalogue's figures. Fails where a key has no planter.
+// Run entries for each engine, of one damper ("exact", "restitution", "cem") and of several ("exact-dampers",
+// ...), and once more as they are written ("file") and read ("read"), table columns, measures. The keys are
+// those of the run files, the columns those of the catalogue's figures. Fails where a key has no planter.
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -28,20 +27,25 @@ namespace {
 std::map<std::string, std::set<std::string_view>> outputs;  // and the kinds of their faults
 
 // A decay with all that can be recorded in it: damped and forced, it begins stuck or in a wall, and ends so.
-Run full_run(const Engine& engine) {
+Run full_run(const Engine& engine, DamperList dampers) {
   const bool rigid = std::holds_alternative<Restitution>(engine);
-  const Scene scene{.mass_ratio = 0.3,
-                    .restitution = 0.3,
-                    .damping_ratio = 0.02,
-                    .wall_stiffness = 300,
-                    .x0 = -2,
-                    .v0 = 0.3,
-                    .y0 = rigid ? 0 : -0.01,
-                    .w0 = rigid ? 0 : 0.1,
-                    .force_amplitude = 0.5,
-                    .force_frequency = 0.7,
-                    .until_time = 36.5,
-                    .until_amplitude = 1e-3};
+  Scene scene{.mass_ratio = 0.3,
+              .restitution = 0.3,
+              .damping_ratio = 0.02,
+              .wall_stiffness = 300,
+              .x0 = -2,
+              .v0 = 0.3,
+              .y0 = rigid ? 0 : -0.01,
+              .w0 = rigid ? 0 : 0.1,
+              .force_amplitude = 0.5,
+              .force_frequency = 0.7,
+              .until_time = 36.5,
+              .until_amplitude = 1e-3};
+  if (dampers == DamperList::allowed) {
+    scene.dampers = {{scene.mass_ratio, scene.restitution, 1, scene.wall_stiffness, scene.y0, scene.w0},
+                     {0.1, 0.4, 1.5, 200, 0.3, 0.2}};
+    scene.until_time = 38.75;
+  }
   return simulate(scene, engine, {true, true, true, true, {{0, 40, 401}}, {}});
 }
 
@@ -55,12 +59,13 @@ bool list_run(const Run& run) {
   bool all_known = true;
   constexpr Scales scales{.mass = 40, .stiffness = 16000, .length = 10};
   const std::string text = run_text(run, scales);
-  const std::string engine(name_of(run.engine));
+  const std::string engine = std::string(name_of(run.engine)) + (run.scene.dampers.empty() ? "" : "-dampers");
   const auto visit = [&](auto& self, const nlohmann::json& value, const std::string& key) -> void {
     if (value.is_object()) {
       for (const auto& [name, part] : value.items()) self(self, part, key.empty() ? name : key + '.' + name);
       return;
     }
+    if (value.is_array() && !value.empty() && value[0].is_object()) self(self, value[0], key + ".1");
     for (const std::string_view kind : planted::kinds) {
       Run altered = run;
       std::string altered_text = text;
@@ -143,7 +148,8 @@ void list_tables(const std::filesystem::path& source) {
 int main(int, char** arguments) {
   bool all_known = true;
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{.locate = true})})
-    all_known = list_run(full_run(engine)) && all_known;
+    for (const DamperList dampers : {DamperList::rejected, DamperList::allowed})
+      all_known = list_run(full_run(engine, dampers)) && all_known;
   list_tables(arguments[1]);
   for (const Measure& measure : measures())
     for (const std::string_view value : {"median", "low", "high"})

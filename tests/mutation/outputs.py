@@ -23,14 +23,15 @@ from pathlib import Path
 PAGE = Path(__file__).resolve().parent / "outputs.md"
 SOURCE = PAGE.parents[2]
 # Where faults are planted, and the test programs that look there.
-OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "file": ["run_file"],
+OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "exact-dampers": ["recorded_dampers"],
+       "restitution-dampers": ["recorded_dampers"], "cem-dampers": ["recorded_dampers"], "file": ["run_file"],
        "read": ["run_file"], "table": ["series"], "measure": ["measures", "measures_of_runs", "measures_of_responses"]}
 FIRST = list(dict.fromkeys(sum(OWN.values(), [])))
 HEAD = """# Faults planted in what is given out, and who noticed
 
 By [outputs.py](outputs.py), a test: {faults} faults in {outputs} numbers and columns, {caught} caught. What is altered \
 where, and how: [planter.hpp](planter.hpp). The first part of a name is where the fault is planted: in what an engine returns (`exact`, \
-`restitution`, `cem`), in what is written to a run file (`file`) or read from one (`read`), in a figure's table \
+`restitution`, `cem`; of several dampers `exact-dampers` and so on), in what is written to a run file (`file`) or read from one (`read`), in a figure's table \
 (`table`, with block and column), in a measure (`measure`).
 
 | output | faults | caught by |

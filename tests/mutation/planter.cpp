@@ -28,7 +28,8 @@ struct Change {
     if (is("filled") && value == 0) value = 1;
     number(value);
   }
-  void operator()(std::int64_t& value) const {
+  template <std::signed_integral Count>
+  void operator()(Count& value) const {
     value = is("scaled") ? value + 1 : is("negated") ? -value : value;
   }
   void operator()(bool& value) const { value ^= is("scaled"); }
@@ -50,15 +51,20 @@ struct Change {
     for (Value& each : column) {
       if constexpr (std::is_same_v<Value, double>)
         number(each);
-      else
+      else if constexpr (!of_damper<Value>)
         (*this)(each);
     }
   }
+  // A list of what each damper has, as a column has a row: it is shifted only.
+  template <class Value>
+  static constexpr bool of_damper =
+      std::is_same_v<Value, SceneDamper> || std::is_same_v<Value, DamperEnergy> ||
+      std::is_same_v<Value, History::Damper> || std::is_same_v<Value, std::vector<std::int64_t>>;
   void operator()(nlohmann::json& value) const {
     if (value.is_array()) {
       if (is("shifted") && !value.empty()) std::rotate(value.begin(), value.begin() + 1, value.end());
       for (auto& each : value)
-        if (!(is("filled") && each == 0)) (*this)(each);
+        if (!each.is_object() && !(is("filled") && each == 0)) (*this)(each);
     } else if (value.is_boolean()) {
       value = value.get<bool>() != is("scaled");
     } else if (value.is_string() && is("scaled")) {
@@ -76,6 +82,15 @@ struct Change {
   }
 };
 
+// The entries of a list of what each damper has: the list, and what the first one has.
+template <class Value, class Visit, class Entries>
+void each_damper(std::vector<Value>& dampers, Visit all, Entries entries) {
+  if (dampers.empty()) return;
+  all("dampers", dampers);
+  entries(dampers.front(),
+          [&](std::string_view name, auto& member) { all("dampers.1." + std::string(name), member); });
+}
+
 // Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own
 // keys.
 template <class Visit>
@@ -89,6 +104,9 @@ void each_entry(Run& run, Visit all) {
   all("end_time", run.end_time);
   const auto scene = under("scene"), engine = under("engine");
   for (const SceneField& field : scene_fields) scene(field.name, run.scene.*field.member);
+  each_damper(run.scene.dampers, scene, [](SceneDamper& damper, auto visit) {
+    for (const SceneDamperField& field : scene_damper_fields) visit(field.name, damper.*field.member);
+  });
   scene("until_time", run.scene.until_time);
   scene("until_amplitude", run.scene.until_amplitude);
   for_each_option(run.engine, [&](const OptionInfo& option, auto& value) { engine(option.name, value); });
@@ -98,6 +116,8 @@ void each_entry(Run& run, Visit all) {
     visit("peak_time", run.half_cycles->peak_time);
     visit("amplitude", run.half_cycles->amplitude);
     visit("impacts", run.half_cycles->impacts);
+    each_damper(run.half_cycles->impacts_by_damper, visit,
+                [](auto& impacts, auto its) { its("impacts", impacts); });
   }
   if (run.impacts) {
     const auto visit = under("impacts");
@@ -107,12 +127,14 @@ void each_entry(Run& run, Visit all) {
     visit("phase_deg", run.impacts->phase_deg);
     visit("amplitude", run.impacts->amplitude);
     visit("displacement", run.impacts->displacement);
+    if (!run.impacts->damper.empty()) visit("damper", run.impacts->damper);
   }
   if (run.contacts) {
     const auto visit = under("contacts");
     visit("begin", run.contacts->begin);
     visit("end", run.contacts->end);
     visit("wall", run.contacts->wall);
+    if (!run.contacts->damper.empty()) visit("damper", run.contacts->damper);
   }
   if (run.energy) {
     EnergyBalance& balance = *run.energy;
@@ -132,14 +154,19 @@ void each_entry(Run& run, Visit all) {
     visit("viscous_work", balance.viscous_work);
     visit("forcing_work", balance.forcing_work);
     visit("residual", balance.residual);
+    each_damper(balance.dampers, visit, [](DamperEnergy& damper, auto its) {
+      for (const DamperEnergyField& field : damper_energy_fields) its(field.name, damper.*field.member);
+      its("bounce_downs", damper.bounce_downs);
+    });
   }
   if (run.history) {
     const auto visit = under("history");
     visit("time", run.history->time);
     visit("x", run.history->x);
     visit("v", run.history->v);
-    visit("y", run.history->y);
-    visit("w", run.history->w);
+    if (run.history->dampers.empty()) visit("y", run.history->y), visit("w", run.history->w);
+    each_damper(run.history->dampers, visit,
+                [](History::Damper& damper, auto its) { its("y", damper.y), its("w", damper.w); });
   }
 }
 
@@ -155,18 +182,32 @@ bool alter(Run& run, std::string_view output, std::string_view kind) {
   return found;
 }
 
+// Behind the value that begins at `begin`.
+std::size_t end_of_value(const std::string& text, std::size_t begin) {
+  if (text[begin] == '"') return text.find('"', begin + 1) + 1;
+  if (text[begin] != '[') return text.find_first_of(",}\n", begin);
+  int open = 0;
+  std::size_t end = begin;
+  do {
+    open += text[end] == '[' ? 1 : text[end] == ']' ? -1 : 0;
+    ++end;
+  } while (open > 0);
+  return end;
+}
+
 bool alter(std::string& text, std::string_view output, std::string_view kind) {
   std::size_t begin = 0;
   for (std::size_t dot; !output.empty(); output.remove_prefix(std::min(dot, output.size() - 1) + 1)) {
     dot = output.find('.');
-    const std::string key = '"' + std::string(output.substr(0, dot)) + "\": ";
-    begin = text.find(key + (dot == output.npos ? "" : "{"), begin);
+    const std::string_view name = output.substr(0, dot);
+    if (name == "1") continue;  // the first of a list begins where the list does
+    const std::string_view rest = dot == output.npos ? "" : output.substr(dot + 1);
+    const std::string key = '"' + std::string(name) + "\": ";
+    begin = text.find(key + (rest.empty() ? "" : rest.starts_with("1.") ? "[" : "{"), begin);
     if (begin == text.npos) return false;
     begin += key.size();
   }
-  const std::size_t end = text[begin] == '['   ? text.find(']', begin) + 1
-                          : text[begin] == '"' ? text.find('"', begin + 1) + 1
-                                               : text.find_first_of(",}\n", begin);
+  const std::size_t end = end_of_value(text, begin);
   auto value = nlohmann::json::parse(text.substr(begin, end - begin));
   const auto before = value;
   Change{kind}(value);
@@ -239,7 +280,8 @@ Result with_fault(std::string_view where, Result result, const std::string& abov
   RESULT with_fault_##NAME(__VA_ARGS__)
 
 WRAPPED(Run, simulate, SIMULATE, const Scene& scene, const Engine& engine, const Record& record) {
-  return with_fault(name_of(engine), real_simulate(scene, engine, record));
+  return with_fault(std::string(name_of(engine)) + (scene.dampers.empty() ? "" : "-dampers"),
+                    real_simulate(scene, engine, record));
 }
 WRAPPED(std::string, run_text, RUN_TEXT, const Run& run, const std::optional<Scales>& scales) {
   return with_fault("file", real_run_text(run, scales));

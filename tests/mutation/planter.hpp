@@ -5,7 +5,7 @@
 // A fault is of one of these kinds, as far as they change anything:
 //   scaled   1 % off; a count one too large, the other wall, the next word
 //   negated  the other sign
-//   shifted  a column's first row put behind its last
+//   shifted  a column's first row put behind its last; what one of several dampers has given to another
 //   filled   1 where a scalar is zero, 90 where an entry is absent
 // A measure, which may be zero but for rounding, is altered by 1e-9 at least.
 #pragma once
@@ -23,7 +23,8 @@ namespace planted {
 
 inline constexpr std::array<std::string_view, 4> kinds{"scaled", "negated", "shifted", "filled"};
 
-// Each alters what `output` names and returns whether there is such an output.
+// Each alters what `output` names and returns whether there is such an output. Of several dampers the first
+// one's numbers are altered, "energy.dampers.1.impact_loss".
 bool alter(impact_damper::Run& run, std::string_view output, std::string_view kind);  // "energy.final.wall"
 bool alter(std::string& run_text, std::string_view output, std::string_view kind);    // the same, in a file
 bool alter(impact_damper::Table& table, std::string_view output, std::string_view kind);    // "curve.2"

@@ -13,7 +13,6 @@ namespace {
 using namespace impact_damper;
 using oracle::magnitude, oracle::text;
 
-constexpr int sample_count = 33;
 constexpr double rounding = 0x1p-53;
 
 std::vector<double> sample_times(double end) {  // as the engines' recorder places them

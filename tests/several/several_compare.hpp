@@ -44,6 +44,9 @@ using Program = std::function<impact_damper::Run(const impact_damper::Scene&)>;
 Comparison compare(const impact_damper::Scene& scene, const Tolerances& tolerances,
                    const Program& program = {});
 
+// How often both record the motion, from 0 to the scene's end.
+inline constexpr int sample_count = 33;
+
 // The oracle's answer in the form of a run, for a program with a planted fault.
 impact_damper::Run run_of_oracle(const impact_damper::Scene& scene, Fault fault, Walls walls = Walls::rigid);
 
