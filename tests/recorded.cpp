@@ -136,5 +136,7 @@ TEST_CASE("the residual is what the recorded terms leave open, in units of the e
     const double open = energy.initial.total() - (energy.final.total() + losses + energy.viscous_work);
     CHECK(std::abs(energy.residual) > 100 * rounding);
     CHECK(std::abs(energy.residual - open / energy.initial.total()) < rounding);
+    const Scene at_rest{.x0 = 0, .y0 = 0.5, .until_time = 1};  // no energy is handled
+    CHECK(simulate(at_rest, engine, {.energy = true}).energy->residual == 0);
   }
 }
