@@ -178,7 +178,7 @@ kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes
 check: test  ## make test; then the exact engine's figures, and its results held against the paper (five minutes after the build)
 	@$(MAKE) --no-print-directory figures verify ENGINE=exact
 
-check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some ten minutes)
+check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some twenty minutes)
 	@$(run_tests) -L '^long$$'
 	@for engine in restitution cem; do \
 	  $(MAKE) --no-print-directory figures verify ENGINE=$$engine || exit 1; \

@@ -161,24 +161,3 @@ TEST_CASE("all that the component element method records of several dampers is w
   cem.budget = budget;
   check_against_oracle(Walls::compliant, cem, 1e-6);
 }
-
-TEST_CASE("the residual of several dampers is what the recorded terms leave open") {
-  // As that of one damper (recorded.cpp).
-  const Scene scene{.damping_ratio = 1e-4,
-                    .x0 = 3.59,
-                    .until_time = 3000,
-                    .dampers = {{.mass_ratio = 0.02, .restitution = 1, .y0 = 0.2},
-                                {.mass_ratio = 0.01, .restitution = 1, .clearance = 1.5, .y0 = 0.7}}};
-  const double rounding = 1e-15;
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{.locate = true})}) {
-    CAPTURE(name_of(engine));
-    Scene its = scene;
-    if (std::holds_alternative<Cem>(engine)) its.until_time = 30;  // its residual is of the order of its step
-    const EnergyBalance energy = *simulate(its, engine, {.energy = true}).energy;
-    double losses = energy.contact_loss + energy.bounce_down_loss;
-    for (const double loss : energy.impact_loss) losses += loss;
-    const double open = energy.initial.total() - (energy.final.total() + losses + energy.viscous_work);
-    CHECK(std::abs(energy.residual) > 100 * rounding);
-    CHECK(std::abs(energy.residual - open / energy.initial.total()) < rounding);
-  }
-}

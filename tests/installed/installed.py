@@ -168,8 +168,8 @@ def shells_complete_every_option():
     demand(bash_completes("run", "--scene", "") == set(), "bash: file names are left to readline")
     demand(fish_completes("impact-damper run --engine ") == engines, fish_completes("impact-damper run --engine "))
     if not terminals_can_be_made():
-        print("no pseudo-terminal, as in a chroot without /dev/pts: zsh is not asked", file=sys.stderr)
-        return
+        print("not tried: completions in zsh, for want of a pseudo-terminal, as in a chroot without /dev/pts")
+        sys.exit(77)
     screen = zsh_completes("impact-damper run --engine ")
     demand(all(engine in screen for engine in engines), screen)
     screen = zsh_completes("impact-damper verify --")

@@ -44,7 +44,7 @@ using Program = std::function<impact_damper::Run(const impact_damper::Scene&)>;
 Comparison compare(const impact_damper::Scene& scene, const Tolerances& tolerances,
                    const Program& program = {});
 
-// How often both record the motion, from 0 to the scene's end.
+// At how many times, equally spaced from 0 to the scene's end, the motion is recorded.
 inline constexpr int sample_count = 33;
 
 // The oracle's answer in the form of a run, for a program with a planted fault.

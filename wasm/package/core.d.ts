@@ -4,7 +4,10 @@ export { ImpactDamperError } from "./index.js";
 export const groups: Group[];
 
 export interface Simulator {
-  /** Runs a scene in the thread that calls. `scene` is JSON text; `engine` a name or JSON text. */
+  /**
+   * Runs a scene in the thread that calls, which waits for it. `scene` is JSON text, `engine` a name or JSON text; the
+   * options are those of `run` in index.d.ts.
+   */
   simulate(
     scene: string,
     options?: { engine?: string; record?: Group[]; history?: Window; file?: boolean },
@@ -12,10 +15,10 @@ export interface Simulator {
 }
 
 /**
- * Compiles a module: from its bytes, or the package's own impact-damper.wasm, which is read, or fetched, from beside core.js.
- * That one rejects scenes with a list of dampers.
+ * Compiles a module from its bytes. Without them it is the package's impact-damper.wasm, which node reads, and a browser
+ * fetches, from beside core.js: it rejects scenes with a list of dampers.
  */
 export function load(bytes?: BufferSource): Promise<Simulator>;
 
-/** The same with lists of dampers, impact-damper-lists.wasm: a third larger. */
+/** Compiles the package's impact-damper-lists.wasm, a third larger, which runs every scene. */
 export function loadWithLists(): Promise<Simulator>;

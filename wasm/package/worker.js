@@ -14,14 +14,15 @@ function answer(message) {
   port.postMessage(message, buffersOf(message.run));
 }
 
-// Each module is compiled when it is first needed.
+// Promises of the two modules, each compiled for the first scene that needs it: the smaller one knows scenes of one damper
+// only, the larger one also those whose key "dampers" is a list of several.
 let forOne, forLists;
 function simulatorFor(scene) {
   let listed = false;
   try {
     listed = "dampers" in JSON.parse(scene);
   } catch {
-    // No scene: what is wrong with it is for either module to say.
+    // No JSON object, so no scene: the smaller module says what is wrong with it.
   }
   return listed ? (forLists ??= loadWithLists()) : (forOne ??= load());
 }
