@@ -3,11 +3,12 @@
 
 The program build/tests/mutation/outputs lists what is given out, and which faults can be planted in it; planter.cpp,
 which is linked into every test program, plants the one that PLANTED_FAULT names. Nothing is built anew, so that the
-thousand faults take about a minute. A fault is caught if a test program fails with it: those of OWN are tried first,
-whose tests compare with closed forms and integrations of their own, then all others. Not among them are the comparisons
-with data/reference/, which would notice any change, right or wrong.
+two thousand faults take about two minutes. A fault is caught if a test program fails with it: the one in outputs.md is
+tried first, then those of OWN, whose tests compare with closed forms and integrations of their own, then all others. Not
+among them are the comparisons with data/reference/, which would notice any change, right or wrong.
 
-Exit code 1 if a fault survives, or if outputs.md is not what was found (--renew writes it anew).
+Exit code 1 if a fault survives, if outputs.md is not what was found (--renew writes it anew), or if it names a test that
+does not exist: this is seen at once, whichever faults are asked for.
 """
 
 import argparse
@@ -53,9 +54,15 @@ def failing_case(program, fault):
     return found[1] if found else "(ends with an error)"
 
 
-def who_notices(programs, output, kind):
+def noticed_before():
+    """What outputs.md says: the test by fault, as "program: case"."""
+    rows = (line.strip("| \n").split(" | ") for line in PAGE.read_text().splitlines() if "/" in line.split(" | ")[0])
+    return {(output, kind): by for output, kinds, by in rows for kind in kinds.split(", ")}
+
+
+def who_notices(programs, before, output, kind):
     own = OWN[output.split("/")[0]]
-    for name, program in sorted(programs.items(), key=lambda item: item[0] not in own):
+    for name, program in sorted(programs.items(), key=lambda item: (item[0] != before, item[0] not in own)):
         if case := failing_case(program, f"{output}/{kind}"):
             return f"{name}: {case}"
     return None
@@ -73,6 +80,12 @@ def main():
     names = [file.name.removeprefix("test_") for file in sorted(tests.glob("test_*")) if file.suffix == ""]
     rest = [] if options.first else [name for name in names if name not in FIRST]
     programs = {name: tests / f"test_{name}" for name in FIRST + rest if name in names}
+    before = noticed_before()
+    cases = {f"{name}: {case.strip()}" for name in names for case in subprocess.run(
+        [tests / f"test_{name}", "--list-test-cases"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()}
+    gone = set(before.values()) - cases
+    if gone and not options.renew:
+        sys.exit(f"{PAGE} names a test that does not exist: {min(gone)}; {__file__} {options.build} --renew")
     listed = subprocess.run([tests / "mutation/outputs", SOURCE], stdout=subprocess.PIPE, text=True)
     if listed.returncode != 0:
         sys.exit("an output cannot be altered: planter.cpp has to know it")
@@ -82,7 +95,8 @@ def main():
         for name, case in zip(FIRST, threads.map(lambda name: failing_case(programs[name], ""), FIRST)):
             if case:
                 sys.exit(f"without a fault there fails {name}: {case}")
-        found = list(threads.map(lambda fault: who_notices(programs, *fault), faults))
+        found = list(threads.map(
+            lambda fault: who_notices(programs, before.get(fault, "").split(":")[0], *fault), faults))
 
     rows = defaultdict(list)
     for (output, kind), by in zip(faults, found):
