@@ -33,7 +33,8 @@ namespace impact_damper {
 class ObjectReader;  // json_reader.hpp
 class JsonWriter;    // json_writer.hpp
 
-inline constexpr FileKind scene_kind{"scene", 1 << 16};
+// Most for most_dampers, each number with all its digits.
+inline constexpr FileKind scene_kind{"scene", 1 << 20};
 
 struct SceneFile {
   Scene scene;                   // dimensionless, also of a scene in units
