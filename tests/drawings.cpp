@@ -89,6 +89,7 @@ TEST_CASE("what a scene has nothing of is not drawn") {
   CHECK(names(drawings_of(examined(still))) == std::vector<std::string>{"begin"});
   Scene forced = still;
   forced.force_amplitude = 0.1;
+  forced.damping_ratio = 0.02;
   forced.until_time = 200;
   CHECK(names(drawings_of(examined(forced))) ==
         std::vector<std::string>{"decay", "response", "phase", "begin", "best", "prediction"});
@@ -151,6 +152,7 @@ TEST_CASE("from rest the releases differ in the exciting force") {
   Scene forced;
   forced.x0 = 0;
   forced.force_amplitude = 0.1;
+  forced.damping_ratio = 0.05;
   forced.until_time = 60;
   const Findings findings = examined(forced);
   CHECK(findings.others[0].scene.force_amplitude != 0.1);

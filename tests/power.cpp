@@ -44,6 +44,8 @@ const Power& power() {
     for (const CatalogueScene& scene : catalogue.scenes)
       input.runs[scene.name] =
           simulate(read_scene(source / "data/scenes" / (scene.name + ".json")), Exact{}, record);
+    for (const CatalogueResponse& response : catalogue.responses)
+      input.responses[response.name] = read_response(RUNS_FOLDER "/" + response.name + ".json");
     input.left_out = recorded()["unsettled"].get<std::vector<std::string>>();
     return Power(std::move(input));
   }();
@@ -130,7 +132,8 @@ TEST_CASE("a number that turns no verdict as it is turns none") {
   for (const PowerNumber& number : power().numbers()) {
     CAPTURE(number.of);
     CAPTURE(number.name);
-    if (number.name == "mass_ratio" || number.name == "bins")
+    const bool is_quick = number.of != "nu2-e06";  // its steady motions would be searched again, for seconds
+    if (number.name == "bins" || (number.name == "mass_ratio" && is_quick))
       CHECK(power().turned(number, number.value).empty());
   }
 }

@@ -49,7 +49,7 @@ Scene random_scene(std::uint64_t seed) {
 }
 
 Run run_of(const Scene& scene) {
-  return simulate(scene, Restitution{.budget = {.max_impacts = 100'000}}, everything());
+  return simulate(scene, Restitution{.budget = {.max_impacts = 20'000}}, everything());
 }
 
 // Until when two runs' half cycles agree to within `off` times (1 + time). (Impacts cannot be counted one by
@@ -86,10 +86,12 @@ TEST_CASE(
     CHECK(losses == doctest::Approx(in_all).epsilon(1e-12));
     CHECK(kinetic <= energy.final.kinetic * (1 + 1e-12));
     CHECK(run.impacts->damper.size() == run.impacts->time.size());
+    std::size_t out_of_the_wall = 0;
     for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
       const double into = run.impacts->wall[i] == Wall::left ? -1 : 1;
-      CHECK(into * run.impacts->relative_velocity[i] >= 0);
+      out_of_the_wall += !(into * run.impacts->relative_velocity[i] >= 0);
     }
+    CHECK(out_of_the_wall == 0);
   }
 }
 
@@ -167,6 +169,7 @@ TEST_CASE("halves of a damper that are released alike are that damper, and one o
             doctest::Approx(whole.half_cycles->amplitude[i]).epsilon(1e-5));
     }
   }
+  CHECK(compared >= 0.9 * in_all);  // chaos parts a few
 }
 
 TEST_CASE("masses that meet walls at one instant, by the law's own conditions") {

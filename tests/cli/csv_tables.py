@@ -1,6 +1,6 @@
 """Each figure's table as CSV, read by Python's csv module, holds the numbers of the table that gnuplot reads.
 
-    csv_tables.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for runs and tables
+    csv_tables.py PROGRAM SOURCE RUNS FOLDER        RUNS has the catalogue's runs; FOLDER, made anew, is for tables
 
 Both are read by their own rules: of the one the header, block names, quoted headings and blank lines, of the other
 rows of six cells. Numbers are compared as texts: both have every digit.
@@ -13,10 +13,7 @@ import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from asked import drawn_runs, rerun, respond  # noqa: E402
-
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+program, source, runs, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:5])
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
@@ -57,20 +54,9 @@ def wanted_rows(kind, name, headings, rows):
 
 
 shutil.rmtree(folder, ignore_errors=True)
-for name in ("runs", "tables"):
-    (folder / name).mkdir(parents=True)
+(folder / "tables").mkdir(parents=True)
 catalogue = json.loads((source / "figures/catalogue.json").read_text(encoding="utf-8"))
-for scene in catalogue["scenes"]:
-    windows = [f"--history-below={w['amplitude']}:{w['length']}:{w['count']}" for w in scene.get("history_below", [])]
-    run("run", "--scene", source / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]), *windows,
-        "--members", str(catalogue["members"]), "-o", f"runs/{scene['scene']}.json")
-for entry in drawn_runs(catalogue):
-    run(*rerun(entry, source / "data/scenes"), "--members", str(catalogue["members"]), "-o", f"runs/{entry['name']}.json")
-for entry in catalogue["responses"]:
-    run(*respond(entry, source / "data/scenes"), "-o", f"runs/{entry['name']}.json")
-for plan in {figure["plan"] for figure in catalogue["figures"] if "plan" in figure}:
-    run("sweep", source / f"figures/{plan}", "-o", f"runs/{pathlib.Path(plan).stem}.csv")
-series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", "runs",
+series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", runs,
           "-o", "tables"]
 run(*series)
 run(*series, "--format", "csv")

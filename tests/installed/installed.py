@@ -2,9 +2,10 @@
 """The program as `make install` puts it in place finds its files, from any folder; its man page and completions name
 every option.
 
-    installed.py PREFIX PROGRAM SOURCE FOLDER
+    installed.py PREFIX PROGRAM SOURCE RUNS FOLDER
 
-PREFIX is where it was installed, under a DESTDIR; PROGRAM the same program in its build folder. The tests run in FOLDER.
+PREFIX is where it was installed, under a DESTDIR; PROGRAM the same program in its build folder; RUNS has the catalogue's
+runs. The tests run in FOLDER.
 """
 import json
 import os
@@ -14,10 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from asked import rerun, respond  # noqa: E402
-
-PREFIX, BUILT, SOURCE, FOLDER = (Path(each).resolve() for each in sys.argv[1:5])
+PREFIX, BUILT, SOURCE, RUNS, FOLDER = (Path(each).resolve() for each in sys.argv[1:6])
 PROGRAM = PREFIX / "bin/impact-damper"
 SHARE = PREFIX / "share/impact-damper"
 
@@ -44,23 +42,13 @@ def same_as_in_the_source_folder(*arguments):
 def finds_its_files():
     for arguments in (["scenes"], ["figures"], ["cite"], ["cite", "--figure", "8"], ["cite", "--figure", "A"]):
         same_as_in_the_source_folder(*arguments)
-    runs = FOLDER / "runs"
-    runs.mkdir()
+    same_as_in_the_source_folder("series", "--runs", RUNS, "--figure", "7")
     catalogue = json.loads((SHARE / "figures/catalogue.json").read_text())
-    for scene in catalogue["scenes"]:
-        below = [word for window in scene.get("history_below", []) for word in
-                 ("--history-below", ":".join(str(window[key]) for key in ("amplitude", "length", "count")))]
-        run(PROGRAM, "run", "--scene", SHARE / f"data/scenes/{scene['scene']}.json", "--record", ",".join(scene["record"]),
-            *below, "--members", str(catalogue["members"]), "-o", runs / f"{scene['scene']}.json")
-    for each in catalogue["runs"]:
-        run(PROGRAM, *rerun(each, SHARE / "data/scenes"), "--members", str(catalogue["members"]),
-            "-o", runs / f"{each['name']}.json")
-    same_as_in_the_source_folder("series", "--runs", runs, "--figure", "7")
-    demand(run(PROGRAM, "check", "run", *sorted(runs.rglob("*.json"))).count("\n") ==
+    files = [file for name in [each["scene"] for each in catalogue["scenes"]] + [each["name"] for each in catalogue["runs"]]
+             for file in (RUNS / f"{name}.json", *sorted((RUNS / f"{name}.members").iterdir()))]
+    demand(run(PROGRAM, "check", "run", *files).count("\n") == len(files) ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")
-    for entry in catalogue["responses"]:
-        run(PROGRAM, *respond(entry, SHARE / "data/scenes"), "-o", runs / f"{entry['name']}.json")
-    done = subprocess.run([PROGRAM, "verify", "--runs", runs, "--members", "2"], cwd=FOLDER, capture_output=True, text=True)
+    done = subprocess.run([PROGRAM, "verify", "--runs", RUNS, "--members", "2"], cwd=FOLDER, capture_output=True, text=True)
     claims = len(json.loads((SHARE / "data/claims.json").read_text())["claims"])
     demand(done.returncode in (0, 1) and f"\nengine exact, {claims} claims: " in done.stdout, done.stderr + done.stdout)
 
