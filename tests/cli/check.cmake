@@ -1,8 +1,8 @@
 # Runs one command line and holds it against what command_lines.txt expects of it.
 # PROGRAM, ARGUMENTS (as typed), CODE, WARNED (exit code 0, but something on stderr), MAY_WARN (the same, if so), TEXT,
-# FILES (folder of input files), FOLDER (to run in, made anew).
+# FILES (input files: one, or a folder with / at its end), FOLDER (to run in, made anew).
 file(REMOVE_RECURSE ${FOLDER})
-file(COPY ${FILES}/ DESTINATION ${FOLDER})
+file(COPY ${FILES} DESTINATION ${FOLDER})
 file(GLOB_RECURSE before RELATIVE ${FOLDER} ${FOLDER}/*)
 
 # By a shell that leaves [] and * as they are: CMake's own lists lose empty arguments.
