@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "impact_damper/engines/compatibility.hpp"
-#include "impact_damper/steady/poincare_map.hpp"
-#include "impact_damper/steady/variation_observer.hpp"
+#include "impact_damper/steady/run_with_variation.hpp"
 
 namespace impact_damper {
 namespace {
@@ -15,12 +14,24 @@ double dot(const StateVector& a, const StateVector& b) {
 }
 
 // Four orthonormal changes of the state, and the logarithms of what they have been stretched by (M13.15).
-class Frame {
+class Frame final : public VariationReceiver {
  public:
+  Frame() : VariationReceiver(false) {}
+  void joined() override { dimensions_ = 2; }
+  // Each contracts volumes by at most e; what one contracts by more than exp(-36) is lost in rounding errors.
+  int pieces(double loss) override {
+    constexpr int most = 4096;
+    if (loss > 36.0 * most) joined();
+    return loss < most ? 1 + int(loss) : most;
+  }
+  void forget_logarithms() { logarithms_ = {}; }
+  const StateVector& logarithms() const { return logarithms_; }
+  std::size_t dimensions() const { return dimensions_; }
+
+ private:
   // Orthogonal to the ones before it, by modified Gram-Schmidt, twice: an impact that is slow shears so much
   // that once would leave rounding errors.
-  template <class ByParameters>
-  void step(const StateMatrix& a, ByParameters&&) {
+  void take(const StateMatrix& a, const RowsOfState<double, 2>&) override {
     for (std::size_t j = 0; j < 4; ++j) {
       StateVector& column = columns_[j] = product(a, columns_[j]);
       for (int pass = 0; pass < 2; ++pass) {
@@ -35,18 +46,7 @@ class Frame {
       logarithms_[j] += logarithm(size);
     }
   }
-  void joined() { dimensions_ = 2; }
-  // Each contracts volumes by at most e; what one contracts by more than exp(-36) is lost in rounding errors.
-  int pieces(double loss) {
-    constexpr int most = 4096;
-    if (loss > 36.0 * most) joined();
-    return loss < most ? 1 + int(loss) : most;
-  }
-  void forget_logarithms() { logarithms_ = {}; }
-  const StateVector& logarithms() const { return logarithms_; }
-  std::size_t dimensions() const { return dimensions_; }
 
- private:
   std::array<StateVector, 4> columns_ = identity<double>();
   StateVector logarithms_{};
   std::size_t dimensions_ = 4;
@@ -85,10 +85,10 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   std::int64_t begun = 0;          // periods that were used by then
   for (std::int64_t n = 0; n < skipped + periods; ++n) {
     if (n == skipped) frame.forget_logarithms();
-    VariationObserver<Frame> observer(period, engine, frame);
-    result.stop_reason = run_observed(period, engine, observer).stop_reason;
+    const VariedRun run = run_with_variation(period, engine, frame, Watched::end);
+    result.stop_reason = run.stop_reason;
     if (result.stop_reason != StopReason::time) return result;
-    const State<double>& end = observer.variation.end();
+    const State<double>& end = run.end;
     period.x0 = end.x, period.v0 = end.v, period.y0 = end.y, period.w0 = end.w;
     if (progress) progress(n + 1);
 

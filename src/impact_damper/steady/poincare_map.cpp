@@ -3,28 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact_damper/steady/variation_observer.hpp"
+#include "impact_damper/steady/run_with_variation.hpp"
 
 namespace impact_damper {
 namespace {
 
 // The product of all steps, and what the parameters add up to.
-struct Product {
-  bool parameters;
+class Product final : public VariationReceiver {
+ public:
+  using VariationReceiver::VariationReceiver;
+  void joined() override {}
+  int pieces(double) override { return 1; }
+
   RowsOfState<double, 4> by_state = identity<double>();
   RowsOfState<double, 2> by_parameters{};
 
-  template <class ByParameters>
-  void step(const RowsOfState<double, 4>& a, ByParameters&& added) {
+ private:
+  void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>& added) override {
     by_state = product(a, by_state);
-    if (!parameters) return;
     by_parameters = product(a, by_parameters);
-    const RowsOfState<double, 2> more = added();
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 2; ++j) by_parameters[i][j] += more[i][j];
+      for (std::size_t j = 0; j < 2; ++j) by_parameters[i][j] += added[i][j];
   }
-  void joined() {}
-  static int pieces(double) { return 1; }
 };
 
 // Complete chattering counts with its first impact only: those behind it are as slow as one likes.
@@ -38,40 +38,6 @@ std::optional<double> slowest(const std::vector<OrbitImpact>& impacts,
     if (counts[i] && !(least && *least <= impacts[i].speed)) least = impacts[i].speed;
   return least;
 }
-
-// Grazing is looked for beside the derivative.
-class MapObserver : public VariationObserver<Product> {
- public:
-  MapObserver(const Scene& scene, const Engine& engine, Product& all)
-      : VariationObserver(scene, engine, all), search_{bounded_span(variation.system())} {}
-
-  void impact(double time, Wall wall, double w, double) { impacts.push_back({time, wall, std::fabs(w)}); }
-
-  template <class Motion>
-  void passed(const Motion& motion, double begin, double duration, const State<double>& end) {
-    VariationObserver::passed(motion, begin, duration, end);
-    if constexpr (std::is_same_v<Motion, Flight<double>>) look_for_turns(motion, duration);
-    if constexpr (std::is_same_v<Motion, Stuck<double>>) impacts_before_sticking.push_back(impacts.size());
-  }
-
-  std::vector<OrbitImpact> impacts;
-  std::vector<std::size_t> impacts_before_sticking;
-  std::optional<double> nearest_miss;
-
- private:
-  // y turns back from the wall that it flies towards, and from then on flies towards the other.
-  void look_for_turns(const Flight<double>& flight, double duration) {
-    const State<double> start = flight.at(0);
-    double sign = start.y == 0 ? 1 : start.y == 1 ? -1 : start.w >= 0 ? 1 : -1, from = 0;
-    while (const auto turn = flight.turn_of_y(sign, from, duration, search_)) {
-      const double y = flight.at(*turn).y, gap = sign > 0 ? 1 - y : y;
-      if (!(nearest_miss && *nearest_miss <= gap)) nearest_miss = gap;
-      sign = -sign;
-      from = *turn;
-    }
-  }
-  Search<double> search_;
-};
 
 }  // namespace
 
@@ -102,27 +68,26 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
 PoincareImage PoincareMap::operator()(const State<double>& s, Derivatives wanted) const {
   Scene scene = scene_;
   scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
-  Product all{.parameters = wanted == Derivatives::by_state_and_parameters};
-  MapObserver observer(scene, engine_, all);
+  Product all(wanted == Derivatives::by_state_and_parameters);
+  VariedRun run = run_with_variation(scene, engine_, all, Watched::impacts);
   PoincareImage image;
-  image.stop_reason = run_observed(scene, engine_, observer).stop_reason;
+  image.stop_reason = run.stop_reason;
   if (image.stop_reason != StopReason::time) return image;
 
   // The end of the time moves with omega_f (M13.8).
-  const Rates<double> rates = observer.variation.rates_at_end(duration());
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) image.by_state[i][j] = mirror * all.by_state[i][j];
     image.by_frequency[i] =
-        mirror * (all.by_parameters[i][0] - rates[i] * (duration() / scene.force_frequency));
+        mirror * (all.by_parameters[i][0] - run.rates_at_end[i] * (duration() / scene.force_frequency));
     image.by_amplitude[i] = mirror * all.by_parameters[i][1];
   }
-  const State<double>& end = observer.variation.end();
+  const State<double>& end = run.end;
   image.state = mirror == 1 ? end : State<double>{-end.x, -end.v, 1 - end.y, -end.w};
-  image.sticking = std::int64_t(observer.impacts_before_sticking.size());
-  image.slowest_impact = slowest(observer.impacts, observer.impacts_before_sticking);
-  image.nearest_miss = observer.nearest_miss;
-  image.impacts = std::move(observer.impacts);
+  image.sticking = std::int64_t(run.impacts_before_sticking.size());
+  image.slowest_impact = slowest(run.impacts, run.impacts_before_sticking);
+  image.nearest_miss = run.nearest_miss;
+  image.impacts = std::move(run.impacts);
   return image;
 }
 
