@@ -258,6 +258,7 @@ def main():
     parser.add_argument("--folder", type=Path, default=SOURCE / "build/mutation", help="to work in")
     parser.add_argument("--only", default="", metavar="REGEX", help="only faults whose file or meaning matches")
     parser.add_argument("--afresh", action="store_true", help="also what is known to be caught")
+    parser.add_argument("--check", action="store_true", help="plant none; only whether each can be, which a test asks")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="for compiling")
     options = parser.parse_args()
 
@@ -266,6 +267,8 @@ def main():
     faults = read_faults(HERE / "faults.txt")
     if lines := stale(faults):
         sys.exit("faults.txt: these fragments have to be renewed:\n" + "\n".join(lines))
+    if options.check:
+        return
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     lock = os.open(folder, os.O_RDONLY)
