@@ -18,10 +18,10 @@ class VariationObserver {
                     Watched watched)
       : variation_(scene, zeta_m, receiver), watched_(watched), search_{bounded_span(variation_.system())} {}
 
-  bool wants_half_cycles() const { return false; }
-  bool wants_contacts() const { return false; }
-  bool wants_energy() const { return false; }
-  double next_sample() const { return std::numeric_limits<double>::infinity(); }
+  static bool wants_half_cycles() { return false; }
+  static bool wants_contacts() { return false; }
+  static bool wants_energy() { return false; }
+  static double next_sample() { return std::numeric_limits<double>::infinity(); }
   void half_cycle(double, double, double, double) {}
   void contact(double, double, Wall) {}
   void sample(double, double, double, double, double) {}
