@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/steady/poincare_map.hpp"
 #include "impact_damper/steady/run_with_variation.hpp"
 
 namespace impact_damper {
@@ -31,7 +32,7 @@ class Frame final : public VariationReceiver {
  private:
   // Orthogonal to the ones before it, by modified Gram-Schmidt, twice: an impact that is slow shears so much
   // that once would leave rounding errors.
-  void take(const StateMatrix& a, const RowsOfState<double, 2>&) override {
+  void take(const StateMatrix& a, const RowsOfState<double, 2>*) override {
     for (std::size_t j = 0; j < 4; ++j) {
       StateVector& column = columns_[j] = product(a, columns_[j]);
       for (int pass = 0; pass < 2; ++pass) {
@@ -85,7 +86,7 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   std::int64_t begun = 0;          // periods that were used by then
   for (std::int64_t n = 0; n < skipped + periods; ++n) {
     if (n == skipped) frame.forget_logarithms();
-    const VariedRun run = run_with_variation(period, engine, frame, Watched::end);
+    const VariedRun run = run_with_variation(period, engine, frame, Kept::end);
     result.stop_reason = run.stop_reason;
     if (result.stop_reason != StopReason::time) return result;
     const State<double>& end = run.end;

@@ -19,11 +19,12 @@ class Product final : public VariationReceiver {
   RowsOfState<double, 2> by_parameters{};
 
  private:
-  void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>& added) override {
+  void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>* added) override {
     by_state = product(a, by_state);
+    if (!added) return;
     by_parameters = product(a, by_parameters);
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 2; ++j) by_parameters[i][j] += added[i][j];
+      for (std::size_t j = 0; j < 2; ++j) by_parameters[i][j] += (*added)[i][j];
   }
 };
 
@@ -69,7 +70,7 @@ PoincareImage PoincareMap::operator()(const State<double>& s, Derivatives wanted
   Scene scene = scene_;
   scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
   Product all(wanted == Derivatives::by_state_and_parameters);
-  VariedRun run = run_with_variation(scene, engine_, all, Watched::impacts);
+  VariedRun run = run_with_variation(scene, engine_, all, Kept::impacts);
   PoincareImage image;
   image.stop_reason = run.stop_reason;
   if (image.stop_reason != StopReason::time) return image;

@@ -15,8 +15,8 @@ namespace {
 class VariationObserver {
  public:
   VariationObserver(const Scene& scene, const std::optional<double>& zeta_m, VariationReceiver& receiver,
-                    Watched watched)
-      : variation_(scene, zeta_m, receiver), watched_(watched), search_{bounded_span(variation_.system())} {}
+                    Kept kept)
+      : variation_(scene, zeta_m, receiver), kept_(kept), search_{bounded_span(variation_.system())} {}
 
   static bool wants_half_cycles() { return false; }
   static bool wants_contacts() { return false; }
@@ -28,12 +28,12 @@ class VariationObserver {
   EnergyBalance& energy_balance() { return unused_; }
 
   void impact(double time, Wall wall, double w, double) {
-    if (watched_ == Watched::impacts) run_.impacts.push_back({time, wall, std::fabs(w)});
+    if (kept_ == Kept::impacts) run_.impacts.push_back({time, wall, std::fabs(w)});
   }
   template <class Motion>
   void passed(const Motion& motion, double begin, double duration, const State<double>& end) {
     variation_.passed(motion, begin, duration, end);
-    if (watched_ != Watched::impacts) return;
+    if (kept_ != Kept::impacts) return;
     if constexpr (std::is_same_v<Motion, Flight<double>>) look_for_turns(motion, duration);
     if constexpr (std::is_same_v<Motion, Stuck<double>>)
       run_.impacts_before_sticking.push_back(run_.impacts.size());
@@ -60,7 +60,7 @@ class VariationObserver {
   }
 
   Variation<double, VariationReceiver> variation_;
-  Watched watched_;
+  Kept kept_;
   Search<double> search_;
   VariedRun run_;
   EnergyBalance unused_;
@@ -69,13 +69,12 @@ class VariationObserver {
 }  // namespace
 
 VariedRun run_with_variation(const Scene& scene, const Engine& engine, VariationReceiver& receiver,
-                             Watched watched) {
+                             Kept kept) {
   require_arithmetic();
   const System<double> system(scene);  // not with_system(): there is a force
   const auto* const exact = std::get_if<Exact>(&engine);
-  VariationObserver observer(scene,
-                             exact ? std::optional(zeta_m<double>(scene, exact->calibration)) : std::nullopt,
-                             receiver, watched);
+  VariationObserver observer(
+      scene, exact ? std::optional(zeta_m<double>(scene, exact->calibration)) : std::nullopt, receiver, kept);
   const Outcome outcome = exact ? run_exact(system, scene, *exact, observer)
                                 : run_restitution(system, scene, std::get<Restitution>(engine), observer);
   return observer.ended(outcome.stop_reason, *scene.until_time);

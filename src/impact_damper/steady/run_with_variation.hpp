@@ -1,4 +1,6 @@
-// A run with its variation (variation.hpp), by either closed-form engine.
+// A run by one of the closed-form engines, and step by step what a small change of the state, of the force's
+// frequency omega_f or of its amplitude f0 becomes along it, in linear approximation (variation.hpp,
+// docs/mathematics.md, 13.2 to 13.4). Numbers are dimensionless, as in run.hpp.
 #pragma once
 
 #include <optional>
@@ -10,39 +12,63 @@
 
 namespace impact_damper {
 
-// Is given the steps of a variation in their order; what they mean: Variation.
+// Whoever wants the variation derives from this, and is called during the run, in the order of time. A run is
+// told in steps: each motion (a flight, a contact, a time of sticking) in one or several of equal duration,
+// each event that acts on changes by itself (an impact, touch, the end of a contact, the beginning of
+// sticking) in one.
 class VariationReceiver {
  public:
-  // with_parameters: whether what changes of omega_f and f0 add is worked out, too.
+  // with_parameters: whether it is also worked out what changes of omega_f and f0 lead to.
   explicit VariationReceiver(bool with_parameters) : with_parameters_(with_parameters) {}
   virtual ~VariationReceiver() = default;
 
-  template <class ByParameters>
-  void step(const RowsOfState<double, 4>& a, ByParameters&& by_parameters) {
-    take(a, with_parameters_ ? by_parameters() : RowsOfState<double, 2>{});
-  }
+  // Rigid walls: sticking has begun, and the step of that event was told. Changes of y and y' are lost with
+  // it, for the rest of the run.
   virtual void joined() = 0;
+  // In how many steps the next motion is told: 1 with parameters, else at least 1. loss >= 0: that motion
+  // multiplies the four-dimensional volume of a set of changes by exp(-loss), which one step may lose in
+  // rounding errors.
   virtual int pieces(double loss) = 0;
 
+  // What Variation calls; by_parameters() gives `added` of take().
+  template <class ByParameters>
+  void step(const RowsOfState<double, 4>& a, ByParameters&& by_parameters) {
+    if (!with_parameters_) return take(a, nullptr);
+    const RowsOfState<double, 2> added = by_parameters();
+    take(a, &added);
+  }
+
  private:
-  virtual void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>& added) = 0;
+  // In this step a change s of the state (x, x', y, y') becomes a s, and changes (d omega_f, d f0) of the
+  // force f0 sin(omega_f t), t from the run's beginning, add *added (d omega_f, d f0) to that. added: null
+  // without parameters, else valid during the call.
+  virtual void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>* added) = 0;
 
   bool with_parameters_;
 };
 
-// What else is kept of the run.
 struct VariedRun {
   StopReason stop_reason = StopReason::time;
+  // The state in which the last motion ended, and its x', x'', y', y'' there: before what an event at that
+  // very instant changes.
   State<double> end{};
-  StateVector rates_at_end{};  // x', x'', y', y''
-  // If impacts are watched.
+  StateVector rates_at_end{};
+
+  // These three with Kept::impacts only.
   std::vector<OrbitImpact> impacts;
-  std::vector<std::size_t> impacts_before_sticking;  // how many, each time that the secondary mass sticks
-  std::optional<double> nearest_miss;  // least distance from a wall at which y turns back in flight
+  // Rigid walls: for each time that sticking begins, how many impacts there have been, with the one it begins
+  // with.
+  std::vector<std::size_t> impacts_before_sticking;
+  // The least distance, of the whole run, from either wall (y = 0 and 1) at which y turns back without having
+  // met it; absent if it never does.
+  std::optional<double> nearest_miss;
 };
-enum class Watched { end, impacts };
-// The scene is valid, has a force and an until_time; the engine is exact or restitution.
+enum class Kept { end, impacts };
+
+// Runs the scene from its initial values to its stops. Not checked here: the scene is valid (problems_of),
+// has a force, an until_time and no list `dampers`, and the engine is exact or restitution, which are the
+// closed-form ones.
 VariedRun run_with_variation(const Scene& scene, const Engine& engine, VariationReceiver& receiver,
-                             Watched watched);
+                             Kept kept);
 
 }  // namespace impact_damper
