@@ -24,7 +24,21 @@ class ContactExponential {
  public:
   using Vector = std::array<Real, 6>;
 
-  explicit ContactExponential(const ContactEquations<Real>& equations);
+  explicit ContactExponential(const ContactEquations<Real>& equations) : equations_(equations) {
+    const auto& [nu, zeta, stiffness, damping, forcing] = equations;
+    const Real both = 1 + nu;
+    rate_ = square_root(Real(1 + stiffness * both)) + 2 * zeta + damping * both;
+    if (forcing) rate_ += forcing.frequency;
+    while (shortest_ * rate_ > Real(0.5)) shortest_ /= 2;
+    Matrix power = short_exponential();
+    // Later than any run may last.
+    Real step = shortest_;
+    while (step < Real(1e13)) {
+      powers_.push_back(rounded(power));
+      power = product(power, power);
+      step *= 2;
+    }
+  }
 
   Vector operator()(Vector s, Real t) const {
     Real step = shortest_;
@@ -110,26 +124,5 @@ class ContactExponential {
   Real rate_{1}, shortest_{1};
   std::vector<Rounded> powers_;
 };
-
-template <class Real>
-ContactExponential<Real>::ContactExponential(const ContactEquations<Real>& equations)
-    : equations_(equations) {
-  const auto& [nu, zeta, stiffness, damping, forcing] = equations;
-  const Real both = 1 + nu;
-  rate_ = square_root(Real(1 + stiffness * both)) + 2 * zeta + damping * both;
-  if (forcing) rate_ += forcing.frequency;
-  while (shortest_ * rate_ > Real(0.5)) shortest_ /= 2;
-  Matrix power = short_exponential();
-  // Later than any run may last.
-  Real step = shortest_;
-  while (step < Real(1e13)) {
-    powers_.push_back(rounded(power));
-    power = product(power, power);
-    step *= 2;
-  }
-}
-
-// Made once for a scene, and long to compile: for double in made_once.cpp.
-extern template ContactExponential<double>::ContactExponential(const ContactEquations<double>&);
 
 }  // namespace impact_damper

@@ -21,7 +21,47 @@ namespace impact_damper {
 template <class Real, class Force = Forcing<Real>>
 class ContactModes {
  public:
-  ContactModes(const System<Real, Force>& system, const Real& zeta_m);
+  ContactModes(const System<Real, Force>& system, const Real& zeta_m)
+      : nu(system.nu),
+        zeta(system.zeta),
+        stiffness(system.k / system.nu),
+        damping(2 * zeta_m * square_root(stiffness)),
+        forcing(system.forcing),
+        joined_(1 / (1 + nu)),
+        share_(nu / (1 + nu)) {
+    const auto& [p, b, p2, b2, dp, db, db2] = factors_ = factor_contact(nu, zeta, stiffness, damping);
+    slow = Oscillator<Real>(p / 2, b);
+    fast = Oscillator<Real>(p2 / 2, b2);
+    const Real alpha = p2 - p, beta = b2 - b, resultant = beta * (beta - alpha * p) + alpha * alpha * b;
+    alpha_ = alpha / resultant;
+    beta_ = beta / resultant;
+    slow_ = (beta - alpha * p) / resultant;
+    fast_ = (beta - alpha * p2) / resultant;
+    // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
+    // slow mode of x follows with all its digits. As 1 less the fast mode it would lose those of 1 + nu.
+    const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast),
+                       driven_slow_centre{-driven_centre.x, joined_ - driven_centre.v};
+    drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
+    drive_slow.v = driven_slow_centre.v - share_ * drive_slow.w;
+    std::array<Touch<Real>, 3> touch;
+    split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
+    split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
+    split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
+    piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
+    slow_piece = slow.propagate(piece);
+    fast_piece = fast.propagate(piece);
+    const bool stiff = stiffness > stiff_above(zeta);
+    if (!stiff && !(zeta <= 4 && norm_of_split() <= 3)) {
+      coupled.emplace(
+          ContactEquations<Real>{nu, zeta, stiffness, damping, {forcing.amplitude, forcing.frequency}});
+    } else if (!(forcing && forcing.frequency > fast.rate())) {
+      const Real rate = slow.rate() > fast.rate() ? slow.rate() : fast.rate();
+      short_contact = ShortContactMap<Real, columns>(
+          slow, fast, share_, zeta,
+          {nu, zeta, system.k, zeta_m, forcing ? forcing.frequency : Real(0), share_, rate}, touch,
+          [&](std::size_t column, const Real& latest) { return driven_bounds(column, latest); });
+    }
+  }
 
   // Splits u into a slow and a fast mode, whose sum it is. Returns the centre X of the fast mode.
   Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
@@ -133,54 +173,5 @@ class ContactModes {
   ContactFactors<Real> factors_;
   Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2, by the resultant
 };
-
-template <class Real, class Force>
-ContactModes<Real, Force>::ContactModes(const System<Real, Force>& system, const Real& zeta_m)
-    : nu(system.nu),
-      zeta(system.zeta),
-      stiffness(system.k / system.nu),
-      damping(2 * zeta_m * square_root(stiffness)),
-      forcing(system.forcing),
-      joined_(1 / (1 + nu)),
-      share_(nu / (1 + nu)) {
-  const auto& [p, b, p2, b2, dp, db, db2] = factors_ = factor_contact(nu, zeta, stiffness, damping);
-  slow = Oscillator<Real>(p / 2, b);
-  fast = Oscillator<Real>(p2 / 2, b2);
-  const Real alpha = p2 - p, beta = b2 - b, resultant = beta * (beta - alpha * p) + alpha * alpha * b;
-  alpha_ = alpha / resultant;
-  beta_ = beta / resultant;
-  slow_ = (beta - alpha * p) / resultant;
-  fast_ = (beta - alpha * p2) / resultant;
-  // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
-  // slow mode of x follows with all its digits. As 1 less the fast mode it would lose those of 1 + nu.
-  const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast),
-                     driven_slow_centre{-driven_centre.x, joined_ - driven_centre.v};
-  drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
-  drive_slow.v = driven_slow_centre.v - share_ * drive_slow.w;
-  std::array<Touch<Real>, 3> touch;
-  split({1, 0, 0, 0}, touch[0].slow, touch[0].fast);
-  split({0, 1, 0, 0}, touch[1].slow, touch[1].fast);
-  split({0, 0, 0, 1}, touch[2].slow, touch[2].fast);
-  piece = fast.rings() ? Real(fast.half_period() / 2) : Real(1 / (2 * fast.rate()));
-  slow_piece = slow.propagate(piece);
-  fast_piece = fast.propagate(piece);
-  const bool stiff = stiffness > stiff_above(zeta);
-  if (!stiff && !(zeta <= 4 && norm_of_split() <= 3)) {
-    coupled.emplace(
-        ContactEquations<Real>{nu, zeta, stiffness, damping, {forcing.amplitude, forcing.frequency}});
-  } else if (!(forcing && forcing.frequency > fast.rate())) {
-    const Real rate = slow.rate() > fast.rate() ? slow.rate() : fast.rate();
-    short_contact = ShortContactMap<Real, columns>(
-        slow, fast, share_, zeta,
-        {nu, zeta, system.k, zeta_m, forcing ? forcing.frequency : Real(0), share_, rate}, touch,
-        [&](std::size_t column, const Real& latest) { return driven_bounds(column, latest); });
-  }
-}
-
-// Made once for a scene, and long to compile: for double in made_once.cpp.
-extern template ContactModes<double, NoForcing<double>>::ContactModes(
-    const System<double, NoForcing<double>>&, const double&);
-extern template ContactModes<double, Forcing<double>>::ContactModes(const System<double, Forcing<double>>&,
-                                                                    const double&);
 
 }  // namespace impact_damper

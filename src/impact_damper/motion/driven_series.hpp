@@ -26,7 +26,28 @@ using DrivenTerms = PairedSeries<Real, driven_terms / 2>;
 template <class Real>
 class DrivenSeriesTable {
  public:
-  DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency);
+  DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency)
+      : reach_(Real(driven_radians<Real>) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
+    Real power = 1 / oscillator.root_b();
+    for (Real& each : growth_) {
+      each = power;
+      power *= frequency;
+    }
+    fast_ = frequency * frequency > 4 * oscillator.b();
+    const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
+    const Real h2 = re * re + im * im;
+    steady_ = {re / h2, im / h2, 1 / square_root(h2)};
+    columns_[0] = column(oscillator, frequency, {1, 0}, {0, 0});
+    columns_[1] = column(oscillator, frequency, {0, 1}, {0, 0});
+    columns_[2] = column(oscillator, frequency, {0, 0}, {1, 0});
+    columns_[3] = column(oscillator, frequency, {0, 0}, {0, frequency});
+    undamped_ = oscillator.a() == 0;
+    if (!undamped_) return;
+    for (std::size_t n = 0; n < driven_terms / 2; ++n) {
+      columns_[0][n] = columns_[0][n] + columns_[1][n];
+      columns_[2][n] = columns_[2][n] + columns_[3][n];
+    }
+  }
 
   // How long the series and its first two derivatives hold.
   const Real& reach() const { return reach_; }
@@ -82,31 +103,6 @@ class DrivenSeriesTable {
   bool undamped_;
   std::array<DrivenTerms<Real>, 4> columns_;
 };
-template <class Real>
-DrivenSeriesTable<Real>::DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency)
-    : reach_(Real(driven_radians<Real>) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
-  Real power = 1 / oscillator.root_b();
-  for (Real& each : growth_) {
-    each = power;
-    power *= frequency;
-  }
-  fast_ = frequency * frequency > 4 * oscillator.b();
-  const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
-  const Real h2 = re * re + im * im;
-  steady_ = {re / h2, im / h2, 1 / square_root(h2)};
-  columns_[0] = column(oscillator, frequency, {1, 0}, {0, 0});
-  columns_[1] = column(oscillator, frequency, {0, 1}, {0, 0});
-  columns_[2] = column(oscillator, frequency, {0, 0}, {1, 0});
-  columns_[3] = column(oscillator, frequency, {0, 0}, {0, frequency});
-  undamped_ = oscillator.a() == 0;
-  if (!undamped_) return;
-  for (std::size_t n = 0; n < driven_terms / 2; ++n) {
-    columns_[0][n] = columns_[0][n] + columns_[1][n];
-    columns_[2][n] = columns_[2][n] + columns_[3][n];
-  }
-}
-// Made once for a scene, and long to compile: for double in made_once.cpp.
-extern template DrivenSeriesTable<double>::DrivenSeriesTable(const Oscillator<double>&, const double&);
 
 template <class Real>
 class DrivenSeries {
