@@ -105,7 +105,7 @@ TEST_CASE("the interval of a share has the ends at which what was seen is z devi
   CHECK(std::erfc(z / std::sqrt(2)) == doctest::Approx(0.05).epsilon(1e-14));
   for (const auto& [count, of] :
        {std::pair(1.0, 400.0), {200.0, 400.0}, {1989.0, 2000.0}, {9997.0, 10000.0}}) {
-    const Interval interval = interval_of_share(std::int64_t(count), std::int64_t(of));
+    const ShareInterval interval = interval_of_share(std::int64_t(count), std::int64_t(of));
     CHECK(interval.low < count / of);
     CHECK(interval.high > count / of);
     for (const double p : {interval.low, interval.high})

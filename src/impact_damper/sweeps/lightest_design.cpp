@@ -173,7 +173,7 @@ DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, co
 }  // namespace
 
 // (M15.9).
-Interval interval_of_share(std::int64_t count, std::int64_t of) {
+ShareInterval interval_of_share(std::int64_t count, std::int64_t of) {
   constexpr double z = 1.959963984540054;  // of a normal distribution 95 % lie within so many deviations
   const double n = double(of), p = double(count) / n, z2 = z * z;
   const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);

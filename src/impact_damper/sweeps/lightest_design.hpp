@@ -16,10 +16,10 @@ namespace impact_damper {
 
 // Where the probability of an event lies that was seen `count` times in `of` > 0 independent trials: Wilson's
 // interval (M15.9), which holds it with a probability of 95 %.
-struct Interval {
+struct ShareInterval {
   double low = 0, high = 1;
 };
-Interval interval_of_share(std::int64_t count, std::int64_t of);
+ShareInterval interval_of_share(std::int64_t count, std::int64_t of);
 
 struct DesignRange {
   double least = 0, most = 0;  // 0 < least < most
@@ -72,7 +72,7 @@ inline constexpr double longest_followed = 10;
 struct DesignCheck {
   std::optional<double> nominal_time;  // of the design itself; absent: later than it was followed
   std::int64_t in_time = 0;            // neighbours within the time of the design
-  Interval share;                      // where their share lies
+  ShareInterval share;                      // where their share lies
   // Within which the question's share of the neighbours is down, and all of them; absent as above.
   std::optional<double> time_of_share, slowest;
   double largest_impact_speed = 0;           // of all neighbours, mm/s
