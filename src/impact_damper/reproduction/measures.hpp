@@ -105,6 +105,7 @@ struct Measure {
   bool takes_dampers = false;  // runs of a list of dampers, too
 };
 const std::vector<Measure>& measures();  // in the order of names
+inline Spread once(double value) { return {value, value, value}; }
 
 // Throws what reading runs and simulating throw; std::invalid_argument if a run lacks a column.
 Spread measure(Runs& runs, const MeasureCall& call);

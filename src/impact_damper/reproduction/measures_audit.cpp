@@ -12,8 +12,6 @@
 namespace impact_damper {
 namespace {
 
-Spread once(double value) { return {value, value, value}; }
-
 // The secondary mass hovers at rest, out of reach of walls that move by less than half the travel: what is
 // left is a viscous oscillator.
 HalfCycles viscous_decay(const Runs& runs, double damping_ratio) {

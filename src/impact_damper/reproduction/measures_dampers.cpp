@@ -23,11 +23,11 @@ double loss_ratio_of(Runs& runs, const MeasureCall& call) {
 }
 Spread loss_ratio(Runs& runs, const MeasureCall& call) {
   const double ratio = loss_ratio_of(runs, call);
-  return {ratio, ratio, ratio};
+  return once(ratio);
 }
 Spread loss_variation_percent(Runs& runs, const MeasureCall& call) {
   const double ratio = loss_ratio_of(runs, call), percent = 100 * (ratio - 1) / (ratio + 1);
-  return {percent, percent, percent};
+  return once(percent);
 }
 
 // The widest range of amplitudes in which no loss factor is farther than the share `within` from the middle
@@ -46,7 +46,7 @@ Spread alike_range(Runs& runs, const MeasureCall& call) {
       widest = std::max(widest, edges[first] / edges[k + 1]);
     }
   }
-  return {widest, widest, widest};
+  return once(widest);
 }
 
 // By how much the loss factor of several dampers differs from the sum of theirs, divided by the sum, in the

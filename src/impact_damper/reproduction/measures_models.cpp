@@ -14,8 +14,6 @@
 namespace impact_damper {
 namespace {
 
-Spread once(double value) { return {value, value, value}; }
-
 // When the first half cycle below `amplitude` has its peak. NaN if none does.
 double time_below(const Run& run, double amplitude) {
   const auto row = first_row_below(half_cycles_of(run), amplitude);

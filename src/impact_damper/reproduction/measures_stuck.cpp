@@ -41,7 +41,7 @@ Spread steps_percent(Runs& runs, const MeasureCall& call) {
   const Scene scene = decay_of(runs, call, number(call, "amplitude"));
   const double saved =
       100 * (1 - steps_of(scene, method(number(call, "stuck_speed"))) / steps_of(scene, method({})));
-  return {saved, saved, saved};
+  return once(saved);
 }
 
 }  // namespace
