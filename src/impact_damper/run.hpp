@@ -125,6 +125,10 @@ struct EnergyBalance {
 // all. A history of most_samples, with all that the default budgets allow beside it, takes less than 200 MB,
 // and its file is short enough to be read (io/run_file.hpp).
 inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
+// Of half cycles: each of several dampers has a column of its own. 0 dampers: the scene has no list of them.
+constexpr std::int64_t most_half_cycles(std::size_t dampers) {
+  return dampers == 0 ? most_rows : most_rows / static_cast<std::int64_t>(dampers);
+}
 
 // `count` >= 2 equally spaced samples, both ends included; 0 <= begin < end <= 1e12. Samples after the end of
 // the run are not there.

@@ -101,9 +101,9 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
-        if (record.half_cycles && !scene.dampers.empty()) {  // each has a column of its own
+        if (record.half_cycles) {
           options.budget.max_half_cycles =
-              std::min(options.budget.max_half_cycles, most_rows / std::int64_t(scene.dampers.size()));
+              std::min(options.budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
         }
         return run(scene, options, recorder);
       },

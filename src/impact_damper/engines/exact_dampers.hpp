@@ -488,10 +488,16 @@ class ExactOfDampers {
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with.
 template <Scalar Real, DampersObserver Observer>
 Outcome run_exact_dampers(const Scene& scene, const Exact& options, Observer& observer) {
+  return with_system<Real>(
+      scene, [&](const auto& system) { return run_exact_dampers(system, scene, options, observer, {}); });
+}
+
+// modes: empty, or those that several runs of one scene share.
+template <class Real, class Force, class Observer>
+Outcome run_exact_dampers(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                          Observer& observer, const ModesOfDampers<Real, Force>& modes) {
   require_arithmetic();
-  return with_system<Real>(scene, [&]<class Force>(const System<Real, Force>& system) {
-    return ExactOfDampers<Real, Force, Observer>(system, scene, options, observer).run();
-  });
+  return ExactOfDampers<Real, Force, Observer>(system, scene, options, observer, modes).run();
 }
 
 }  // namespace impact_damper

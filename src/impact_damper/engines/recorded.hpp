@@ -14,13 +14,22 @@ namespace impact_damper {
 
 using FreeSystem = System<double, NoForcing<double>>;
 using ForcedSystem = System<double, Forcing<double>>;
+using ForcedModes = ContactModes<double, Forcing<double>>;
 
 extern template Outcome run_exact(const FreeSystem&, const Scene&, const Exact&, Recorder&);
 extern template Outcome run_exact(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
+extern template Outcome run_exact<Contact<double>>(const ForcedModes&, const ForcedSystem&, const Scene&,
+                                                   const Exact&, Recorder&);
+extern template Outcome run_exact<ContactWithoutModes<double>>(const ForcedModes&, const ForcedSystem&,
+                                                               const Scene&, const Exact&, Recorder&);
 extern template Outcome run_exact_dampers<double>(const Scene&, const Exact&, Recorder&);
+extern template Outcome run_exact_dampers(const ForcedSystem&, const Scene&, const Exact&, Recorder&,
+                                          const ModesOfDampers<double, Forcing<double>>&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);
+extern template Outcome run_restitution_dampers(const ForcedSystem&, const Scene&, const Restitution&,
+                                                Recorder&);
 extern template Outcome run_cem<double>(const Scene&, const Cem&, Recorder&);
 extern template Outcome run_cem_dampers<double>(const Scene&, const Cem&, Recorder&);
 

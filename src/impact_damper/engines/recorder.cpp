@@ -5,13 +5,22 @@
 
 namespace impact_damper {
 
-Recorder::Recorder(const Record& record, std::size_t dampers)
-    : wants_(record),
-      wants_half_cycles_(record.half_cycles || record.impacts || !record.history_below.empty()),
+Recorder::Recorder(Record record, std::size_t dampers)
+    : wants_(std::move(record)),
+      wants_half_cycles_(wants_.half_cycles || wants_.impacts || !wants_.history_below.empty()),
+      wants_history_(!wants_.history.empty() || !wants_.history_below.empty()),
       impacts_in_row_of_(dampers),
-      windows_(record.history) {
+      windows_(std::move(wants_.history)) {
   half_cycles_.impacts_by_damper.resize(dampers);
   history_.dampers.resize(dampers);
+  std::int64_t samples = 0;
+  for (const HistoryWindow& window : windows_) samples += window.count;
+  const auto make_room = [samples](auto&... columns) {
+    (columns.reserve(static_cast<std::size_t>(samples)), ...);
+  };
+  make_room(history_.time, history_.x, history_.v);
+  if (dampers == 0) make_room(history_.y, history_.w);
+  for (History::Damper& each : history_.dampers) make_room(each.y, each.w);
   advance_window();
 }
 
@@ -114,7 +123,7 @@ void Recorder::finish(Run& run) {
   if (wants_.impacts) run.impacts = std::move(impacts_);
   if (wants_.contacts) run.contacts = std::move(contacts_);
   if (wants_.energy) run.energy = std::move(energy_balance_);
-  if (!wants_.history.empty() || !wants_.history_below.empty()) run.history = std::move(history_);
+  if (wants_history_) run.history = std::move(history_);
 }
 
 }  // namespace impact_damper

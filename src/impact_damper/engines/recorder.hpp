@@ -15,7 +15,7 @@ namespace impact_damper {
 class Recorder {
  public:
   // dampers: how many there are, if the scene has a list of them, else 0.
-  explicit Recorder(const Record& record, std::size_t dampers = 0);
+  explicit Recorder(Record record, std::size_t dampers = 0);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
   bool wants_contacts() const { return wants_.contacts; }
@@ -45,7 +45,7 @@ class Recorder {
   void advance_window();
 
   Record wants_;
-  bool wants_half_cycles_;
+  bool wants_half_cycles_, wants_history_;
   HalfCycles half_cycles_;
   Impacts impacts_;
   Contacts contacts_;

@@ -425,10 +425,15 @@ class RestitutionOfDampers {
 // mass begins between its walls, 0 <= y0 <= clearance.
 template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_dampers(const Scene& scene, const Restitution& options, Observer& observer) {
+  return with_system<Real>(
+      scene, [&](const auto& system) { return run_restitution_dampers(system, scene, options, observer); });
+}
+
+template <class Real, class Force, class Observer>
+Outcome run_restitution_dampers(const System<Real, Force>& system, const Scene& scene,
+                                const Restitution& options, Observer& observer) {
   require_arithmetic();
-  return with_system<Real>(scene, [&]<class Force>(const System<Real, Force>& system) {
-    return RestitutionOfDampers<Real, Force, Observer>(system, scene, options, observer).run();
-  });
+  return RestitutionOfDampers<Real, Force, Observer>(system, scene, options, observer).run();
 }
 
 }  // namespace impact_damper

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engines/compatibility.hpp"
-#include "impact_damper/engines/exact.hpp"
-#include "impact_damper/engines/exact_dampers.hpp"
-#include "impact_damper/engines/restitution.hpp"
-#include "impact_damper/engines/restitution_dampers.hpp"
+#include "impact_damper/engines/recorded.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
@@ -20,96 +18,30 @@ namespace {
 
 constexpr std::int64_t blocks = 10;
 
-}  // namespace
-
-// Keeps what a steady state is made of. While a transient passes it asks for states alone.
-class ForcedScene::Watch {
- public:
-  // Until `end`, with so many equally spaced states, the last one there.
-  // dampers: how many, of a list.
-  Watch(double end, std::size_t states, bool measures, std::size_t dampers, Watched& kept)
-      : end_(end), states_(states), measures_(measures), kept_(kept) {
-    kept_.by_damper.resize(dampers);
-    kept_.by_damper_until_half_way.resize(dampers);
-  }
-
-  bool wants_half_cycles() const { return measures_; }
-  static bool wants_contacts() { return false; }
-  bool wants_energy() const { return measures_; }
-  void half_cycle(double, double, double, double amplitude) {
-    kept_.amplitude = std::max(kept_.amplitude, amplitude);
-  }
-  void impact(double time, Wall wall, double, double) {
-    const auto side = static_cast<std::size_t>(wall);
-    ++kept_.impacts[side];
-    if (time < end_ / 2) ++kept_.impacts_until_half_way[side];
-  }
-  void impact(double time, Wall wall, double w, double x, std::int32_t damper) {
-    impact(time, wall, w, x);
-    const auto side = static_cast<std::size_t>(wall);
-    ++kept_.by_damper[damper][side];
-    if (time < end_ / 2) ++kept_.by_damper_until_half_way[damper][side];
-  }
-  void contact(double, double, Wall) {}
-  void contact(double, double, Wall, std::int32_t) {}
-  double next_sample() const {
-    if (sampled_ == states_) return std::numeric_limits<double>::infinity();
-    return sampled_ + 1 == states_ ? end_ : end_ * (double(sampled_ + 1) / double(states_));
-  }
-  void sample(double, double x, double v, double y, double w) {
-    kept_.states[sampled_++] = State<double>{x, v, y, w};
-  }
-  void sample(double, double x, double v, std::span<const PlaceInCavity> places) {
-    SceneState& state = kept_.states[sampled_++];
-    state = State<double>{x, v, 0, 0};
-    state.dampers.assign(places.begin(), places.end());
-  }
-  EnergyBalance& energy_balance() { return kept_.energy; }
-
-  double end() const { return end_; }
-
- private:
-  double end_;
-  std::size_t states_;
-  bool measures_;
-  Watched& kept_;
-  std::size_t sampled_ = 0;
-};
-
-namespace {
-
 // An engine's run of a scene whose numbers, but for release and stops, are always the same.
-template <class Watch>
-std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Exact& options) {
-  using Force = Forcing<double>;
-  const System<double> system(scene);
+std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Exact& options) {
+  const ForcedSystem system(scene);
   if (!scene.dampers.empty()) {
-    ModesOfDampers<double, Force> modes;
+    ModesOfDampers<double, Forcing<double>> modes;
     for (std::size_t n = 0; n < scene.dampers.size(); ++n)
-      modes.push_back(modes_of_damper<double, Force>(scene, n, options));
-    return [system, modes, options](const Scene& from, Watch& watch) {
-      return ExactOfDampers<double, Force, Watch>(system, from, options, watch, modes).run();
+      modes.push_back(modes_of_damper<double, Forcing<double>>(scene, n, options));
+    return [system, modes, options](const Scene& from, Recorder& recorder) {
+      return run_exact_dampers(system, from, options, recorder, modes);
     };
   }
   const ContactModes<double> walls(system, zeta_m<double>(scene, options.calibration));
-  return [system, walls, options](const Scene& from, Watch& watch) {
-    return walls.coupled ? run_exact<ContactWithoutModes<double>>(walls, system, from, options, watch)
-                         : run_exact<Contact<double>>(walls, system, from, options, watch);
+  return [system, walls, options](const Scene& from, Recorder& recorder) {
+    return walls.coupled ? run_exact<ContactWithoutModes<double>>(walls, system, from, options, recorder)
+                         : run_exact<Contact<double>>(walls, system, from, options, recorder);
   };
 }
-template <class Watch>
-std::function<Outcome(const Scene&, Watch&)> runner(const Scene& scene, const Restitution& options) {
-  if (!scene.dampers.empty()) {
-    return [system = System<double>(scene), options](const Scene& from, Watch& watch) {
-      return RestitutionOfDampers<double, Forcing<double>, Watch>(system, from, options, watch).run();
-    };
-  }
-  return [system = System<double>(scene), options](const Scene& from, Watch& watch) {
-    return run_restitution(system, from, options, watch);
+std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Restitution& options) {
+  return [system = ForcedSystem(scene), options](const Scene& from, Recorder& recorder) {
+    return from.dampers.empty() ? run_restitution(system, from, options, recorder)
+                                : run_restitution_dampers(system, from, options, recorder);
   };
 }
-template <class Watch>
-std::function<Outcome(const Scene&, Watch&)> runner(const Scene&, const Cem&) {
+std::function<Outcome(const Scene&, Recorder&)> runner(const Scene&, const Cem&) {
   return {};  // never asked for: problems_of() tells
 }
 
@@ -182,11 +114,13 @@ Recurrence::Recurrence(const SteadyRule& rule)
       states_(static_cast<std::size_t>(differences * rule.longest_period + 1)) {}
 
 const SceneState& Recurrence::before(std::int64_t periods) const {
-  return states_[static_cast<std::size_t>((count_ - 1 - periods) % std::int64_t(states_.size()))];
+  const std::int64_t index = last_ - periods;
+  return states_[static_cast<std::size_t>(index < 0 ? index + std::int64_t(states_.size()) : index)];
 }
 
 std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
-  states_[static_cast<std::size_t>(count_ % std::int64_t(states_.size()))] = state;
+  if (++last_ == std::int64_t(states_.size())) last_ = 0;
+  states_[static_cast<std::size_t>(last_)] = state;
   ++count_;
   const double size = size_of(state), allowed = tolerance_ * size;
   // Below it the differences no longer shrink: some rounding errors of a whole period.
@@ -198,7 +132,9 @@ std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
     return false;
   };
   for (std::int64_t m = 1; m <= longest_ && differences * m < count_; ++m) {
-    if (!(distance(state, before(m)) <= allowed) || may_be_shorter(m)) continue;
+    const SceneState& earlier = before(m);
+    if (!(std::abs(state.x - earlier.x) <= allowed)) continue;  // most often this tells
+    if (!(distance(state, earlier) <= allowed) || may_be_shorter(m)) continue;
     const auto largest_of = [&](std::int64_t from, std::int64_t to) {
       double largest = 0;
       for (std::int64_t j = from; j < to; ++j)
@@ -251,33 +187,67 @@ ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
   run_ = std::visit(
       [&](auto options) {
         options.budget = budget_for(scene_, options.budget);
-        return runner<Watch>(scene_, options);
+        options.budget.max_half_cycles =
+            std::min(options.budget.max_half_cycles, most_half_cycles(scene_.dampers.size()));
+        return runner(scene_, options);
       },
       engine);
 }
 
 ForcedScene::Watched ForcedScene::pass_periods(const SceneState& state) const {
-  Watched kept;
-  Watch watch(double(periods_at_once) * period_, periods_at_once, false, scene_.dampers.size(), kept);
-  kept.stop_reason = run_from(state, watch);
-  return kept;
+  return run_from(state, std::int64_t(periods_at_once), std::int64_t(periods_at_once), false);
 }
 
 ForcedScene::Watched ForcedScene::watch(const SceneState& state, std::int64_t periods) const {
-  Watched kept;
-  Watch watch(double(periods) * period_, 2, true, scene_.dampers.size(), kept);
-  kept.stop_reason = run_from(state, watch);
-  return kept;
+  return run_from(state, periods, 2, true);
 }
 
-StopReason ForcedScene::run_from(const SceneState& state, Watch& watch) const {
+ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
+                                           bool measures) const {
   Scene from = released_from(scene_, state);
   if (rigid_) {
     from.y0 = std::clamp(from.y0, 0.0, 1.0);
     for (SceneDamper& damper : from.dampers) damper.y0 = std::clamp(damper.y0, 0.0, damper.clearance);
   }
-  from.until_time = watch.end();
-  return run_(from, watch).stop_reason;
+  const double end = double(periods) * period_;
+  from.until_time = end;
+  Record record;
+  record.half_cycles = record.impacts = record.energy = measures;
+  record.history = {{0, end, states + 1}};
+  Recorder recorder(std::move(record), scene_.dampers.size());
+  Watched kept;
+  kept.stop_reason = run_(from, recorder).stop_reason;
+  Run run;
+  recorder.finish(run);
+
+  const History& history = *run.history;
+  for (std::size_t row = 1; row < history.time.size(); ++row) {
+    SceneState& after = kept.states[row - 1];
+    after = State<double>{history.x[row], history.v[row], 0, 0};
+    if (history.dampers.empty()) {
+      after.y = history.y[row];
+      after.w = history.w[row];
+    }
+    for (const History::Damper& damper : history.dampers)
+      after.dampers.push_back({damper.y[row], damper.w[row]});
+  }
+  if (!measures) return kept;
+  for (const double amplitude : run.half_cycles->amplitude)
+    kept.amplitude = std::max(kept.amplitude, amplitude);
+  kept.by_damper.resize(scene_.dampers.size());
+  kept.by_damper_until_half_way.resize(scene_.dampers.size());
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
+    const auto side = static_cast<std::size_t>(run.impacts->wall[i]);
+    const bool until_half_way = run.impacts->time[i] < end / 2;
+    ++kept.impacts[side];
+    if (until_half_way) ++kept.impacts_until_half_way[side];
+    if (scene_.dampers.empty()) continue;
+    const auto damper = static_cast<std::size_t>(run.impacts->damper[i]);
+    ++kept.by_damper[damper][side];
+    if (until_half_way) ++kept.by_damper_until_half_way[damper][side];
+  }
+  kept.energy = std::move(*run.energy);
+  return kept;
 }
 
 SteadyState ForcedScene::settle(const SceneState& state, const SteadyRule& rule) const {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "impact_damper/base/text.hpp"
-#include "impact_damper/engines/observer.hpp"
+#include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
 
@@ -133,8 +133,8 @@ class ForcedScene {
   Watched watch(const SceneState& state, std::int64_t periods) const;
 
  private:
-  class Watch;
-  StopReason run_from(const SceneState& state, Watch& watch) const;
+  // So many equally spaced states, the last one at the end.
+  Watched run_from(const SceneState& state, std::int64_t periods, std::int64_t states, bool measures) const;
   SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
   void measure_periodic(SteadyState& steady, const SteadyRule& rule) const;
   void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
@@ -142,7 +142,7 @@ class ForcedScene {
   Scene scene_;
   double period_ = 0;   // of the force, 2 pi / omega_f
   bool rigid_ = false;  // walls, which leave no room for a state beyond them
-  std::function<Outcome(const Scene&, Watch&)> run_;
+  std::function<Outcome(const Scene&, Recorder&)> run_;
 };
 
 // A scene's initial state, and the scene with another one.
@@ -180,6 +180,7 @@ class Recurrence {
   double tolerance_;
   std::int64_t longest_, count_ = 0;
   std::vector<SceneState> states_;  // the last ones, in turn
+  std::int64_t last_ = -1;          // the index of the latest
 };
 
 }  // namespace impact_damper
