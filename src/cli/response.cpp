@@ -74,7 +74,8 @@ const std::vector<Engine>& offered_engines() {
 // A number that may be varied: what it is called on the command line, and what one dimensionless unit of it
 // is in the units of the scene's file.
 struct Variable {
-  double Scene::*number;
+  SceneNumber number;
+  NumberRange range{};  // dimensionless
   double scale = 1;
 };
 using Variables = std::map<std::string, Variable, std::less<>>;
@@ -91,15 +92,22 @@ double scale_of(std::string_view unit, const Scales& scales) {
 }
 
 // The numbers of a scene by their names, beside a scene in units also by those of its file.
-Variables variables_of(const std::optional<Scales>& scales, bool several) {
+Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) {
   Variables variables;
-  for (const SceneField& field : scene_fields)
-    if (!several || !is_of_one_damper(field)) variables[std::string(field.name)] = {field.member};
+  for (const NamedSceneNumber& each : numbers_of(scene))
+    variables[each.name] = {each.number, within(each.least, each.most)};
   if (!scales) return variables;
   for (const UnitField& field : unit_fields) {
+    const double scale = scale_of(field.unit, *scales);
     const auto made = variables.find(field.becomes);
     if (made != variables.end() && !field.also_dimensionless)
-      variables[std::string(field.name)] = {made->second.number, scale_of(field.unit, *scales)};
+      variables[std::string(field.name)] = {made->second.number, made->second.range, scale};
+    const auto* const its = std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name);
+    if (its == damper_unit_fields.end()) continue;
+    const auto* const becomes = std::ranges::find(scene_damper_fields, its->becomes, &SceneDamperField::name);
+    for (std::size_t i = 0; i < scene.dampers.size(); ++i)
+      variables[std::string(field.name) + "_" + std::to_string(i + 1)] = {
+          {becomes->member, i}, within(becomes->least, becomes->most), scale};
   }
   return variables;
 }
@@ -111,15 +119,6 @@ struct VariedNumber {
 };
 std::optional<VariedNumber> number_of(Arguments& arguments, const std::string& text,
                                       const Variables& variables) {
-  const std::size_t number = text.find_first_of("0123456789=");
-  const bool several = !variables.contains("mass_ratio");
-  if (several && number > 0 && number < text.find('=') && text[number - 1] == '_') {
-    arguments.reject("--vary", "must name a number that is not of one damper of several, got " +
-                                   in_quotes(text) +
-                                   "; impact-damper sweep varies these, for instance with "
-                                   "--keep steady_amplitude");
-    return std::nullopt;
-  }
   std::vector<std::string_view> names;
   for (const auto& [name, ignored] : variables) names.push_back(name);
   const auto varied = varied_of(arguments, text, names);
@@ -135,6 +134,16 @@ std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const
   if (!range || !(range->first < range->second) || !(range->count >= 2 && range->count <= most_values)) {
     arguments.reject("--vary", "must be NAME=FROM:TO:N with FROM < TO and 2 to " +
                                    std::to_string(most_values) + " values, got " + in_quotes(text));
+    return std::nullopt;
+  }
+  const NumberRange& allowed = variable.range;
+  for (const double end : {range->first, range->second}) {
+    if (allowed.allows(end / variable.scale)) continue;
+    arguments.reject(
+        "--vary",
+        "values of " + text.substr(0, text.find('=')) + " must be " +
+            within(allowed.least * variable.scale, allowed.most * variable.scale).describe("numbers") +
+            ", got " + number_text(end));
     return std::nullopt;
   }
   return Axis{variable.number, range->first / variable.scale, range->second / variable.scale, range->count};
@@ -177,9 +186,9 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
   if (!varied) return std::nullopt;
   const auto& [variable, values] = *varied;
   ParameterRange range;
-  if (variable.number == member_of(Parameter::force_amplitude)) {
+  if (variable.number.is(member_of(Parameter::force_amplitude))) {
     range.parameter = Parameter::force_amplitude;
-  } else if (variable.number != member_of(range.parameter)) {
+  } else if (!variable.number.is(member_of(range.parameter))) {
     arguments.reject("--vary",
                      "must be frequency or amplitude of the force for orbits, got " + in_quotes(given[0]));
     return std::nullopt;
@@ -459,7 +468,7 @@ int respond(Arguments& arguments) {
   asked.averaging = averaging_of(arguments);
   if (word) {
     reject_options_of_others(arguments, asked.kind);
-    const Variables variables = variables_of(asked.file.scales, !asked.file.scene.dampers.empty());
+    const Variables variables = variables_of(asked.file.scene, asked.file.scales);
     if (asked.kind == Kind::orbits) {
       asked.range = range_of(arguments, variables);
     } else if (asked.kind != Kind::lyapunov) {
@@ -505,9 +514,10 @@ Options own_options() {
   const Averaging averaging;
   add("--vary", "NAME=FROM:TO:N",
       "the number of the scene that takes N equally spaced values, both\nends included: mass_ratio, "
-      "force_amplitude, force_frequency, ...;\nbeside a scene in units also by its name there, in its unit:\n"
-      "exciting_frequency=4:6:101 in Hz. Once for a sweep, twice for a\nbasin. For orbits NAME=FROM:TO, "
-      "frequency or amplitude of the\nforce; they begin at FROM, which may be the larger one",
+      "force_amplitude, force_frequency, ...,\nclearance_2 of the second of several dampers; beside a scene "
+      "in units\nalso by its name there, in its unit: exciting_frequency=4:6:101 in Hz.\nOnce for a sweep, "
+      "twice for a basin. For orbits NAME=FROM:TO,\nfrequency or amplitude of the force; they begin at FROM, "
+      "which may be\nthe larger one",
       "Response", Option::Takes::repeated_value);
   add("--start", "X0:V0:Y0:W0",
       "sweep, orbits: one more that begins there beside the scene's\nrelease, in mm and mm/s beside a "

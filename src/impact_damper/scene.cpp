@@ -36,6 +36,26 @@ const std::array<SceneDamperField, 6> scene_damper_fields{{
     {"w0", &SceneDamper::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
 }};
 
+std::string name_of(const SceneNumber& number) {
+  if (!number.of_damper)
+    return std::string(std::ranges::find(scene_fields, number.own, &SceneField::member)->name);
+  const auto* const field =
+      std::ranges::find(scene_damper_fields, number.of_damper, &SceneDamperField::member);
+  return std::string(field->name) + "_" + std::to_string(number.damper + 1);
+}
+
+std::vector<NamedSceneNumber> numbers_of(const Scene& scene) {
+  std::vector<NamedSceneNumber> all;
+  const auto add = [&](const SceneNumber& number, double least, double most) {
+    all.push_back({name_of(number), number, least, most});
+  };
+  for (const SceneField& field : scene_fields)
+    if (scene.dampers.empty() || !is_of_one_damper(field)) add({field.member}, field.least, field.most);
+  for (const SceneDamperField& field : scene_damper_fields)
+    for (std::size_t i = 0; i < scene.dampers.size(); ++i) add({field.member, i}, field.least, field.most);
+  return all;
+}
+
 bool is_of_one_damper(const SceneField& field) {
   return std::ranges::find(scene_damper_fields, field.name, &SceneDamperField::name) !=
          scene_damper_fields.end();

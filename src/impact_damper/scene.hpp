@@ -78,6 +78,32 @@ struct SceneDamperField {
 };
 extern const std::array<SceneDamperField, 6> scene_damper_fields;
 
+// One number of a scene: its own or, if of_damper is not null, that of one of several dampers.
+struct SceneNumber {
+  double Scene::*own = nullptr;
+  double SceneDamper::*of_damper = nullptr;
+  std::size_t damper = 0;  // which, from 0
+
+  SceneNumber() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  SceneNumber(double Scene::*its) : own(its) {}  // cppcheck-suppress noExplicitConstructor
+  SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
+  double& in(Scene& scene) const { return of_damper ? scene.dampers[damper].*of_damper : scene.*own; }
+  double in(const Scene& scene) const { return of_damper ? scene.dampers[damper].*of_damper : scene.*own; }
+  bool is(double Scene::*number) const { return !of_damper && own == number; }
+  bool operator==(const SceneNumber&) const = default;
+};
+// Its name: that of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
+std::string name_of(const SceneNumber& number);
+struct NamedSceneNumber {
+  std::string name;
+  SceneNumber number;
+  double least, most;  // smallest and largest allowed value
+};
+// All of a scene, in the order of the two tables; of one with several dampers each damper's in place of those
+// of its one damper.
+std::vector<NamedSceneNumber> numbers_of(const Scene& scene);
+
 // Whether the scene's field is that of its one damper, which each of several has for itself.
 bool is_of_one_damper(const SceneField& field);
 // How a damper's field is named in a Problem: "dampers[2].clearance", counted from 0.

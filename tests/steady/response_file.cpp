@@ -126,13 +126,27 @@ TEST_CASE("of several dampers each has its columns, whose sums are those of all"
             .find("must not be given beside dampers") != std::string::npos);
 }
 
+TEST_CASE("what is swept may be a number of one of several dampers") {
+  SweepResponse asked = several_sweep();
+  asked.axis = {{&SceneDamper::clearance, 1}, 0.5, 2, 4};
+  const std::string text = response_text(found_for(asked, 1));
+  CHECK(text.find("\"number\": \"clearance_2\"") != std::string::npos);
+  const auto read = std::get<SweepResponse>(parse_response("f", text));
+  CHECK(read.axis.number == asked.axis.number);
+  CHECK(response_text(read) == text);
+  CHECK(complaint(altered(text, "clearance_2", "clearance_3")).find("/axis/number: unknown") !=
+        std::string::npos);
+  CHECK(complaint(altered(text, "clearance_2", "mass_ratio")).find("/axis/number: unknown") !=
+        std::string::npos);
+}
+
 TEST_CASE("what is read has the numbers that were found") {
   const auto found = std::get<SweepResponse>(found_for(asked_sweep(), 1));
   const auto read = std::get<SweepResponse>(parse_response("f", response_text(found)));
   REQUIRE(read.sweeps.size() == 2);
   CHECK(read.scene == found.scene);
   CHECK(read.engine == found.engine);
-  CHECK(read.axis.number == &Scene::force_frequency);
+  CHECK(read.axis.number.is(&Scene::force_frequency));
   int periodic = 0, open = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const SteadyState &a = found.sweeps[1].down[i], &b = read.sweeps[1].down[i];

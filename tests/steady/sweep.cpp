@@ -404,6 +404,35 @@ TEST_CASE("the way down begins where the way up ended") {
   CHECK(distance(again(0, down[1].state), down[0].state) == 0);
 }
 
+TEST_CASE("a sweep varies a number of one of several dampers, whose mass keeps its place in its cavity") {
+  Scene scene = active_scene(1);
+  scene.dampers = {{.mass_ratio = 0.03, .y0 = 0.5}, {.mass_ratio = 0.02, .clearance = 2.5, .y0 = 0.2}};
+  const Axis clearance{{&SceneDamper::clearance, 1}, 0.4, 2, 3},
+      restitution{{&SceneDamper::restitution, 0}, 0.3, 0.7, 3};
+  CHECK(clearance.at(scene, 2).dampers[1].clearance == 2);
+  CHECK(restitution.at(scene, 0).dampers[0].restitution == 0.3);
+  const SteadyRule few{.max_periods = 40, .mean_periods = 20};
+  const auto nothing = [](std::int64_t) {};
+  for (const Engine& engine : {rigid, compliant}) {
+    for (const Axis& axis : {clearance, restitution}) {
+      const auto sweeps = sweep(scene, engine, axis, few, {release_of(scene)}, 1, nothing);
+      const std::vector<SteadyState>& up = sweeps[0].up;
+      REQUIRE(up.size() == 3);
+      for (const std::int64_t i : {1, 2}) {
+        SceneState from = up[static_cast<std::size_t>(i) - 1].state;
+        if (axis.number == clearance.number) from.dampers[1].y *= axis.value(i) / axis.value(i - 1);
+        const SteadyState same = ForcedScene(axis.at(scene, i), engine).settle(from, few);
+        CHECK(distance(same.state, up[static_cast<std::size_t>(i)].state) == 0);
+      }
+    }
+  }
+  CHECK_THROWS_AS(
+      sweep(scene, rigid, {{&SceneDamper::clearance, 2}, 0.4, 2, 3}, few, {release_of(scene)}, 1, nothing),
+      InvalidArguments);
+  scene.dampers.clear();
+  CHECK_THROWS_AS(sweep(scene, rigid, clearance, few, {release_of(scene)}, 1, nothing), InvalidArguments);
+}
+
 TEST_CASE("the mirror image of a scene has the mirror image of its response") {
   for (const Engine& engine : {rigid, compliant}) {
     Scene scene = active_scene(0.9);

@@ -138,14 +138,14 @@ const char* wrong_response(TableKind table, const Response& asked) {
   const auto* const basin = std::get_if<BasinResponse>(&asked);
   const auto* const orbits = std::get_if<OrbitsResponse>(&asked);
   if (table == TableKind::response)
-    return (sweep && sweep->axis.number == &Scene::force_frequency) ||
+    return (sweep && sweep->axis.number.is(&Scene::force_frequency)) ||
                    (orbits && orbits->range.parameter == Parameter::force_frequency)
                ? nullptr
                : "a sweep or orbits over force_frequency";
   if (table == TableKind::largest_response)
-    return sweep && sweep->axis.number == &Scene::force_amplitude ? nullptr : "a sweep over force_amplitude";
-  return basin && basin->first.number == &Scene::force_frequency &&
-                 basin->second.number == &Scene::force_amplitude
+    return sweep && sweep->axis.number.is(&Scene::force_amplitude) ? nullptr : "a sweep over force_amplitude";
+  return basin && basin->first.number.is(&Scene::force_frequency) &&
+                 basin->second.number.is(&Scene::force_amplitude)
              ? nullptr
              : "a basin over force_frequency and force_amplitude, in this order";
 }
@@ -284,7 +284,7 @@ std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
     item.reject("vary", "must be " + std::string(count == 1 ? "one number" : "two numbers") + ", got " +
                             std::to_string(entries.size()));
   for (ObjectReader entry : entries)
-    if (const auto axis = read_axis(entry)) axes.push_back(*axis);
+    if (const auto axis = read_axis(entry, Scene{})) axes.push_back(*axis);
   axes.resize(count);
   return axes;
 }

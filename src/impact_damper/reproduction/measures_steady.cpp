@@ -41,7 +41,7 @@ Curve largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
   for (const std::string& name : call.responses) {
     const auto& response = response_of<SweepResponse>(runs, name);
     const std::vector<double> forces = response.axis.values();
-    if (response.axis.number != &Scene::force_amplitude || (!curve.x.empty() && curve.x != forces))
+    if (!response.axis.number.is(&Scene::force_amplitude) || (!curve.x.empty() && curve.x != forces))
       throw std::invalid_argument(name + ": must be over the same forces as all responses of the measure");
     curve.x = forces;
     responses.push_back(&response);

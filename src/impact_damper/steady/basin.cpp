@@ -212,8 +212,9 @@ class Map {
 
 }  // namespace
 
-bool is_initial_value(const double Scene::*number) {
-  return number == &Scene::x0 || number == &Scene::v0 || number == &Scene::y0 || number == &Scene::w0;
+bool is_initial_value(const SceneNumber& number) {
+  if (number.of_damper) return number.of_damper == &SceneDamper::y0 || number.of_damper == &SceneDamper::w0;
+  return number.is(&Scene::x0) || number.is(&Scene::v0) || number.is(&Scene::y0) || number.is(&Scene::w0);
 }
 
 std::vector<Problem> problems_of(const BasinRule& rule) {

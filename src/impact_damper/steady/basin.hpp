@@ -50,6 +50,6 @@ Basin basin(const Scene& scene, const Engine& engine, const Axis& first, const A
             const std::function<void(std::int64_t done)>& progress);
 
 // Whether the number is an initial value of the motion.
-bool is_initial_value(const double Scene::*number);
+bool is_initial_value(const SceneNumber& number);
 
 }  // namespace impact_damper

@@ -111,11 +111,15 @@ RowColumn<OrbitPoint> multiplier(std::string_view name) {
 
 }  // namespace
 
-UnitInSi unit_in_si_of(const double Scene::*number) {
-  if (number == &Scene::x0 || number == &Scene::y0) return length;
-  if (number == &Scene::v0 || number == &Scene::w0) return velocity;
-  if (number == &Scene::force_amplitude) return force;
-  if (number == &Scene::force_frequency) return frequency;
+UnitInSi unit_in_si_of(const SceneNumber& number) {
+  if (const auto its = number.of_damper) {
+    if (its == &SceneDamper::y0 || its == &SceneDamper::clearance) return length;
+    return its == &SceneDamper::w0 ? velocity : ratio;
+  }
+  if (number.is(&Scene::x0) || number.is(&Scene::y0)) return length;
+  if (number.is(&Scene::v0) || number.is(&Scene::w0)) return velocity;
+  if (number.is(&Scene::force_amplitude)) return force;
+  if (number.is(&Scene::force_frequency)) return frequency;
   return ratio;
 }
 

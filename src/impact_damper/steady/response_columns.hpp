@@ -17,7 +17,7 @@ struct UnitInSi {
   std::string_view suffix;
   double (*size)(const SiUnits&);
 };
-UnitInSi unit_in_si_of(const double Scene::*number);
+UnitInSi unit_in_si_of(const SceneNumber& number);
 
 // A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent
 // where the number belongs to them.

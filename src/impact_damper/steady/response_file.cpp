@@ -65,12 +65,8 @@ void write_steady_rule(JsonWriter& out, const SteadyRule& rule) {
              rule.max_periods);
 }
 
-std::string_view key_of(double Scene::*number) {
-  return std::ranges::find(scene_fields, number, &SceneField::member)->name;
-}
-
 void write_axis(JsonWriter& out, const Axis& axis) {
-  out.fields("number", key_of(axis.number), "from", axis.from, "to", axis.to, "count", axis.count);
+  out.fields("number", name_of(axis.number), "from", axis.from, "to", axis.to, "count", axis.count);
 }
 
 void write_range(JsonWriter& out, const ParameterRange& range) {
@@ -261,8 +257,6 @@ class CsvRow {
 
 }  // namespace
 
-std::string_view name_of(const Axis& axis) { return key_of(axis.number); }
-
 OrbitsResponse orbits_response(const Scene& scene, const Engine& engine, const BranchRule& rule,
                                const ParameterRange& range, const Branches& branches) {
   OrbitsResponse response{.scene = scene,
@@ -398,7 +392,7 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     CsvRow row(text, units);
     row.word("sweep");
     row.word("way");
-    row.heading(name_of(axis), given);
+    row.heading(name_of(axis.number), given);
     row.word("end");
     for (const Column& column : columns_of(steady_columns(dampers > 0), std::vector<SteadyState>{}))
       row.heading(column.name, column.unit);
@@ -434,8 +428,8 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
   const UnitInSi of_first = unit_in_si_of(first.number), of_second = unit_in_si_of(second.number);
   {
     CsvRow row(text, units);
-    row.heading(name_of(first), of_first);
-    row.heading(name_of(second), of_second);
+    row.heading(name_of(first.number), of_first);
+    row.heading(name_of(second.number), of_second);
     row.word("attractor");
   }
   for (std::size_t n = 0; n < basin.attractor.size(); ++n) {
@@ -456,7 +450,7 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
     CsvRow row(text, units);
     row.word("branch");
     row.word("event");
-    row.heading(key_of(number), varied);
+    row.heading(name_of(range.parameter), varied);
     for (const Column& column : columns_of(orbit_columns(), std::vector<OrbitPoint>{}))
       row.heading(column.name, column.unit);
   }

@@ -145,7 +145,4 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
 // A row for each exponent.
 std::string lyapunov_csv(const LyapunovExponents& found, const std::optional<SiUnits>& units = {});
 
-// The name of an axis's number, that of the scene's field.
-std::string_view name_of(const Axis& axis);
-
 }  // namespace impact_damper

@@ -11,8 +11,8 @@ namespace impact_damper {
 
 // {"x", "v", "y", "w"}.
 SceneState read_state(ObjectReader object, std::size_t dampers = 0);
-// {"number", "from", "to", "count"}, {"number", "from", "to"}; absent if there are problems.
-std::optional<Axis> read_axis(ObjectReader& object);
+// {"number", "from", "to", "count"} of a scene, {"number", "from", "to"}; absent if there are problems.
+std::optional<Axis> read_axis(ObjectReader& object, const Scene& scene);
 std::optional<ParameterRange> read_range(ObjectReader& object);
 // What is not given keeps its default, unless nothing may be missing.
 void read_rule(ObjectReader& object, bool may_be_missing, SteadyRule& rule);

@@ -17,12 +17,6 @@ constexpr NumberRange counts = within(0, 9e15);
 constexpr std::array budgets{StopReason::impact_budget, StopReason::half_cycle_budget,
                              StopReason::time_budget, StopReason::step_budget};
 
-std::vector<std::string_view> scene_names() {
-  std::vector<std::string_view> names(scene_fields.size());
-  std::ranges::transform(scene_fields, names.begin(), &SceneField::name);
-  return names;
-}
-
 // Every number of the scene; the stops do not count, and are not there.
 Scene read_forced_scene(ObjectReader object, DamperList dampers) {
   Scene scene;
@@ -150,7 +144,7 @@ void check_column(ObjectReader& object, std::string_view name,
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
     for (const Problem& problem : problems_of(axis.at(scene, i), engine, DamperList::allowed)) {
-      root.reject("scene", "with " + std::string(name_of(axis)) + " = " + number_text(axis.value(i)) + ": " +
+      root.reject("scene", "with " + name_of(axis.number) + " = " + number_text(axis.value(i)) + ": " +
                                problem.field + " " + problem.message);
       return false;
     }
@@ -161,7 +155,7 @@ bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, co
 void read_rest(ObjectReader& root, SweepResponse& response) {
   ObjectReader rule = root.required_object("rule"), axis = root.required_object("axis");
   read_rule(rule, false, response.rule);
-  const std::optional<Axis> read = read_axis(axis);
+  const std::optional<Axis> read = read_axis(axis, response.scene);
   if (read) response.axis = *read;
   if (read && check_axis(root, response.scene, response.engine, *read)) {
     std::vector<std::optional<double>> values;
@@ -190,7 +184,7 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
   std::vector<ObjectReader> items = root.required_objects("axes", 2);
   std::vector<Axis> axes;
   for (ObjectReader& item : items)
-    if (const std::optional<Axis> axis = read_axis(item)) axes.push_back(*axis);
+    if (const std::optional<Axis> axis = read_axis(item, response.scene)) axes.push_back(*axis);
   if (items.size() != 2) root.reject("axes", "must be two axes, got " + std::to_string(items.size()));
   const bool both = axes.size() == 2;
   if (both) {
@@ -371,9 +365,11 @@ SceneState read_state(ObjectReader object, std::size_t dampers) {
   return state;
 }
 
-std::optional<Axis> read_axis(ObjectReader& object) {
+std::optional<Axis> read_axis(ObjectReader& object, const Scene& scene) {
   Axis axis;
-  const std::vector<std::string_view> names = scene_names();
+  const std::vector<NamedSceneNumber> numbers = numbers_of(scene);
+  std::vector<std::string_view> names;
+  for (const NamedSceneNumber& each : numbers) names.push_back(each.name);
   const auto name = object.require("number") ? object.word("number", names) : std::nullopt;
   bool all_read = object.required("from", axis.from);
   all_read = object.required("to", axis.to) && all_read;
@@ -384,7 +380,7 @@ std::optional<Axis> read_axis(ObjectReader& object) {
                   "must be above \"from\", " + number_text(axis.from) + ", got " + number_text(axis.to));
     return std::nullopt;
   }
-  axis.number = scene_fields[*name].member;
+  axis.number = numbers[*name].number;
   return axis;
 }
 

@@ -16,27 +16,31 @@ std::vector<double> Axis::values() const {
 }
 
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
-  if (!scene.dampers.empty()) {
-    const auto* const field = std::ranges::find(scene_fields, axis.number, &SceneField::member);
-    if (is_of_one_damper(*field))
-      throw InvalidArguments({{std::string(field->name), "is for one damper: each of several has its own"}});
-  }
+  const std::vector<NamedSceneNumber> all = numbers_of(scene);
+  if (std::ranges::find(all, axis.number, &NamedSceneNumber::number) == all.end())
+    throw InvalidArguments(
+        {{name_of(axis.number), scene.dampers.empty() ? "is for several dampers: the scene has no list"
+                                                      : "must be of one of the scene's several dampers"}});
   for (std::int64_t i = 0; i < axis.count; ++i)
     require_none(problems_of(axis.at(scene, i), engine, DamperList::allowed));
 }
 
 Scene Axis::at(Scene scene, std::int64_t i) const {
-  scene.*number = value(i);
+  number.in(scene) = value(i);
   return scene;
 }
 
-std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
-                                             const std::vector<double>& values, const SteadyRule& rule,
-                                             SceneState state, const std::function<void()>& after_each) {
+std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
+                                             const SceneNumber& number, const std::vector<double>& values,
+                                             const SteadyRule& rule, SceneState state,
+                                             const std::function<void()>& after_each) {
   std::vector<SteadyState> all;
   Scene there = scene;
   for (const double value : values) {
-    there.*number = value;
+    double& now = number.in(there);
+    if (!all.empty() && number.of_damper == &SceneDamper::clearance)
+      state.dampers[number.damper].y *= value / now;
+    now = value;
     all.push_back(ForcedScene(there, engine).settle(state, rule));
     state = all.back().state;
     after_each();

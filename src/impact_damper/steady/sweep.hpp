@@ -13,7 +13,7 @@ namespace impact_damper {
 // A number of a scene, and the values it takes: `count` >= 2, equally spaced, both ends included, from < to.
 inline constexpr std::int64_t most_values = 100'000;  // that command line and files allow
 struct Axis {
-  double Scene::*number = &Scene::force_frequency;
+  SceneNumber number = &Scene::force_frequency;
   double from = 0, to = 0;
   std::int64_t count = 2;
 
@@ -22,16 +22,18 @@ struct Axis {
   Scene at(Scene scene, std::int64_t i) const;  // with that value
 };
 
-// Throws InvalidArguments if the scene is not valid (problems_of) at one of the values, or if the number is
-// that of one damper and the scene has several.
+// Throws InvalidArguments if the scene is not valid (problems_of) at one of the values, or has no such number
+// (numbers_of).
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
-// `state`, each other one from the one before. `after_each` is called after each of them. Throws
-// InvalidArguments if the scene is not valid at a value.
-std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine, double Scene::*number,
-                                             const std::vector<double>& values, const SteadyRule& rule,
-                                             SceneState state, const std::function<void()>& after_each);
+// `state`, each other one from the one before; if the number is a clearance, the secondary mass is then at
+// the same fraction of it. `after_each` is called after each of them. Throws InvalidArguments if the scene is
+// not valid at a value.
+std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
+                                             const SceneNumber& number, const std::vector<double>& values,
+                                             const SteadyRule& rule, SceneState state,
+                                             const std::function<void()>& after_each);
 
 // The values of the axis and what the scene does there.
 struct Sweep {

@@ -70,17 +70,14 @@ void append_field(std::string& row, std::string_view text) {
 }  // namespace
 
 std::optional<double> Variable::of(const SceneFile& scene) const {
-  if (number) return scene.scene.*number;
-  if (number_of_damper) return scene.scene.dampers[damper].*number_of_damper;
+  if (!scene.in_units) return number.in(scene.scene);
   if (number_in_units) return (*scene.in_units).*number_in_units;
   return scene.in_units->dampers[damper].*number_of_damper_in_units;
 }
 
 void Variable::set(SceneFile& scene, double value) const {
-  if (number) {
-    scene.scene.*number = value;
-  } else if (number_of_damper) {
-    scene.scene.dampers[damper].*number_of_damper = value;
+  if (!scene.in_units) {
+    number.in(scene.scene) = value;
   } else if (number_in_units) {
     (*scene.in_units).*number_in_units = value;
   } else {
@@ -114,17 +111,8 @@ std::vector<Variable> variables_of(const SceneFile& scene) {
     }
     return variables;
   }
-  for (const SceneField& field : scene_fields) {
-    if (dampers > 0 && is_of_one_damper(field)) continue;
-    variables.push_back(
-        {.name = std::string(field.name), .range = within(field.least, field.most), .number = field.member});
-  }
-  for (const SceneDamperField& field : scene_damper_fields)
-    for (std::size_t i = 0; i < dampers; ++i)
-      variables.push_back({.name = numbered(field.name, i),
-                           .range = within(field.least, field.most),
-                           .number_of_damper = field.member,
-                           .damper = i});
+  for (const auto& [name, number, least, most] : numbers_of(scene.scene))
+    variables.push_back({.name = name, .range = within(least, most), .number = number});
   return variables;
 }
 

@@ -21,11 +21,10 @@ namespace impact_damper {
 // behind it: clearance_2. The stops are none.
 struct Variable {
   std::string name{};
-  std::string_view unit{};          // "" without one, and in a dimensionless scene
-  NumberRange range{};              // what the scene allows of it
-  double Scene::*number = nullptr;  // one of these
+  std::string_view unit{};  // "" without one, and in a dimensionless scene
+  NumberRange range{};      // what the scene allows of it
+  SceneNumber number{};     // of a dimensionless scene; of one in units one of these
   std::optional<double> SceneInUnits::*number_in_units = nullptr;
-  double SceneDamper::*number_of_damper = nullptr;
   std::optional<double> DamperInUnits::*number_of_damper_in_units = nullptr;
   std::size_t damper = 0;  // which, from 0
 
