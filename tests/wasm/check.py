@@ -624,7 +624,7 @@ class OwnDamper(InABrowser):
             self.browser.does(f"{page}.querySelectorAll('nav a')[{link}].click()")
             title = self.browser.does(f"{page}.querySelectorAll('nav a')[{link}].textContent")
             top = self.browser.does(f"[...{page}.querySelectorAll('h2')].find((h) => h.textContent === '{title}').getBoundingClientRect().top")
-            self.assertGreaterEqual(top, 0)
+            self.assertGreater(top, -1)  # a browser scrolls by whole pixels
             self.assertEqual(self.browser.does(f"{page}.querySelector('h1').textContent"), "Impact damper: mast")
         heights = "(() => { const f = document.querySelector('iframe'); return [f.clientHeight, f.contentDocument.documentElement.scrollHeight]; })()"
         for restitution in ("0.5", "0.4", "0.3", "0.6"):
