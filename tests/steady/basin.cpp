@@ -50,6 +50,83 @@ TEST_CASE("each point ends in the motion to which it settles by itself") {
   for (std::size_t i = 1; i < points.size(); ++i) CHECK(points[i - 1] >= points[i]);
 }
 
+// Some points end where one mass is struck and the other rests somewhere: wherever, it is one motion.
+TEST_CASE("of several dampers each point ends in the motion to which it settles by itself") {
+  Scene scene = scene_at(0.9);
+  scene.damping_ratio = 0.05;
+  scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.5}, {.mass_ratio = 0.04, .clearance = 1.5, .y0 = 0.7}};
+  const Axis x0{&Scene::x0, -1, 1, 6}, second{{&SceneDamper::y0, 1}, 0, 1.5, 5};
+  for (const Engine& engine : {rigid, compliant}) {
+    const Basin map = basin(scene, engine, x0, second, {}, 2, no_progress);
+    const ForcedScene forced(scene, engine);
+    bool some_rests = false;
+    for (std::int64_t n = 0; n < 6 * 5; ++n) {
+      SteadyState steady = forced.settle(release_of(second.at(x0.at(scene, n % 6), n / 6)), {});
+      const std::int32_t index = map.attractor[std::size_t(n)];
+      REQUIRE(index != undecided);
+      const Attractor& attractor = map.attractors[std::size_t(index)];
+      CHECK(attractor.impacts == steady.impacts);
+      if (attractor.idle) continue;
+      CHECK(attractor.period == steady.period);
+      CHECK(attractor.impacts_by_damper == steady.impacts_by_damper);
+      double nearest = 1;
+      for (SceneState state : attractor.states) {
+        REQUIRE(state.dampers.size() == 2);
+        for (const std::size_t i : {0, 1}) {
+          if (steady.impacts_by_damper[i] != ImpactCounts{}) continue;
+          state.dampers[i] = steady.state.dampers[i] = {};
+          some_rests = true;
+        }
+        nearest = std::min(nearest, distance(state, steady.state));
+      }
+      CHECK(nearest < 1e-5);
+    }
+    CHECK(some_rests);
+    for (std::size_t i = 0; i < map.attractors.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Attractor &one = map.attractors[i], &other = map.attractors[j];
+        const bool rests = std::ranges::count(one.impacts_by_damper, ImpactCounts{}) > 0;
+        CHECK_FALSE((rests && one.period == 1 && other.period == 1 &&
+                     one.impacts_by_damper == other.impacts_by_damper &&
+                     std::abs(one.states[0].x - other.states[0].x) < 1e-5));
+      }
+    }
+  }
+}
+
+// The second mass drifts past the place where it would rest in a known motion, and into a wall much later.
+TEST_CASE("a mass that drifts is not taken for one that rests") {
+  Scene scene = scene_at(0.9);
+  scene.damping_ratio = 0.05;
+  scene.x0 = 0.2;
+  scene.dampers = {{.mass_ratio = 0.06}, {.mass_ratio = 0.04, .clearance = 1.5}};
+  const Axis place{{&SceneDamper::y0, 1}, 0.5491, 0.55, 2}, drift{{&SceneDamper::w0, 1}, -1e-6, 0, 2};
+  const Basin map = basin(scene, rigid, place, drift, {}, 1, no_progress);
+  CHECK(map.attractor == std::vector<std::int32_t>{undecided, undecided, 0, 0});
+  REQUIRE(map.attractors.size() == 1);
+  CHECK(map.attractors[0].impacts_by_damper[0] != ImpactCounts{});
+  CHECK(map.attractors[0].impacts_by_damper[1] == ImpactCounts{});
+}
+
+// Each mass is at rest in the middle of a cavity whose walls hardly move.
+TEST_CASE("several dampers are idle where none is struck again, and only there") {
+  Scene scene = scene_at(0.5);
+  scene.force_amplitude = 0.03;
+  scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.5}, {.mass_ratio = 0.04, .clearance = 0.6, .y0 = 0.3}};
+  const auto motion_of = [&](const Scene& of) {
+    const double h = of.force_amplitude / (1 - 0.25);  // hardly damped: in phase with the force
+    Scene from = of;
+    from.v0 = 0.5 * h;
+    for (SceneDamper& damper : from.dampers) damper.w0 = -from.v0;
+    const Basin map = basin(from, rigid, {&Scene::x0, -1e-6, 1e-6, 2}, {&Scene::damping_ratio, 1e-9, 2e-9, 2},
+                            {}, 1, no_progress);
+    return map.attractors.empty() ? Attractor{} : map.attractors[0];
+  };
+  CHECK(motion_of(scene).idle);
+  scene.dampers[1].y0 = 0.03;  // within reach of the left wall
+  CHECK_FALSE(motion_of(scene).idle);
+}
+
 // With a wide radius a point is near a motion long before it stays there.
 TEST_CASE("to be near a motion once is not enough") {
   const Scene scene = scene_at(0.9);

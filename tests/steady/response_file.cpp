@@ -140,6 +140,24 @@ TEST_CASE("what is swept may be a number of one of several dampers") {
         std::string::npos);
 }
 
+TEST_CASE("a map of several dampers tells the impacts of each, whose sums are those of all") {
+  BasinResponse asked = asked_basin();
+  asked.scene.damping_ratio = 0.05;
+  asked.scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.5}, {.mass_ratio = 0.04, .clearance = 1.5, .y0 = 0.7}};
+  asked.second = {{&SceneDamper::y0, 1}, 0, 1.5, 4};
+  const std::string text = response_text(found_for(asked, 1));
+  const auto read = std::get<BasinResponse>(parse_response("f", text));
+  CHECK(response_text(read) == text);
+  CHECK(read.second.number == asked.second.number);
+  REQUIRE_FALSE(read.basin.attractors.empty());
+  CHECK(read.basin.attractors[0].impacts_by_damper.size() == 2);
+  CHECK(read.basin.attractors[0].states[0].dampers.size() == 2);
+  const std::int64_t left = read.basin.attractors[0].impacts[0];
+  CHECK(complaint(altered(text, "\"impacts_left\": " + std::to_string(left),
+                          "\"impacts_left\": " + std::to_string(left + 1)))
+            .find("/dampers: must be hit as often as all") != std::string::npos);
+}
+
 TEST_CASE("what is read has the numbers that were found") {
   const auto found = std::get<SweepResponse>(found_for(asked_sweep(), 1));
   const auto read = std::get<SweepResponse>(parse_response("f", response_text(found)));

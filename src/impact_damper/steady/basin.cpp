@@ -16,10 +16,10 @@ namespace {
 // Points along each axis of the grid from which the motions of a scene are collected first.
 constexpr std::int64_t coarse = 16;
 
-// Whether the secondary mass is never struck again (M14.5).
+// Whether no secondary mass is ever struck again (M14.5).
 class Idle {
  public:
-  explicit Idle(const Scene& scene) : omega_(scene.force_frequency) {
+  explicit Idle(const Scene& scene) : omega_(scene.force_frequency), dampers_(scene.dampers) {
     // The steady state of the primary mass alone, in_phase sin + behind cos.
     const double re = 1 - omega_ * omega_, im = 2 * scene.damping_ratio * omega_;
     const double h2 = re * re + im * im;
@@ -27,42 +27,66 @@ class Idle {
     behind_ = -scene.force_amplitude * im / h2;
     steady_ = std::abs(scene.force_amplitude) / square_root(h2);
   }
-  bool holds(const State<double>& s) const {
-    const double z = s.x + s.y;
-    if (!(std::abs(s.v + s.w) <= at_rest)) return false;
+  bool holds(const SceneState& s) const {
     const double x = s.x - behind_, v = s.v - omega_ * in_phase_;
     const double reach = steady_ + square_root(x * x + v * v);  // (M3.4) on what is not steady
-    return reach < z && z < 1 - reach;  // false where resonance makes it infinite, or a NaN
+    // False where resonance makes the reach infinite, or a NaN.
+    const auto is_out_of_reach = [&](double y, double w, double clearance) {
+      const double z = s.x + y;
+      return std::abs(s.v + w) <= at_rest && reach < z && z < clearance - reach;
+    };
+    if (dampers_.empty()) return is_out_of_reach(s.y, s.w, 1);
+    for (std::size_t i = 0; i < dampers_.size(); ++i)
+      if (!is_out_of_reach(s.dampers[i].y, s.dampers[i].w, dampers_[i].clearance)) return false;
+    return true;
   }
 
  private:
-  // Speed in space below which the mass counts as at rest: rounding of a velocity, some periods long.
+  // Speed in space below which a mass counts as at rest: rounding of a velocity, some periods long.
   static constexpr double at_rest = 64 * std::numeric_limits<double>::epsilon();
-  double omega_, in_phase_, behind_, steady_;
+  double omega_;
+  std::vector<SceneDamper> dampers_;
+  double in_phase_, behind_, steady_;
 };
 
 Attractor attractor_of(const ForcedScene& scene, const SteadyState& steady, bool with_states) {
   Attractor found{steady.impacts == ImpactCounts{} && steady.period == 1, *steady.period, steady.impacts,
                   steady.symmetric};
-  for (State<double> state = steady.state; with_states && std::ssize(found.states) < found.period;) {
+  if (!found.idle) found.impacts_by_damper = steady.impacts_by_damper;
+  for (SceneState state = steady.state; with_states && std::ssize(found.states) < found.period;) {
     const ForcedScene::Watched passed = scene.pass_periods(state);
-    for (const State<double>& each : passed.states)
+    for (const SceneState& each : passed.states)
       if (std::ssize(found.states) < found.period) found.states.push_back(each);
     state = passed.states.back();
   }
   return found;
 }
 
+bool all_are_struck(const Attractor& attractor) {
+  return std::ranges::find(attractor.impacts_by_damper, ImpactCounts{}) == attractor.impacts_by_damper.end();
+}
+
 bool same_kind(const Attractor& a, const Attractor& b) {
   if (a.idle || b.idle) return a.idle == b.idle;
-  return a.period == b.period && a.impacts == b.impacts && a.symmetric == b.symmetric;
+  if (a.period != b.period || a.impacts != b.impacts || a.impacts_by_damper != b.impacts_by_damper)
+    return false;
+  return a.symmetric == b.symmetric || !all_are_struck(a);  // a mass may rest in the middle by chance
+}
+
+// The state without what tells nothing: where a mass rests that is never struck.
+SceneState of_struck(SceneState state, const Attractor& attractor) {
+  for (std::size_t i = 0; i < state.dampers.size(); ++i)
+    if (attractor.impacts_by_damper[i] == ImpactCounts{}) state.dampers[i] = {};
+  return state;
 }
 
 bool same(const Attractor& a, const Attractor& b, double near) {
   if (!same_kind(a, b)) return false;
   if (a.idle || a.states.empty()) return true;
-  return std::ranges::any_of(b.states, [&](const State<double>& state) {
-    return distance(a.states.front(), state) <= near * size_of(state);
+  const SceneState first = of_struck(a.states.front(), a);
+  return std::ranges::any_of(b.states, [&](const SceneState& state) {
+    const SceneState other = of_struck(state, b);
+    return distance(first, other) <= near * size_of(other);
   });
 }
 
@@ -80,7 +104,7 @@ class Capture {
  public:
   Capture(const std::vector<Attractor>& known, double radius) : known_(known), radius_(radius) {}
 
-  std::optional<std::int32_t> add(const State<double>& state) {
+  std::optional<std::int32_t> add(const SceneState& state) {
     ++now_;
     if (candidate_ >= 0 && now_ == due_) {
       const Attractor& attractor = known_[static_cast<std::size_t>(candidate_)];
@@ -88,7 +112,8 @@ class Capture {
       candidate_ = -1;
     }
     for (std::size_t i = 0; candidate_ < 0 && i < known_.size(); ++i) {
-      if (known_[i].idle) continue;
+      // A mass that seems to rest may yet drift into a wall: then only a steady motion tells.
+      if (known_[i].idle || !all_are_struck(known_[i])) continue;
       for (std::size_t phase = 0; phase < known_[i].states.size(); ++phase) {
         const double far = distance(state, known_[i].states[phase]);
         if (!(far <= radius_)) continue;
@@ -118,11 +143,11 @@ struct Decision {
   bool stopped = false;  // by a budget
 };
 
-Decision decide(const ForcedScene& scene, const State<double>& start, const Idle& idle,
+Decision decide(const ForcedScene& scene, const SceneState& start, const Idle& idle,
                 const std::vector<Attractor>& known, const BasinRule& rule, bool with_states) {
   Decision decision;
   Capture capture(known, rule.capture_radius);
-  SteadyState steady = scene.follow(start, rule.steady, [&](const State<double>& state) {
+  SteadyState steady = scene.follow(start, rule.steady, [&](const SceneState& state) {
     if (idle.holds(state)) {
       decision.found = Attractor{.idle = true};
     } else {
@@ -181,7 +206,7 @@ class Map {
     return known;
   }
   void require_valid() const {
-    require_none(problems_of(first_.at(second_.at(scene_, 0), 0), engine_));  // no list of dampers
+    require_none(problems_of(first_.at(second_.at(scene_, 0), 0), engine_, DamperList::allowed));
     impact_damper::require_valid(second_.at(scene_, 0), engine_, first_);
     impact_damper::require_valid(first_.at(scene_, 0), engine_, second_);
   }

@@ -21,12 +21,14 @@ std::vector<Problem> problems_of(const BasinRule& rule);
 struct Attractor {
   bool idle = false;
   std::int64_t period = 1;  // in periods of the force
-  ImpactCounts impacts{};   // in one period of the motion
+  ImpactCounts impacts{};   // in one period of the motion, of all dampers together
   bool symmetric = false;
   std::int64_t points = 0;  // of the map
   // Its states at phase 0, `period` of them; none where the map varies the scene's parameters: then equal
   // periods, impacts and symmetry are one and the same motion.
-  std::vector<State<double>> states{};
+  std::vector<SceneState> states{};
+  // Of each of several dampers. Motions that differ only in where a mass rests that is never struck are one.
+  std::vector<ImpactCounts> impacts_by_damper{};
 };
 
 inline constexpr std::int32_t undecided = -1;  // not within SteadyRule::max_periods
@@ -38,7 +40,7 @@ struct Basin {
 };
 
 // A point of the map is decided as soon as
-// - the secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
+// - each secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
 // - over initial values: it is within the capture radius of a known motion, and nearer a period of that
 // later.
 //   Known are those that a coarse grid of points ends in, each followed until it is steady by `rule`; or

@@ -201,6 +201,15 @@ void write_rest(JsonWriter& out, const BasinResponse& response) {
     out.fields("idle", each.idle, "period", each.period, "impacts_left", each.impacts[0], "impacts_right",
                each.impacts[1], "symmetric", each.symmetric, "points", each.points);
     if (!each.states.empty()) write_state(out, "state", each.states.front());
+    if (!each.impacts_by_damper.empty()) {
+      out.open_array("dampers", Layout::one_line);
+      for (const auto& [left, right] : each.impacts_by_damper) {
+        out.open_object(Layout::one_line);
+        out.fields("impacts_left", left, "impacts_right", right);
+        out.close();
+      }
+      out.close();
+    }
     out.close();
   }
   out.close();

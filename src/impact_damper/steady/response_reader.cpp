@@ -205,7 +205,20 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
     item.required("impacts_right", each.impacts[1], counts);
     item.required("symmetric", each.symmetric);
     item.required("points", each.points, counts);
-    if (item.has("state")) each.states = {read_state(item.required_object("state"))};
+    const std::size_t dampers = each.idle ? 0 : response.scene.dampers.size();
+    ImpactCounts of_all{};
+    for (ObjectReader& damper : read_dampers(item, dampers)) {
+      ImpactCounts& its = each.impacts_by_damper.emplace_back();
+      damper.required("impacts_left", its[0], counts);
+      damper.required("impacts_right", its[1], counts);
+      for (const std::size_t wall : {0, 1}) of_all[wall] += its[wall];
+    }
+    if (each.impacts_by_damper.size() == dampers && dampers > 0 && of_all != each.impacts)
+      item.reject("dampers", "must be hit as often as all, " + number_text(double(each.impacts[0])) +
+                                 " and " + number_text(double(each.impacts[1])) + " times, got " +
+                                 number_text(double(of_all[0])) + " and " + number_text(double(of_all[1])));
+    if (item.has("state"))
+      each.states = {read_state(item.required_object("state"), response.scene.dampers.size())};
     if (both && !with_states && item.has("state"))
       item.reject("state", "must not be given where the scene's parameters are varied");
   }
@@ -289,13 +302,16 @@ void read_rest(ObjectReader& root, LyapunovResponse& response) {
   root.required("standard_errors", found.standard_errors, at_least(0));
 }
 
+// Whether a scene of such a response may have a list of dampers.
+template <class Kind>
+constexpr bool takes_dampers = std::is_same_v<Kind, SweepResponse> || std::is_same_v<Kind, BasinResponse>;
+
 template <class Kind>
 Response read_as(JsonDocument& document, ObjectReader& root, bool sealed) {
   Kind response;
   ObjectReader engine = root.required_object("engine");
-  response.scene =
-      read_forced_scene(root.required_object("scene"),
-                        std::is_same_v<Kind, SweepResponse> ? DamperList::allowed : DamperList::rejected);
+  response.scene = read_forced_scene(root.required_object("scene"),
+                                     takes_dampers<Kind> ? DamperList::allowed : DamperList::rejected);
   if (const std::optional<Engine> read = read_engine_of_response(engine)) response.engine = *read;
   if (std::holds_alternative<Cem>(response.engine))
     engine.reject("name", "must be exact or restitution, got cem");

@@ -251,13 +251,13 @@ ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t
 }
 
 SteadyState ForcedScene::settle(const SceneState& state, const SteadyRule& rule) const {
-  SteadyState steady = follow(state, rule, [](const State<double>&) { return false; });
+  SteadyState steady = follow(state, rule, [](const SceneState&) { return false; });
   if (steady.stop_reason == StopReason::time) measure(steady, rule);
   return steady;
 }
 
 SteadyState ForcedScene::follow(const SceneState& state, const SteadyRule& rule,
-                                const std::function<bool(const State<double>&)>& enough) const {
+                                const std::function<bool(const SceneState&)>& enough) const {
   SteadyState steady;
   steady.state = state;
   Recurrence recurrence(rule);

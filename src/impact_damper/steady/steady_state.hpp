@@ -112,7 +112,7 @@ class ForcedScene {
   // The first half of that alone: everything but what is measured. Ends without a period as soon as
   // enough(state) is true of the state at phase 0, the first one included.
   SteadyState follow(const SceneState& state, const SteadyRule& rule,
-                     const std::function<bool(const State<double>&)>& enough) const;
+                     const std::function<bool(const SceneState&)>& enough) const;
   // The second half.
   void measure(SteadyState& steady, const SteadyRule& rule) const;
 
