@@ -36,18 +36,16 @@ const std::array<SceneDamperField, 6> scene_damper_fields{{
     {"w0", &SceneDamper::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
 }};
 
-std::string name_of(const SceneNumber& number) {
-  if (!number.of_damper)
-    return std::string(std::ranges::find(scene_fields, number.own, &SceneField::member)->name);
-  const auto* const field =
-      std::ranges::find(scene_damper_fields, number.of_damper, &SceneDamperField::member);
-  return std::string(field->name) + "_" + std::to_string(number.damper + 1);
+std::string SceneNumber::name() const {
+  if (!of_damper) return std::string(std::ranges::find(scene_fields, own, &SceneField::member)->name);
+  const auto* const field = std::ranges::find(scene_damper_fields, of_damper, &SceneDamperField::member);
+  return std::string(field->name) + "_" + std::to_string(damper + 1);
 }
 
 std::vector<NamedSceneNumber> numbers_of(const Scene& scene) {
   std::vector<NamedSceneNumber> all;
   const auto add = [&](const SceneNumber& number, double least, double most) {
-    all.push_back({name_of(number), number, least, most});
+    all.push_back({number.name(), number, least, most});
   };
   for (const SceneField& field : scene_fields)
     if (scene.dampers.empty() || !is_of_one_damper(field)) add({field.member}, field.least, field.most);

@@ -88,13 +88,14 @@ struct SceneNumber {
   // NOLINTNEXTLINE(google-explicit-constructor)
   SceneNumber(double Scene::*its) : own(its) {}  // cppcheck-suppress noExplicitConstructor
   SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
+  // That of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
+  std::string name() const;
+  // cppcheck-suppress constParameter
   double& in(Scene& scene) const { return of_damper ? scene.dampers[damper].*of_damper : scene.*own; }
   double in(const Scene& scene) const { return of_damper ? scene.dampers[damper].*of_damper : scene.*own; }
-  bool is(double Scene::*number) const { return !of_damper && own == number; }
+  bool is(const double Scene::*number) const { return !of_damper && own == number; }
   bool operator==(const SceneNumber&) const = default;
 };
-// Its name: that of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
-std::string name_of(const SceneNumber& number);
 struct NamedSceneNumber {
   std::string name;
   SceneNumber number;

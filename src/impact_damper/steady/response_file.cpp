@@ -66,7 +66,7 @@ void write_steady_rule(JsonWriter& out, const SteadyRule& rule) {
 }
 
 void write_axis(JsonWriter& out, const Axis& axis) {
-  out.fields("number", name_of(axis.number), "from", axis.from, "to", axis.to, "count", axis.count);
+  out.fields("number", axis.number.name(), "from", axis.from, "to", axis.to, "count", axis.count);
 }
 
 void write_range(JsonWriter& out, const ParameterRange& range) {
@@ -401,7 +401,7 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     CsvRow row(text, units);
     row.word("sweep");
     row.word("way");
-    row.heading(name_of(axis.number), given);
+    row.heading(axis.number.name(), given);
     row.word("end");
     for (const Column& column : columns_of(steady_columns(dampers > 0), std::vector<SteadyState>{}))
       row.heading(column.name, column.unit);
@@ -437,8 +437,8 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
   const UnitInSi of_first = unit_in_si_of(first.number), of_second = unit_in_si_of(second.number);
   {
     CsvRow row(text, units);
-    row.heading(name_of(first.number), of_first);
-    row.heading(name_of(second.number), of_second);
+    row.heading(first.number.name(), of_first);
+    row.heading(second.number.name(), of_second);
     row.word("attractor");
   }
   for (std::size_t n = 0; n < basin.attractor.size(); ++n) {

@@ -144,7 +144,7 @@ void check_column(ObjectReader& object, std::string_view name,
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
     for (const Problem& problem : problems_of(axis.at(scene, i), engine, DamperList::allowed)) {
-      root.reject("scene", "with " + name_of(axis.number) + " = " + number_text(axis.value(i)) + ": " +
+      root.reject("scene", "with " + axis.number.name() + " = " + number_text(axis.value(i)) + ": " +
                                problem.field + " " + problem.message);
       return false;
     }
@@ -384,8 +384,8 @@ SceneState read_state(ObjectReader object, std::size_t dampers) {
 std::optional<Axis> read_axis(ObjectReader& object, const Scene& scene) {
   Axis axis;
   const std::vector<NamedSceneNumber> numbers = numbers_of(scene);
-  std::vector<std::string_view> names;
-  for (const NamedSceneNumber& each : numbers) names.push_back(each.name);
+  std::vector<std::string_view> names(numbers.size());
+  std::ranges::transform(numbers, names.begin(), &NamedSceneNumber::name);
   const auto name = object.require("number") ? object.word("number", names) : std::nullopt;
   bool all_read = object.required("from", axis.from);
   all_read = object.required("to", axis.to) && all_read;
