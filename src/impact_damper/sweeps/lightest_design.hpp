@@ -72,7 +72,7 @@ inline constexpr double longest_followed = 10;
 struct DesignCheck {
   std::optional<double> nominal_time;  // of the design itself; absent: later than it was followed
   std::int64_t in_time = 0;            // neighbours within the time of the design
-  ShareInterval share;                      // where their share lies
+  ShareInterval share;                 // where their share lies
   // Within which the question's share of the neighbours is down, and all of them; absent as above.
   std::optional<double> time_of_share, slowest;
   double largest_impact_speed = 0;           // of all neighbours, mm/s
