@@ -70,12 +70,12 @@ plant("contact force clipped at zero" motion/contact.hpp
       std::optional<End> end;"
       "    if (false) {
       std::optional<End> end;"
-      "    LocalEnclosure<Real> ahead =
-        look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-             instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
-    const ContactState<Real> s = sum_at(t);
-    ahead.whole.g = inward_ * s.q;
-    ahead.whole.g1 = inward_ * s.w;
+      "    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t, slow, fast);
+    LocalEnclosure<Real> ahead =
+        look(instant_of_q(slow, system_.slow, system_.drive_slow, t),
+             instant_of_q(fast, system_.fast, system_.drive_fast, t), 0, inward_, span);
+    ahead.whole.g = inward_ * both.q;
+    ahead.whole.g1 = inward_ * both.w;
     return ahead;"
       "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
                r = instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t);

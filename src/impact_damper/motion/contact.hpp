@@ -77,17 +77,7 @@ class Contact {
   // x, x', q and q'. For a short time as what they change by: the parts of a small q may be large, and
   // cancel.
   ContactState<Real> sum_at(const Real& t) const {
-    const Real q0 = start_.y - wall_;
-    if (t == 0) return {start_.x, start_.v, q0, start_.w};
-    const ContactModes<Real, Force>& c = system_;
-    if (!is_short_time(t)) {
-      const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-      return {slow.x + fast.x, slow.v + fast.v, slow.q + fast.q, slow.w + fast.w};
-    }
-    const ContactState<Real> by_slow = change(c.slow, parts().slow, c.drive_slow, t),
-                             by_fast = change(c.fast, parts().fast, c.drive_fast, t);
-    return {start_.x + (start_.v * t + (by_slow.x + by_fast.x)), start_.v + (by_slow.v + by_fast.v),
-            q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
+    return by_changes(t) ? sum_of_changes(t) : sum_of(slow_at(t), fast_at(t));
   }
   // With digits of its own.
   std::optional<ChangeOfX<Real>> change_of_x(const Real& t) const {
@@ -108,12 +98,12 @@ class Contact {
 
   // Towards zero: how deep the secondary mass is in the wall.
   LocalEnclosure<Real> depth(const Real& t, const Real& span) const {
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t, slow, fast);
     LocalEnclosure<Real> ahead =
-        look(instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-             instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t), 0, inward_, span);
-    const ContactState<Real> s = sum_at(t);
-    ahead.whole.g = inward_ * s.q;
-    ahead.whole.g1 = inward_ * s.w;
+        look(instant_of_q(slow, system_.slow, system_.drive_slow, t),
+             instant_of_q(fast, system_.fast, system_.drive_fast, t), 0, inward_, span);
+    ahead.whole.g = inward_ * both.q;
+    ahead.whole.g1 = inward_ * both.w;
     return ahead;
   }
   // Whether x is proved to keep its sign in [0, t], or never to exceed `best` or the ends, by its ends.
@@ -160,7 +150,7 @@ class Contact {
   }
   LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
                                        const Real& span) const {
-    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t);
+    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t, slow, fast);
     LocalEnclosure<Real> ahead =
         look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
              instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
@@ -405,6 +395,25 @@ class Contact {
                           p.c * from.q + p.s * from.w, s1 * from.q + p.v * from.w};
     if (system_.forcing) add_driven(to, oscillator, drive, driven, t);
     return to;
+  }
+
+  // sum_at(t), the parts at t being known.
+  ContactState<Real> sum_at(const Real& t, const ContactState<Real>& slow,
+                            const ContactState<Real>& fast) const {
+    return by_changes(t) ? sum_of_changes(t) : sum_of(slow, fast);
+  }
+  static ContactState<Real> sum_of(const ContactState<Real>& slow, const ContactState<Real>& fast) {
+    return {slow.x + fast.x, slow.v + fast.v, slow.q + fast.q, slow.w + fast.w};
+  }
+  bool by_changes(const Real& t) const { return t == 0 || is_short_time(t); }
+  ContactState<Real> sum_of_changes(const Real& t) const {
+    const Real q0 = start_.y - wall_;
+    if (t == 0) return {start_.x, start_.v, q0, start_.w};
+    const ContactModes<Real, Force>& c = system_;
+    const ContactState<Real> by_slow = change(c.slow, parts().slow, c.drive_slow, t),
+                             by_fast = change(c.fast, parts().fast, c.drive_fast, t);
+    return {start_.x + (start_.v * t + (by_slow.x + by_fast.x)), start_.v + (by_slow.v + by_fast.v),
+            q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
   }
 
   // Whether the parts are summed as what they change by.
