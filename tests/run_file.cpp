@@ -675,9 +675,9 @@ TEST_CASE("a run of several dampers reads back as it was, and only where it may"
       CHECK(read.bounce_downs == kept.bounce_downs);
     }
     CHECK(run_text(back) == text);
-    CHECK(problems(text) == Lines{"r.json: /scene/dampers: a list is for run, sweep, report, response sweep "
-                                  "and response basin only: "
-                                  "give one damper without a list"});
+    CHECK(problems(text) ==
+          Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response, but not "
+                "orbits: give one damper without a list"});
   }
 }
 
@@ -741,11 +741,11 @@ TEST_CASE(
   CHECK(parse_scene("s.json", scene_text(scene), DamperList::allowed) == scene);
   CHECK(scene_text(scene).find("\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,") !=
         std::string::npos);
-  CHECK_THROWS_WITH_AS(parse_scene("s.json", text),
-                       "s.json: /dampers: a list is for run, sweep, report, response sweep and response "
-                       "basin only: give one damper "
-                       "without a list",
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      parse_scene("s.json", text),
+      "s.json: /dampers: a list is for run, sweep, report and response, but not orbits: give one "
+      "damper without a list",
+      InputError);
 }
 
 TEST_CASE("the longest list of dampers is read from a file as it was") {

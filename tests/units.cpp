@@ -256,11 +256,11 @@ TEST_CASE("a scene file with several dampers in units is read as the scene that 
   const SceneFile file = parse_scene_file("boxes.json", text, DamperList::allowed);
   CHECK(file.scene == dimensionless(mast_with_boxes()));
   CHECK(file.scales == scales_of(mast()));
-  CHECK_THROWS_WITH_AS(parse_scene("boxes.json", text),
-                       "boxes.json: /dampers: a list is for run, sweep, report, response sweep and response "
-                       "basin only: give one "
-                       "damper without a list",
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      parse_scene("boxes.json", text),
+      "boxes.json: /dampers: a list is for run, sweep, report and response, but not orbits: give "
+      "one damper without a list",
+      InputError);
 }
 
 TEST_CASE("a secondary mass of several that is heavier than the primary mass is warned of by its number") {

@@ -456,9 +456,8 @@ int respond(Arguments& arguments) {
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
   Request asked;
   asked.kind = kinds[word.value_or(0)];
-  asked.file = scene_of(
-      arguments, Stops::ignored,
-      asked.kind == Kind::sweep || asked.kind == Kind::basin ? DamperList::allowed : DamperList::rejected);
+  asked.file = scene_of(arguments, Stops::ignored,
+                        asked.kind == Kind::orbits ? DamperList::rejected : DamperList::allowed);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
   asked.sweep = rule_of(arguments, SteadyRule{});

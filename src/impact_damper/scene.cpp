@@ -88,9 +88,10 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
     problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
-    problems.push_back({"dampers",
-                        "a list is for run, sweep, report, response sweep and response basin only: give one "
-                        "damper without a list"});
+    problems.push_back(
+        {"dampers",
+         "a list is for run, sweep, report and response, but not orbits: give one damper without "
+         "a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {

@@ -299,6 +299,19 @@ plain = list(csv.DictReader(respond("exponents.csv", "lyapunov", *on_orbit, "--p
                                     "csv").splitlines()))
 demand([[float(row[key]) for row in plain] for key in ("exponent", "standard_error")] ==
        [document["exponents"], document["standard_errors"]], "exponents.csv: other numbers")
+# Of several dampers each impact contracts by its own restitution.
+boxes = ["--scene", "boxes.json", "--engine", "restitution", "--force-frequency", 0.95]
+document = examined(respond("several.json", "lyapunov", *boxes, "--periods", 10, "--discard", 0), "exponents of several dampers")
+demand(len(document["exponents"]) == 6, f"exponents of several dampers: {document['exponents']}")
+duration = 10 * 2 * math.pi / 0.95
+scene = {**json.loads((folder / "boxes.json").read_text()), "force_frequency": 0.95, "until_time": duration}
+(folder / "ten_periods.json").write_text(json.dumps(scene))
+done = subprocess.run([str(program), "run", "--scene", "ten_periods.json", "--engine", "restitution", "--record", "impacts"],
+                      cwd=folder, capture_output=True, text=True)
+impacts = len(json.loads(done.stdout)["impacts"]["time"])
+expected = -2 * 0.01 + 2 * impacts * math.log(0.6) / duration
+demand(impacts > 20 and math.isclose(sum(document["exponents"]), expected, rel_tol=1e-9),
+       f"exponents of several dampers: {impacts} impacts, sum {sum(document['exponents'])}, not {expected}")
 ended = examined(respond("ended.json", "lyapunov", *forced, "--force-frequency", 0.9, "--max-impacts", 1), "ended")
 demand((ended["stop_reason"], ended["exponents"], ended["standard_errors"]) == ("impact_budget", [], []), "ended: exponents")
 

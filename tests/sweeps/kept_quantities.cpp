@@ -188,6 +188,14 @@ TEST_CASE(
   const double exponent = lyapunov_exponents(scene, Exact{}, 20, 3).exponents[0];
   CHECK(*numbers.numbers[2] == doctest::Approx(exponent / 0.2).epsilon(1e-12));
   CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
+
+  Scene list = scene;
+  list.mass_ratio = Scene{}.mass_ratio, list.y0 = Scene{}.y0;
+  list.dampers.resize(2);
+  list.force_amplitude = 0.2;
+  list.dampers[1].clearance = 0.7;
+  CHECK(*kept(list, {"lyapunov_exponent"}, Exact{}, scales, rules).numbers[0] ==
+        lyapunov_exponents(list, Exact{}, 20, 3).exponents[0] / 0.2);
 }
 
 TEST_CASE("a motion that still grows has no steady amplitude, alone or among others, and says so") {

@@ -2,19 +2,43 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
 #include "impact_damper/steady/run_with_variation.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
 
-double dot(const StateVector& a, const StateVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+template <class Column>
+double dot(const Column& a, const Column& b) {
+  double sum = a[0] * b[0];
+  for (std::size_t i = 1; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
-// Four orthonormal changes of the state, and the logarithms of what they have been stretched by (M13.15).
+// Makes a column that has been carried along orthogonal to the ones before it, and of length 1: by modified
+// Gram-Schmidt, twice, as an impact that is slow shears so much that once would leave rounding errors. Adds
+// the logarithm of what it has been stretched by (M13.15).
+template <class Columns>
+void orthonormalise(Columns& columns, std::size_t j, double& logarithm_of_stretch) {
+  auto& column = columns[j];
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t k = 0; k < j; ++k) {
+      const double along = dot(columns[k], column);
+      for (std::size_t i = 0; i < column.size(); ++i) column[i] -= along * columns[k][i];
+    }
+  }
+  const double size = std::sqrt(dot(column, column));
+  if (!(size > 0)) return;  // lost
+  for (double& entry : column) entry /= size;
+  logarithm_of_stretch += logarithm(size);
+}
+
+// Four orthonormal changes of the state, and the logarithms of what they have been stretched by.
 class Frame final : public VariationReceiver {
  public:
   Frame() : VariationReceiver(false) {}
@@ -30,21 +54,10 @@ class Frame final : public VariationReceiver {
   std::size_t dimensions() const { return dimensions_; }
 
  private:
-  // Orthogonal to the ones before it, by modified Gram-Schmidt, twice: an impact that is slow shears so much
-  // that once would leave rounding errors.
   void take(const StateMatrix& a, const RowsOfState<double, 2>*) override {
     for (std::size_t j = 0; j < 4; ++j) {
-      StateVector& column = columns_[j] = product(a, columns_[j]);
-      for (int pass = 0; pass < 2; ++pass) {
-        for (std::size_t k = 0; k < j; ++k) {
-          const double along = dot(columns_[k], column);
-          for (std::size_t i = 0; i < 4; ++i) column[i] -= along * columns_[k][i];
-        }
-      }
-      const double size = std::sqrt(dot(column, column));
-      if (!(size > 0)) continue;  // lost
-      for (double& entry : column) entry /= size;
-      logarithms_[j] += logarithm(size);
+      columns_[j] = product(a, columns_[j]);
+      orthonormalise(columns_, j, logarithms_[j]);
     }
   }
 
@@ -53,15 +66,106 @@ class Frame final : public VariationReceiver {
   std::size_t dimensions_ = 4;
 };
 
+// A motion that is followed from period to period. Each is a run of its own, so that the phase of the force
+// does not drift.
+class OneDamper {
+ public:
+  OneDamper(const Scene& scene, const Engine& engine)
+      : engine_(engine), period_(PoincareMap(scene, engine, 2).scene()) {
+    period_.x0 = scene.x0, period_.v0 = scene.v0, period_.y0 = scene.y0, period_.w0 = scene.w0;
+    require_none(incompatibilities_of(period_, engine));
+  }
+  double duration() const { return *period_.until_time; }
+  StopReason pass_period() {
+    const VariedRun run = run_with_variation(period_, engine_, frame_, Kept::end);
+    const State<double>& end = run.end;
+    if (run.stop_reason == StopReason::time)
+      period_.x0 = end.x, period_.v0 = end.v, period_.y0 = end.y, period_.w0 = end.w;
+    return run.stop_reason;
+  }
+  void forget_logarithms() { frame_.forget_logarithms(); }
+  std::span<const double> logarithms() const { return frame_.logarithms(); }
+  std::size_t dimensions() const { return frame_.dimensions(); }
+
+ private:
+  const Engine& engine_;
+  Scene period_;
+  Frame frame_;
+};
+
+class SeveralDampers {
+ public:
+  SeveralDampers(const Scene& scene, const Engine& engine)
+      : scene_(scene, engine), state_(release_of(scene)) {
+    const std::size_t n = dimensions_of(scene);
+    columns_.assign(n, ChangeOfState(n, 0.0));
+    for (std::size_t j = 0; j < n; ++j) columns_[j][j] = 1;
+    logarithms_.assign(n, 0.0);
+  }
+  double duration() const { return scene_.period(); }
+  StopReason pass_period() {
+    const Run run = scene_.record_period(state_);
+    if (run.stop_reason != StopReason::time) return run.stop_reason;
+    lost_ = std::max(lost_, carry_changes(run, columns_, [&] {
+                       for (std::size_t j = 0; j < columns_.size(); ++j)
+                         orthonormalise(columns_, j, logarithms_[j]);
+                     }));
+    state_ = state_in(*run.history, 1);
+    return run.stop_reason;
+  }
+  void forget_logarithms() { logarithms_.assign(logarithms_.size(), 0.0); }
+  std::span<const double> logarithms() const { return logarithms_; }
+  std::size_t dimensions() const { return columns_.size() - lost_; }
+
+ private:
+  ForcedScene scene_;
+  SceneState state_;
+  std::vector<ChangeOfState> columns_;
+  std::vector<double> logarithms_;
+  std::size_t lost_ = 0;
+};
+
 constexpr std::int64_t error_blocks = 10;
 
 // What an exponent's means over blocks say of the error of the mean over all.
-double standard_error(const std::vector<StateVector>& means, std::size_t j) {
+double standard_error(const std::vector<std::vector<double>>& means, std::size_t j) {
   const auto count = double(means.size());
   double mean = 0, squares = 0;
-  for (const StateVector& each : means) mean += each[j] / count;
-  for (const StateVector& each : means) squares += (each[j] - mean) * (each[j] - mean);
+  for (const std::vector<double>& each : means) mean += each[j] / count;
+  for (const std::vector<double>& each : means) squares += (each[j] - mean) * (each[j] - mean);
   return std::sqrt(squares / (count - 1) / count);
+}
+
+template <class Motion>
+LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64_t skipped,
+                               const std::function<void(std::int64_t done)>& progress) {
+  LyapunovExponents result;
+  std::vector<std::vector<double>> means;                       // of the blocks
+  std::vector<double> before(motion.logarithms().size(), 0.0);  // when the block began
+  std::int64_t begun = 0;                                       // periods that were used by then
+  for (std::int64_t n = 0; n < skipped + periods; ++n) {
+    if (n == skipped) motion.forget_logarithms();
+    result.stop_reason = motion.pass_period();
+    if (result.stop_reason != StopReason::time) return result;
+    if (progress) progress(n + 1);
+
+    // Blocks differ by one period where their number does not divide that of the periods.
+    const std::int64_t used = n + 1 - skipped;
+    if (used < 1 || used != periods * (std::ssize(means) + 1) / error_blocks) continue;
+    const std::span<const double> now = motion.logarithms();
+    std::vector<double> mean(now.size());
+    for (std::size_t j = 0; j < now.size(); ++j)
+      mean[j] = (now[j] - before[j]) / (double(used - begun) * motion.duration());
+    means.push_back(std::move(mean));
+    before.assign(now.begin(), now.end());
+    begun = used;
+  }
+  result.periods = periods;
+  for (std::size_t j = 0; j < motion.dimensions(); ++j) {
+    result.exponents.push_back(motion.logarithms()[j] / (double(periods) * motion.duration()));
+    if (periods >= error_blocks) result.standard_errors.push_back(standard_error(means, j));
+  }
+  return result;
 }
 
 }  // namespace
@@ -73,42 +177,8 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
   require_none(problems);
-  const PoincareMap map(scene, engine, 2);
-
-  // Each period is a run of its own, so that the phase of the force does not drift.
-  Scene period = map.scene();
-  period.x0 = scene.x0, period.v0 = scene.v0, period.y0 = scene.y0, period.w0 = scene.w0;
-  require_none(incompatibilities_of(period, engine));
-  LyapunovExponents result;
-  Frame frame;
-  std::vector<StateVector> means;  // of the blocks
-  StateVector before{};            // logarithms when the block began
-  std::int64_t begun = 0;          // periods that were used by then
-  for (std::int64_t n = 0; n < skipped + periods; ++n) {
-    if (n == skipped) frame.forget_logarithms();
-    const VariedRun run = run_with_variation(period, engine, frame, Kept::end);
-    result.stop_reason = run.stop_reason;
-    if (result.stop_reason != StopReason::time) return result;
-    const State<double>& end = run.end;
-    period.x0 = end.x, period.v0 = end.v, period.y0 = end.y, period.w0 = end.w;
-    if (progress) progress(n + 1);
-
-    // Blocks differ by one period where their number does not divide that of the periods.
-    const std::int64_t used = n + 1 - skipped;
-    if (used < 1 || used != periods * (std::ssize(means) + 1) / error_blocks) continue;
-    StateVector mean = frame.logarithms();
-    for (std::size_t j = 0; j < 4; ++j)
-      mean[j] = (mean[j] - before[j]) / (double(used - begun) * map.duration());
-    means.push_back(mean);
-    before = frame.logarithms();
-    begun = used;
-  }
-  result.periods = periods;
-  for (std::size_t j = 0; j < frame.dimensions(); ++j) {
-    result.exponents.push_back(frame.logarithms()[j] / (double(periods) * map.duration()));
-    if (periods >= error_blocks) result.standard_errors.push_back(standard_error(means, j));
-  }
-  return result;
+  return scene.dampers.empty() ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)
+                               : exponents_of(SeveralDampers(scene, engine), periods, skipped, progress);
 }
 
 }  // namespace impact_damper

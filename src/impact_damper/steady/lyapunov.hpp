@@ -12,10 +12,11 @@ namespace impact_damper {
 struct LyapunovExponents {
   StopReason stop_reason = StopReason::time;  // any other: of a period that could not be completed
   std::int64_t periods = 0;                   // of the force, over which the exponents are averaged
-  // Per unit of time; their sum is the mean of ln|det A|, (M13.9). In the order in which the
-  // orthogonalisation finds them: descending, if there are enough periods. Four; or two where the others are
-  // minus infinity, because both masses stick, or too far below to be told, because a sustained contact damps
-  // its fast mode by more than exp(-36) 4096 times.
+  // Per unit of time; their sum is the mean of ln|det A|, (M13.9) and (M13.26). In the order in which the
+  // orthogonalisation finds them: descending, if there are enough periods. As many as the state has numbers:
+  // four, of several dampers two and two for each. Two fewer for each mass that sticks at the same time, or
+  // that a sustained contact damps by more than exp(-36) 4096 times: these are minus infinity, or too far
+  // below to be told. None unless all periods were completed.
   std::vector<double> exponents;
   // Of each: the standard deviation of the means of ten blocks of periods, divided by the root of ten. A
   // statistical uncertainty if the motion forgets within one block where it was. None for less than ten
@@ -25,7 +26,7 @@ struct LyapunovExponents {
 
 // From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0.
 // `progress`, if given, is called with the number of periods, of all these, that are done. Throws
-// InvalidArguments as PoincareMap does.
+// InvalidArguments as PoincareMap does, of a scene with a list of dampers as ForcedScene does.
 LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
                                      std::int64_t skipped = 0,
                                      const std::function<void(std::int64_t done)>& progress = {});

@@ -4,6 +4,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
@@ -150,9 +151,13 @@ class Examination {
     const LyapunovExponents& found = response.found;
     const bool is_complete = found.stop_reason == StopReason::time;
     const std::size_t count = found.exponents.size();
-    require(
-        is_complete ? count == 4 || count == 2 : count == 0, "/exponents",
-        "must be " + std::string(is_complete ? "four or two" : "none") + ", got " + std::to_string(count));
+    // Masses that stick take two each.
+    const std::size_t most = response.scene.dampers.empty() ? 4 : dimensions_of(response.scene);
+    const std::string allowed = !is_complete ? "none"
+                                : most == 4  ? "four or two"
+                                             : "an even number of them, 2 to " + std::to_string(most);
+    require(is_complete ? count >= 2 && count <= most && count % 2 == 0 : count == 0, "/exponents",
+            "must be " + allowed + ", got " + std::to_string(count));
     require(found.standard_errors.size() == count, "/standard_errors",
             "must be as many as there are exponents, got " + std::to_string(found.standard_errors.size()));
   }

@@ -304,7 +304,7 @@ void read_rest(ObjectReader& root, LyapunovResponse& response) {
 
 // Whether a scene of such a response may have a list of dampers.
 template <class Kind>
-constexpr bool takes_dampers = std::is_same_v<Kind, SweepResponse> || std::is_same_v<Kind, BasinResponse>;
+constexpr bool takes_dampers = !std::is_same_v<Kind, OrbitsResponse>;
 
 template <class Kind>
 Response read_as(JsonDocument& document, ObjectReader& root, bool sealed) {

@@ -84,6 +84,17 @@ Scene released_from(Scene scene, const SceneState& state) {
   return scene;
 }
 
+SceneState state_in(const History& history, std::size_t row) {
+  SceneState state = State<double>{history.x[row], history.v[row], 0, 0};
+  if (history.dampers.empty()) {
+    state.y = history.y[row];
+    state.w = history.w[row];
+  }
+  for (const History::Damper& damper : history.dampers)
+    state.dampers.push_back({damper.y[row], damper.w[row]});
+  return state;
+}
+
 SceneState mirrored(const SceneState& s, const Scene& scene) {
   SceneState image = mirrored<double>(s);
   for (std::size_t n = 0; n < s.dampers.size(); ++n)
@@ -180,7 +191,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, Dampe
 }
 
 ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
-    : scene_(without_stops(scene)), rigid_(has_rigid_walls(engine)) {
+    : scene_(without_stops(scene)), engine_(engine), rigid_(has_rigid_walls(engine)) {
   require_arithmetic();
   require_none(problems_of(scene, engine, DamperList::allowed));
   period_ = 2 * half_turn<double>() / scene_.force_frequency;
@@ -202,15 +213,36 @@ ForcedScene::Watched ForcedScene::watch(const SceneState& state, std::int64_t pe
   return run_from(state, periods, 2, true);
 }
 
-ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
-                                           bool measures) const {
+Scene ForcedScene::released(const SceneState& state, double until) const {
   Scene from = released_from(scene_, state);
   if (rigid_) {
     from.y0 = std::clamp(from.y0, 0.0, 1.0);
     for (SceneDamper& damper : from.dampers) damper.y0 = std::clamp(damper.y0, 0.0, damper.clearance);
   }
+  from.until_time = until;
+  return from;
+}
+
+Run ForcedScene::record_period(const SceneState& state) const {
+  Run run;
+  run.scene = released(state, period_);
+  run.engine = engine_;
+  Record record;
+  record.half_cycles = false;
+  record.impacts = record.contacts = true;
+  record.history = {{0, period_, 2}};
+  Recorder recorder(std::move(record), scene_.dampers.size());
+  const Outcome outcome = run_(run.scene, recorder);
+  run.stop_reason = outcome.stop_reason;
+  run.end_time = outcome.end_time;
+  recorder.finish(run);
+  return run;
+}
+
+ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
+                                           bool measures) const {
   const double end = double(periods) * period_;
-  from.until_time = end;
+  const Scene from = released(state, end);
   Record record;
   record.half_cycles = record.impacts = record.energy = measures;
   record.history = {{0, end, states + 1}};
@@ -220,17 +252,8 @@ ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t
   Run run;
   recorder.finish(run);
 
-  const History& history = *run.history;
-  for (std::size_t row = 1; row < history.time.size(); ++row) {
-    SceneState& after = kept.states[row - 1];
-    after = State<double>{history.x[row], history.v[row], 0, 0};
-    if (history.dampers.empty()) {
-      after.y = history.y[row];
-      after.w = history.w[row];
-    }
-    for (const History::Damper& damper : history.dampers)
-      after.dampers.push_back({damper.y[row], damper.w[row]});
-  }
+  for (std::size_t row = 1; row < run.history->time.size(); ++row)
+    kept.states[row - 1] = state_in(*run.history, row);
   if (!measures) return kept;
   for (const double amplitude : run.half_cycles->amplitude)
     kept.amplitude = std::max(kept.amplitude, amplitude);

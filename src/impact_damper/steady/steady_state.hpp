@@ -131,8 +131,12 @@ class ForcedScene {
   Watched pass_periods(const SceneState& state) const;
   // All but the states after each period.
   Watched watch(const SceneState& state, std::int64_t periods) const;
+  // The run of one period, with its impacts and contacts, and a sample at its beginning and one at its end.
+  Run record_period(const SceneState& state) const;
+  double period() const { return period_; }  // of the force, 2 pi / omega_f
 
  private:
+  Scene released(const SceneState& state, double until) const;
   // So many equally spaced states, the last one at the end.
   Watched run_from(const SceneState& state, std::int64_t periods, std::int64_t states, bool measures) const;
   SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
@@ -140,11 +144,14 @@ class ForcedScene {
   void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
 
   Scene scene_;
+  Engine engine_;
   double period_ = 0;   // of the force, 2 pi / omega_f
   bool rigid_ = false;  // walls, which leave no room for a state beyond them
   std::function<Outcome(const Scene&, Recorder&)> run_;
 };
 
+// The state in a row of a history.
+SceneState state_in(const History& history, std::size_t row);
 // A scene's initial state, and the scene with another one.
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);

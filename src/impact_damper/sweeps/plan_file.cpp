@@ -281,11 +281,6 @@ std::vector<Problem> problems_of(const Plan& plan) {
     worst = worst || each.quantity->experiment == Experiment::worst;
     forced = forced || each.quantity->experiment != Experiment::run;
   }
-  const bool exponents = std::ranges::any_of(plan.quantities, [](const KeptQuantity& each) {
-    return each.quantity->experiment == Experiment::lyapunov;
-  });
-  if (exponents && !plan.scene.scene.dampers.empty())
-    problems.push_back({"quantities", "must not be of exponents, as the scene has a list of dampers"});
   if (worst && !plan.forced.frequencies)
     problems.push_back(
         {"frequencies", "missing, the range must be given in which the worst one is looked for"});

@@ -1,0 +1,435 @@
+#include "impact_damper/steady/variation_of_dampers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "impact_damper/motion/impact_law.hpp"
+#include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/oscillator.hpp"
+#include "impact_damper/motion/wall.hpp"
+
+namespace impact_damper {
+namespace {
+
+constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
+constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
+
+// In how many pieces a motion is carried that contracts volumes by exp(-loss): each by e, so that
+// orthogonalisation between them keeps the digits of all directions. Too many where a direction is lost.
+constexpr int most_pieces = 4096;
+int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pieces; }
+bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
+
+// A time in which a wall holds a mass: the mass sticks to it, or pushes it in.
+struct Held {
+  std::size_t damper;
+  double begin, end;
+  int away;  // from the wall into the cavity: 1 at a left, -1 at a right wall
+};
+std::vector<Held> held_in(const Run& run) {
+  std::vector<Held> all;
+  const Contacts& contacts = *run.contacts;
+  for (std::size_t i = 0; i < contacts.begin.size(); ++i)
+    all.push_back({std::size_t(contacts.damper[i]), contacts.begin[i], contacts.end[i],
+                   contacts.wall[i] == Wall::left ? 1 : -1});
+  return all;
+}
+// Of each damper Held::away if a wall holds it all the time, else 0.
+using HeldBy = std::vector<int>;
+HeldBy held_between(const std::vector<Held>& held, double from, double to, std::size_t dampers) {
+  HeldBy all(dampers, 0);
+  for (const Held& each : held)
+    if (each.begin <= from && to <= each.end) all[each.damper] = each.away;
+  return all;
+}
+std::size_t number_of_held(const HeldBy& held) {
+  return held.size() - std::size_t(std::ranges::count(held, 0));
+}
+
+// The times at which the motion changes, ascending: 0, each of `events`, and the end.
+std::vector<double> times_of(std::vector<double> events, double end) {
+  events.push_back(0);
+  events.push_back(end);
+  std::ranges::sort(events);
+  const auto repeated = std::ranges::unique(events);
+  events.erase(repeated.begin(), repeated.end());
+  return events;
+}
+
+// The numbers of a scene that the motion of changes depends on.
+struct Damper {
+  double nu, e;
+  double stiffness = 0, damping = 0;  // compliant walls: K and gamma of (M17.9)
+};
+struct Numbers {
+  Numbers(const Scene& scene, const Engine& engine)
+      : zeta(scene.damping_ratio), force{scene.force_amplitude, scene.force_frequency} {
+    for (const SceneDamper& each : scene.dampers) {
+      Damper damper{each.mass_ratio, each.restitution};
+      if (const auto* const exact = std::get_if<Exact>(&engine)) {
+        const Scene alone = with_alone(scene, each);
+        damper.stiffness = alone.wall_stiffness / alone.mass_ratio;
+        damper.damping = 2 * zeta_m<double>(alone, exact->calibration) * std::sqrt(damper.stiffness);
+      }
+      dampers.push_back(damper);
+    }
+  }
+  std::size_t dimensions() const { return 2 + 2 * dampers.size(); }
+
+  double zeta;
+  Forcing<double> force;
+  std::vector<Damper> dampers;
+};
+
+// Rigid walls. Of the velocities the record has those of masses that meet walls: x and x', and with them all
+// others, are followed along.
+class RigidWalls {
+ public:
+  RigidWalls(const Numbers& of, const Run& run)
+      : of_(of),
+        impacts_(*run.impacts),
+        held_(held_in(run)),
+        is_held_(of.dampers.size(), 0),
+        x_(run.scene.x0),
+        v_(run.scene.v0) {
+    for (const SceneDamper& each : run.scene.dampers) w_.push_back(each.w0);
+    std::vector<double> events = impacts_.time;
+    for (Held& each : held_) {
+      events.push_back(each.end);
+      // The limit of chattering is taken at the impact before: from then on the mass is held.
+      const auto after = std::ranges::upper_bound(impacts_.time, each.begin);
+      each.begin = after == impacts_.time.begin() ? 0 : *(after - 1);
+    }
+    times_ = times_of(std::move(events), run.end_time);
+  }
+
+  std::size_t carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) {
+    std::size_t most_held = 0;
+    for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
+      happens(times_[n], held_between(held_, times_[n], times_[n + 1], is_held_.size()), changes);
+      after_step();
+      move(times_[n], times_[n + 1] - times_[n], changes);
+      after_step();
+      most_held = std::max(most_held, number_of_held(is_held_));
+    }
+    return 2 * most_held;
+  }
+
+ private:
+  double mass_with(const HeldBy& held) const {
+    double all = 1;
+    for (std::size_t i = 0; i < held.size(); ++i)
+      if (held[i] != 0) all += of_.dampers[i].nu;
+    return all;
+  }
+  // x', x'', then y' and y'' of each damper.
+  ChangeOfState rates(double time) const {
+    const double f = of_.force.amplitude * of_.force.phase(time).sin;
+    const double a = (f - 2 * of_.zeta * v_ - x_) / mass_with(is_held_);
+    ChangeOfState all(of_.dimensions());
+    all[0] = v_, all[1] = a;
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      all[index_of_y(i)] = w_[i];
+      all[index_of_w(i)] = is_held_[i] != 0 ? 0 : -a;
+    }
+    return all;
+  }
+
+  // (M13.22), and the state.
+  void move(double begin, double duration, std::vector<ChangeOfState>& changes) {
+    const double mass = mass_with(is_held_);
+    const Oscillator<double> oscillator(of_.zeta / mass, 1 / mass);
+    const Propagator<double> p = oscillator.propagate(duration);
+    const double spring = oscillator.b() * p.s, slowed = p.c1 - 2 * oscillator.a() * p.s;  // S' - 1
+    for (ChangeOfState& s : changes) {
+      const double x = s[0], v = s[1], departs = x * p.c1 + v * p.s1, gains = v * slowed - x * spring;
+      s[0] = x * p.c + v * p.s;
+      s[1] = v * p.v - x * spring;
+      for (std::size_t i = 0; i < is_held_.size(); ++i) {
+        if (is_held_[i] != 0) continue;
+        s[index_of_y(i)] += duration * s[index_of_w(i)] - departs;
+        s[index_of_w(i)] -= gains;
+      }
+    }
+    const Forcing<double> force{of_.force.amplitude / mass, of_.force.frequency};
+    const DrivenResponse<double> driven = oscillator.respond(force, force.phase(begin), duration, p);
+    const double x = x_ * p.c + v_ * p.s + driven.d, v = v_ * p.v - x_ * spring + driven.d1;
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (is_held_[i] == 0) w_[i] -= v - v_;
+    x_ = x;
+    v_ = v;
+  }
+
+  // What impacts at a time change, and that masses are held from then on: a saltation (M13.4). Letting go of
+  // a mass changes nothing, as it has no speed.
+  void happens(double time, HeldBy held_then, std::vector<ChangeOfState>& changes) {
+    Event event = impacts_at(time);
+    event.mass_then = mass_with(held_then);
+    // Whom its wall leaves behind, but so little that it is taken for held at once, joins anew.
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      const bool stays = is_held_[i] != 0 && (event.meeting.empty() || event.is_active[i]);
+      event.role[i] = held_then[i] == 0 ? Role::flies : stays ? Role::stays_held : Role::joins;
+    }
+    const bool joins = std::ranges::find(event.role, Role::joins) != event.role.end();
+    if (event.meeting.empty() && !joins) {
+      is_held_ = std::move(held_then);
+      return;
+    }
+    ChangeOfState kick = rates(time);  // to become F^+ - D F^-
+    const std::vector<double> w_before = w_;
+    // The velocities jump by the same linear map as changes of them.
+    ChangeOfState velocities(of_.dimensions(), 0.0);
+    velocities[1] = v_;
+    for (std::size_t i = 0; i < w_.size(); ++i) velocities[index_of_w(i)] = w_[i];
+    jump(event, velocities);
+    v_ = velocities[1];
+    for (std::size_t i = 0; i < w_.size(); ++i) w_[i] = velocities[index_of_w(i)];
+    is_held_ = std::move(held_then);
+
+    jump(event, kick);
+    const ChangeOfState after = rates(time);
+    for (std::size_t k = 0; k < kick.size(); ++k) kick[k] = after[k] - kick[k];
+    for (ChangeOfState& s : changes) {
+      double earlier = 0;
+      for (const std::size_t i : event.meeting)
+        earlier += s[index_of_y(i)] / w_before[i] / double(event.meeting.size());
+      jump(event, s);
+      for (std::size_t k = 0; k < kick.size(); ++k) s[k] += kick[k] * earlier;
+    }
+  }
+
+  enum class Role { flies, joins, stays_held };  // after the event
+  struct Event {
+    std::vector<std::size_t> meeting;  // walls
+    std::vector<bool> is_active;       // gets an impulse from its wall (M17.3)
+    double weight = 1;                 // 1 and the masses that do
+    std::vector<Role> role;
+    double mass_then = 1;
+  };
+  // The impacts at a time, and who gets an impulse of those that meet walls then or are held by one. w_ is
+  // what the record says.
+  Event impacts_at(double time) {
+    Event event{{}, std::vector<bool>(w_.size(), false), 1, std::vector<Role>(w_.size(), Role::flies), 1};
+    std::vector<MassAtWall<double>> at_walls;
+    const auto [first, last] = std::ranges::equal_range(impacts_.time, time);
+    for (auto each = first; each != last; ++each) {
+      const auto row = std::size_t(each - impacts_.time.begin());
+      const auto i = std::size_t(impacts_.damper[row]);
+      w_[i] = impacts_.relative_velocity[row];
+      event.meeting.push_back(i);
+      at_walls.push_back({i, of_.dampers[i].nu, of_.dampers[i].e, w_[i] < 0 ? 1.0 : -1.0, -std::fabs(w_[i])});
+    }
+    if (event.meeting.empty()) return event;
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (is_held_[i] != 0)
+        at_walls.push_back({i, of_.dampers[i].nu, of_.dampers[i].e, double(is_held_[i]), 0.0});
+    const double jump = jump_of_velocity<double>(std::span(at_walls));
+    for (const MassAtWall<double>& each : at_walls) {
+      if (!(each.escape() + each.away * jump > 0)) continue;
+      event.is_active[each.index] = true;
+      event.weight += each.nu;
+    }
+    return event;
+  }
+  // D, of (M13.23) and then (M13.24): of a change, or of what jumps as one does.
+  void jump(const Event& event, ChangeOfState& s) const {
+    double gained = 0;
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (event.is_active[i])
+        gained += of_.dampers[i].nu * (1 + of_.dampers[i].e) * s[index_of_w(i)] / event.weight;
+    s[1] += gained;
+    double moves = 0, speeds = 0;
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
+      w = event.is_active[i] ? -of_.dampers[i].e * w : w - gained;
+      if (event.role[i] == Role::joins) {
+        moves += of_.dampers[i].nu / event.mass_then * y;
+        speeds += of_.dampers[i].nu / event.mass_then * w;
+      }
+      if (event.role[i] != Role::flies) y = w = 0;
+    }
+    s[0] += moves;
+    s[1] += speeds;
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      if (event.role[i] != Role::flies) continue;
+      s[index_of_y(i)] -= moves;
+      s[index_of_w(i)] -= speeds;
+    }
+  }
+
+  const Numbers& of_;
+  const Impacts& impacts_;
+  std::vector<Held> held_;
+  std::vector<double> times_;
+  HeldBy is_held_;
+  double x_, v_;
+  std::vector<double> w_;
+};
+
+// Compliant walls. Neither a motion's propagator nor what touch and end of a contact add depend on the state.
+class CompliantWalls {
+ public:
+  CompliantWalls(const Numbers& of, const Run& run) : of_(of), impacts_(*run.impacts), held_(held_in(run)) {
+    std::vector<double> events;
+    for (const Held& each : held_) {
+      events.push_back(each.begin);
+      events.push_back(each.end);
+    }
+    times_ = times_of(std::move(events), run.end_time);
+  }
+
+  std::size_t carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) const {
+    std::size_t most_lost = 0;
+    for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
+      for (const Held& each : held_) {
+        if (each.end == times_[n]) edge(each.damper, -1, changes);
+        if (each.begin == times_[n] && begins_by_impact(each)) edge(each.damper, 1, changes);
+      }
+      after_step();
+      const HeldBy held = held_between(held_, times_[n], times_[n + 1], of_.dampers.size());
+      const double duration = times_[n + 1] - times_[n];
+      double rate_of_loss = 2 * of_.zeta;
+      for (std::size_t i = 0; i < held.size(); ++i)
+        if (held[i] != 0) rate_of_loss += (1 + of_.dampers[i].nu) * of_.dampers[i].damping;
+      if (is_lost(rate_of_loss * duration)) most_lost = std::max(most_lost, number_of_held(held));
+      const int pieces = pieces_of(rate_of_loss * duration);
+      const Step step(of_, held, duration / pieces);
+      for (int i = 0; i < pieces; ++i) {
+        step.carry(changes);
+        after_step();
+      }
+    }
+    return 2 * most_lost;
+  }
+
+ private:
+  // A contact from the run's beginning on may go on from before.
+  bool begins_by_impact(const Held& held) const {
+    const auto [first, last] = std::ranges::equal_range(impacts_.time, held.begin);
+    for (auto each = first; each != last; ++each)
+      if (std::size_t(impacts_.damper[std::size_t(each - impacts_.time.begin())]) == held.damper) return true;
+    return false;
+  }
+  // Touch (sign 1) or end (-1) of a contact (M13.25).
+  void edge(std::size_t damper, int sign, std::vector<ChangeOfState>& changes) const {
+    const auto& [nu, e, stiffness, damping] = of_.dampers[damper];
+    for (ChangeOfState& s : changes) {
+      const double force = sign * damping * s[index_of_y(damper)];
+      s[1] += nu * force;
+      for (std::size_t i = 0; i < of_.dampers.size(); ++i) s[index_of_w(i)] -= nu * force;
+      s[index_of_w(damper)] -= force;
+    }
+  }
+
+  // What a time in which the same masses push their walls makes of changes.
+  class Step {
+   public:
+    Step(const Numbers& of, const HeldBy& held, double duration) : duration_(duration) {
+      std::vector<PushedWall<double>> walls;
+      for (std::size_t i = 0; i < held.size(); ++i) {
+        if (held[i] == 0) {
+          free_.push_back(i);
+        } else {
+          pushed_.push_back(i);
+          walls.push_back({of.dampers[i].nu, of.dampers[i].stiffness, of.dampers[i].damping, 0, 0});
+        }
+      }
+      const std::size_t n = 2 + 2 * pushed_.size();
+      if (pushed_.empty()) {
+        const Propagator<double> p = Oscillator<double>(of.zeta, 1).propagate(duration);
+        matrix_ = {{p.c, p.s}, {-p.s, p.v}};
+        departs_ = {p.c1, p.s1};
+        return;
+      }
+      // By series (M17.16) of each of the states that have one number, 1; squared as often as the duration is
+      // halved for that.
+      JointContact<double, NoForcing<double>> contact;
+      contact.set_walls(of.zeta, {}, walls);
+      int halvings = 0;
+      while (duration > contact.length()) {
+        duration /= 2;
+        ++halvings;
+      }
+      matrix_.assign(n, std::vector<double>(n));
+      for (std::size_t j = 0; j < n; ++j) {
+        for (PushedWall<double>& wall : walls) wall.q = wall.w = 0;
+        if (j >= 2) (j % 2 == 0 ? walls[j / 2 - 1].q : walls[j / 2 - 1].w) = 1;
+        contact.begin(0, j == 0 ? 1 : 0, j == 1 ? 1 : 0, walls);
+        const auto now = contact.change(duration);
+        matrix_[0][j] = now.x;
+        matrix_[1][j] = now.v;
+        for (std::size_t k = 0; k < walls.size(); ++k) {
+          const auto [q, w] = contact.overlap(k, duration);
+          matrix_[2 + 2 * k][j] = q;
+          matrix_[3 + 2 * k][j] = w;
+        }
+      }
+      for (; halvings > 0; --halvings) square();
+      departs_ = matrix_[0];
+      departs_[0] -= 1;
+      departs_[1] -= duration_;
+    }
+
+    void carry(std::vector<ChangeOfState>& changes) const {
+      std::vector<double> from(matrix_.size());
+      for (ChangeOfState& s : changes) {
+        from[0] = s[0], from[1] = s[1];
+        for (std::size_t k = 0; k < pushed_.size(); ++k) {
+          from[2 + 2 * k] = s[index_of_y(pushed_[k])];
+          from[3 + 2 * k] = s[index_of_w(pushed_[k])];
+        }
+        const double departs = product(departs_, from);
+        s[0] = product(matrix_[0], from);
+        s[1] = product(matrix_[1], from);
+        for (std::size_t k = 0; k < pushed_.size(); ++k) {
+          s[index_of_y(pushed_[k])] = product(matrix_[2 + 2 * k], from);
+          s[index_of_w(pushed_[k])] = product(matrix_[3 + 2 * k], from);
+        }
+        for (const std::size_t i : free_) {
+          s[index_of_y(i)] += duration_ * s[index_of_w(i)] - departs;
+          s[index_of_w(i)] -= s[1] - from[1];
+        }
+      }
+    }
+
+   private:
+    static double product(const std::vector<double>& row, const std::vector<double>& column) {
+      double sum = 0;
+      for (std::size_t k = 0; k < row.size(); ++k) sum += row[k] * column[k];
+      return sum;
+    }
+    void square() {
+      const std::vector<std::vector<double>> one = matrix_;
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        for (std::size_t j = 0; j < one.size(); ++j) {
+          matrix_[i][j] = 0;
+          for (std::size_t k = 0; k < one.size(); ++k) matrix_[i][j] += one[i][k] * one[k][j];
+        }
+      }
+    }
+
+    double duration_;
+    std::vector<std::size_t> pushed_, free_;
+    std::vector<std::vector<double>> matrix_;  // of x, x', then q and q' of each that pushes its wall
+    std::vector<double> departs_;              // by which x departs from its straight line
+  };
+
+  const Numbers& of_;
+  const Impacts& impacts_;
+  std::vector<Held> held_;
+  std::vector<double> times_;
+};
+
+}  // namespace
+
+std::size_t carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
+                          const std::function<void()>& after_step) {
+  const Numbers numbers(run.scene, run.engine);
+  return has_rigid_walls(run.engine) ? RigidWalls(numbers, run).carry(changes, after_step)
+                                     : CompliantWalls(numbers, run).carry(changes, after_step);
+}
+
+}  // namespace impact_damper

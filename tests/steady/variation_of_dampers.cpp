@@ -1,0 +1,284 @@
+#include "impact_damper/steady/variation_of_dampers.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "impact_damper/engines/exact_dampers.hpp"
+#include "impact_damper/engines/restitution_dampers.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/lyapunov.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+using Number = long double;
+
+// What happens in a run in extended precision, and the state that it ends in.
+struct LastState {
+  static bool wants_half_cycles() { return false; }
+  static bool wants_contacts() { return true; }
+  static bool wants_energy() { return false; }
+  double next_sample() const { return end.empty() ? until : std::numeric_limits<double>::infinity(); }
+  void half_cycle(double, double, double, double) {}
+  void impact(double, Wall, double, double) {}
+  void contact(double, double, Wall) {}
+  void sample(double, double, double, double, double) {}
+  void impact(double, Wall wall, double, double, std::int32_t damper) {
+    sequence.push_back(2 * damper + (wall == Wall::left));
+  }
+  void contact(double, double, Wall, std::int32_t damper) { sequence.push_back(-1 - damper); }
+  void sample(double, double x, double v, std::span<const PlaceInCavity> places) {
+    end = {x, v};
+    for (const PlaceInCavity& each : places) end.push_back(each.y), end.push_back(each.w);
+  }
+  EnergyBalance& energy_balance() { return unused; }
+
+  double until;
+  std::vector<double> end{};
+  std::vector<std::int32_t> sequence{};  // of all events
+  EnergyBalance unused{};
+};
+LastState last_of(const Scene& scene, const Engine& engine) {
+  LastState last{*scene.until_time};
+  if (const auto* const exact = std::get_if<Exact>(&engine)) {
+    run_exact_dampers<Number>(scene, *exact, last);
+  } else {
+    run_restitution_dampers<Number>(scene, std::get<Restitution>(engine), last);
+  }
+  return last;
+}
+
+// A scene with the `index`-th number of its initial state, in the order of ChangeOfState, another.
+Scene changed(Scene scene, std::size_t index, double by) {
+  if (index < 2) {
+    (index == 0 ? scene.x0 : scene.v0) += by;
+  } else {
+    SceneDamper& damper = scene.dampers[index / 2 - 1];
+    (index % 2 == 0 ? damper.y0 : damper.w0) += by;
+  }
+  return scene;
+}
+
+// The end's derivative by that number, by differences on both sides at h and 2h, without their errors of
+// second order; nothing where the runs are not of one sequence of events, or these errors are not small
+// beside `scale`: near grazing, and where changes grow much.
+std::optional<std::vector<double>> difference(const Scene& scene, const Engine& engine, std::size_t index,
+                                              double scale) {
+  const double h = 0x1p-19;
+  const LastState here = last_of(scene, engine);
+  std::vector<LastState> at;
+  for (const double by : {h, -h, 2 * h, -2 * h}) {
+    at.push_back(last_of(changed(scene, index, by), engine));
+    if (at.back().sequence != here.sequence) return {};
+  }
+  std::vector<double> all;
+  for (std::size_t i = 0; i < here.end.size(); ++i) {
+    const double near = (at[0].end[i] - at[1].end[i]) / (2 * h),
+                 far = (at[2].end[i] - at[3].end[i]) / (4 * h);
+    if (!(std::fabs(near - far) < 1e-6 * scale)) return {};
+    all.push_back((4 * near - far) / 3);
+  }
+  return all;
+}
+
+std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) {
+  const Run run = simulate(scene, engine, {.half_cycles = false, .impacts = true, .contacts = true});
+  REQUIRE(run.stop_reason == StopReason::time);
+  std::vector<ChangeOfState> columns(dimensions_of(scene), ChangeOfState(dimensions_of(scene), 0.0));
+  for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
+  carry_changes(run, columns, [] {});
+  return columns;
+}
+
+double coarse(double x) { return std::round(x * 0x1p20) * 0x1p-20; }
+
+Scene random_scene(std::uint64_t seed, bool rigid) {
+  reference::Random random(seed);
+  Scene scene;
+  scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 1);
+  scene.force_amplitude = coarse(random.log_uniform(0.1, 8));
+  scene.force_frequency = coarse(random.log_uniform(0.3, 3));
+  scene.x0 = coarse(random.uniform(-3, 3));
+  scene.v0 = coarse(random.uniform(-2, 2));
+  scene.until_time = random.uniform(1, 8);
+  for (int i = 0; i < 2 + int(seed % 3); ++i) {
+    SceneDamper damper;
+    damper.mass_ratio = random.log_uniform(1e-3, 1);
+    damper.restitution = random.uniform(0.1, 0.9);
+    damper.clearance = coarse(random.log_uniform(0.3, 3));
+    damper.wall_stiffness = random.log_uniform(1, 1e4);
+    damper.y0 = coarse(damper.clearance * random.uniform(0.1, 0.9));
+    damper.w0 = coarse(random.uniform(-2, 2));
+    scene.dampers.push_back(damper);
+  }
+  // At rest on a wall, where it may stick; or in it.
+  if (random.chance(0.3)) scene.dampers[0].y0 = rigid ? 0 : -0.01, scene.dampers[0].w0 = 0;
+  return scene;
+}
+
+double largest(const std::vector<ChangeOfState>& columns) {
+  double most = 1;
+  for (const ChangeOfState& column : columns)
+    for (const double entry : column) most = std::max(most, std::fabs(entry));
+  return most;
+}
+
+struct Counts {
+  int columns = 0, impacts = 0, held = 0, held_at_first = 0, kicked_off = 0, together = 0;
+};
+Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
+  Counts counts;
+  double worst = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const Scene scene = random_scene(seed, has_rigid_walls(engine));
+    const std::vector<ChangeOfState> found = derivative(scene, engine);
+    const double scale = largest(found);
+    int columns = 0;
+    for (std::size_t j = 0; j < found.size(); ++j) {
+      const auto expected = difference(scene, engine, j, scale);
+      if (!expected) continue;
+      ++columns;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const double off = std::fabs(found[j][i] - (*expected)[i]) / scale;
+        worst = std::max(worst, off);
+        if (!(off < 1e-8))
+          FAIL_CHECK("seed ", seed, ", of ", i, " by ", j, ": ", found[j][i], " should be ", (*expected)[i]);
+      }
+    }
+    counts.columns += columns;
+    if (columns == 0) continue;
+    const Run run = simulate(scene, engine, {.half_cycles = false, .impacts = true, .contacts = true});
+    counts.impacts += int(run.impacts->time.size());
+    const Contacts& contacts = *run.contacts;
+    counts.held += int(contacts.begin.size());
+    for (std::size_t n = 0; n < contacts.end.size(); ++n) {
+      counts.held_at_first += contacts.begin[n] == 0;
+      counts.kicked_off += std::ranges::count(run.impacts->time, contacts.end[n]) > 0;
+      for (std::size_t m = 0; m < n; ++m)
+        counts.together += contacts.begin[m] < contacts.end[n] && contacts.begin[n] < contacts.end[m];
+    }
+  }
+  MESSAGE(counts.columns, " columns, largest difference in units of the largest entry: ", worst, "; ",
+          counts.impacts, " impacts, ", counts.held, " times on a wall, ", counts.held_at_first,
+          " of them at first, ", counts.kicked_off, " ended by impacts, ", counts.together, " together");
+  return counts;
+}
+
+// Two dampers under a force: the first is struck in each half period, the second at times.
+Scene two_dampers() {
+  Scene scene;
+  scene.damping_ratio = 0.02;
+  scene.force_amplitude = 0.1;
+  scene.force_frequency = 0.95;
+  scene.x0 = 0.3;
+  scene.dampers.resize(2);
+  scene.dampers[0].mass_ratio = 0.05, scene.dampers[0].y0 = 0.4, scene.dampers[0].w0 = 0.2;
+  scene.dampers[1].mass_ratio = 0.03, scene.dampers[1].clearance = 1.7, scene.dampers[1].y0 = 0.7;
+  return scene;
+}
+
+double sum_of(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.0); }
+
+}  // namespace
+
+TEST_CASE("the derivative for several dampers agrees with differences in extended precision: rigid walls") {
+  const Counts counts = compare_derivatives(Restitution{}, 40);
+  CHECK(counts.columns > 200);
+  CHECK(counts.kicked_off > 100);
+  CHECK(counts.held_at_first > 3);
+  CHECK(counts.together > 20);
+}
+
+TEST_CASE(
+    "the derivative for several dampers agrees with differences in extended precision: compliant walls") {
+  const Counts counts = compare_derivatives(Exact{}, 40);
+  CHECK(counts.columns > 200);
+  CHECK(counts.held_at_first > 3);
+  CHECK(counts.together > 100);
+}
+
+TEST_CASE("a list of one damper has the exponents of the scene without a list") {
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+    for (const double frequency : {0.9, 0.5}) {
+      Scene scene = two_dampers();
+      scene.force_frequency = frequency;
+      scene.dampers.resize(1);
+      Scene alone = with_alone(scene, scene.dampers[0]);
+      alone.x0 = scene.x0, alone.y0 = scene.dampers[0].y0, alone.w0 = scene.dampers[0].w0;
+      const LyapunovExponents list = lyapunov_exponents(scene, engine, 12, 2),
+                              one = lyapunov_exponents(alone, engine, 12, 2);
+      REQUIRE(list.exponents.size() == one.exponents.size());
+      for (std::size_t i = 0; i < one.exponents.size(); ++i)
+        CHECK(list.exponents[i] == doctest::Approx(one.exponents[i]).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("the exponents of several dampers add up to the mean divergence") {
+  const Scene scene = two_dampers();
+  constexpr int periods = 60;
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+    const LyapunovExponents found = lyapunov_exponents(scene, engine, periods);
+    REQUIRE(found.exponents.size() == 6);
+    double loss = 0, duration = 0;
+    Scene period = scene;
+    for (int n = 0; n < periods; ++n) {
+      const Run run = ForcedScene(scene, engine).record_period(release_of(period));
+      duration += run.end_time;
+      loss += 2 * scene.damping_ratio * run.end_time;
+      if (has_rigid_walls(engine)) {
+        CHECK(run.contacts->begin.empty());
+        for (const std::int32_t damper : run.impacts->damper)
+          loss -= 2 * std::log(scene.dampers[std::size_t(damper)].restitution);
+      } else {
+        for (std::size_t i = 0; i < run.contacts->begin.size(); ++i) {
+          const Scene alone = with_alone(scene, scene.dampers[std::size_t(run.contacts->damper[i])]);
+          const double damping = 2 * std::sqrt(alone.wall_stiffness / alone.mass_ratio) *
+                                 zeta_m<double>(alone, Calibration::fixed_wall);
+          loss += (1 + alone.mass_ratio) * damping * (run.contacts->end[i] - run.contacts->begin[i]);
+        }
+      }
+      period = released_from(scene, state_in(*run.history, 1));
+    }
+    CHECK(sum_of(found.exponents) == doctest::Approx(-loss / duration).epsilon(1e-9));
+    for (std::size_t i = 1; i < found.exponents.size(); ++i)
+      CHECK(found.exponents[i] <= found.exponents[i - 1] + 0.05);
+  }
+}
+
+TEST_CASE("on a stable motion of two dampers the largest exponent is that of its contraction") {
+  Scene scene = two_dampers();
+  scene.damping_ratio = 0.05, scene.force_amplitude = 0.05, scene.force_frequency = 0.9, scene.x0 = 0.5;
+  scene.dampers[0].mass_ratio = 0.06, scene.dampers[1].mass_ratio = 0.04, scene.dampers[1].clearance = 1.5;
+  const Engine engine = Restitution{};
+  const SteadyState steady = ForcedScene(scene, engine).settle(release_of(scene), {});
+  REQUIRE(steady.period);
+  REQUIRE(steady.contraction);
+  MESSAGE("period ", *steady.period, ", contraction ", *steady.contraction);
+  const double expected =
+      std::log(*steady.contraction) / (2 * std::numbers::pi / scene.force_frequency * double(*steady.period));
+  const LyapunovExponents found = lyapunov_exponents(released_from(scene, steady.state), engine, 400, 100);
+  CHECK(found.exponents[0] == doctest::Approx(expected).epsilon(0.02));
+}
+
+TEST_CASE("masses that stick take two dimensions each that does so at the same time") {
+  Scene scene = two_dampers();
+  scene.force_frequency = 0.3;
+  scene.force_amplitude = 3;
+  for (SceneDamper& each : scene.dampers) each.restitution = 0.2;
+  CHECK(lyapunov_exponents(scene, Restitution{}, 20, 5).exponents.size() == 2);
+  scene.dampers[1].clearance = 1000;  // never met
+  scene.dampers[1].y0 = 500;
+  CHECK(lyapunov_exponents(scene, Restitution{}, 20, 5).exponents.size() == 4);
+}
