@@ -425,7 +425,7 @@ std::string averaged(const Request& asked) {
   Progress progress("periods", periods + discard);
   const LyapunovExponents found =
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {
-        if (done % 100 == 0) progress(done);
+        if (done % 100 == 0 || !scene.dampers.empty()) progress(done);
       });
   if (!asked.quiet) warn_of(found);
   return asked.format == Format::csv

@@ -282,3 +282,10 @@ TEST_CASE("masses that stick take two dimensions each that does so at the same t
   scene.dampers[1].y0 = 500;
   CHECK(lyapunov_exponents(scene, Restitution{}, 20, 5).exponents.size() == 4);
 }
+
+TEST_CASE("exponents are for at most a hundred dampers, which take seconds for each period") {
+  Scene scene = two_dampers();
+  scene.dampers.resize(101);
+  CHECK_THROWS_WITH_AS(lyapunov_exponents(scene, Restitution{}, 10),
+                       "dampers: must be at most 100 for exponents, got 101", InvalidArguments);
+}

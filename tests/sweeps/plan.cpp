@@ -179,6 +179,21 @@ TEST_CASE("the parts of a plan are its rows, each once") {
   }
 }
 
+TEST_CASE("exponents are for at most a hundred dampers") {
+  const auto read_with = [](int dampers) {
+    std::string list = "{}";
+    for (int i = 1; i < dampers; ++i) list += ", {}";
+    parse_plan("plan.json", R"({"schema": "impact-damper/plan/1", "quantities": ["lyapunov_exponent"],
+      "grid": [{"number": "x0", "values": [1, 2]}], "scene": {"until_amplitude": 5, "force_amplitude": 0.1, "dampers": [)" +
+                                list + "]}}");
+  };
+  read_with(100);
+  CHECK_THROWS_WITH_AS(read_with(101),
+                       "plan.json: /quantities: must not be of exponents with more than 100 dampers, as the "
+                       "scene has 101",
+                       InputError);
+}
+
 TEST_CASE("a plan that is written reads back as the same plan") {
   for (
       const std::string& text :

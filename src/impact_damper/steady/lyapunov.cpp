@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
@@ -176,6 +177,9 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   std::vector<Problem> problems;
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
+  if (scene.dampers.size() > most_dampers_with_exponents)
+    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_exponents) +
+                                       " for exponents, got " + std::to_string(scene.dampers.size())});
   require_none(problems);
   return scene.dampers.empty() ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)
                                : exponents_of(SeveralDampers(scene, engine), periods, skipped, progress);

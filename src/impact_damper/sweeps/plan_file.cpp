@@ -7,6 +7,7 @@
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/steady/lyapunov.hpp"
 #include "impact_damper/steady/response_parts.hpp"
 
 namespace impact_damper {
@@ -281,6 +282,14 @@ std::vector<Problem> problems_of(const Plan& plan) {
     worst = worst || each.quantity->experiment == Experiment::worst;
     forced = forced || each.quantity->experiment != Experiment::run;
   }
+  const bool exponents = std::ranges::any_of(plan.quantities, [](const KeptQuantity& each) {
+    return each.quantity->experiment == Experiment::lyapunov;
+  });
+  const std::size_t dampers = plan.scene.scene.dampers.size();
+  if (exponents && dampers > most_dampers_with_exponents)
+    problems.push_back({"quantities", "must not be of exponents with more than " +
+                                          std::to_string(most_dampers_with_exponents) +
+                                          " dampers, as the scene has " + std::to_string(dampers)});
   if (worst && !plan.forced.frequencies)
     problems.push_back(
         {"frequencies", "missing, the range must be given in which the worst one is looked for"});
