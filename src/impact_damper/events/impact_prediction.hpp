@@ -1,7 +1,7 @@
 // Predicts when a motion meets a wall, and validates afterwards that it met none before.
 //
 // root_isolation.hpp proves each step before it takes it, and needs many. Most impact times need none of
-// that: the series at the beginning predicts the time; one evaluation there and the series about it (M7.7)
+// that: the series at the beginning predicts the time; an evaluation there and the series about it (M7.7)
 // give it to rounding; and the two ends exclude an earlier impact (Lemma L2, M7.5, M7.6).
 // docs/mathematics.md, 7.4 and 7.5. Where the validation fails, root_isolation.hpp searches.
 #pragma once
@@ -122,8 +122,9 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
     // Halley's step alone vanishes at a turn of u, too, where u is not at the wall.
     if (near && bends_little && size * two_to_the_25 < t && t < most) {
       if (!enough(u1, t)) return {t, across, false, {}};
-      // The step is below 2^-25 t. Its second power is above rounding in u's departure, ~ u'' t^2/2, and
-      // below it in that of u', ~ u'' t.
+      // The step is below 2^-25 t. In u's departure, ~ u'' t^2/2, the term with its second power, u''
+      // step^2/2, may be above rounding. In that of u', ~ u'' t, the term u''' step^2/2 is left out: less
+      // than 2 epsilon u''' t^2.
       return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
     }
     if (i == 4 || !(size < t / 2)) break;

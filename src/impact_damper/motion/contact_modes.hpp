@@ -105,7 +105,7 @@ class ContactModes {
     }
   }
 
-  Real nu, zeta, stiffness, damping;  // nu, zeta, K, c
+  Real nu, zeta, stiffness, damping;  // nu, zeta, K = k/nu, c
   Force forcing;
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;

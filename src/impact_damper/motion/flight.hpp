@@ -209,8 +209,7 @@ class Flight {
     return met;
   }
   // Where the search for the next wall begins if the mass is released at rest and leaves with y''' alone
-  // (M7.4); but at most so far that y <= y''' t^3/6 + |y''''| t^4/24 <= y''' t^3/4 stays below a quarter of
-  // the clearance.
+  // (M7.4); else 0.
   Real begin_by_jerk(const Real& span) const {
     const auto lead = lead_of_y();
     const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];

@@ -16,7 +16,7 @@
 
 namespace impact_damper {
 
-// A wall that is pushed: the mass ratio of who pushes it, its K and c, and q and q' now.
+// A wall that is pushed: the mass ratio nu of who pushes it, its K = k/nu and c, and q and q' now.
 template <class Real>
 struct PushedWall {
   Real nu, stiffness, damping;

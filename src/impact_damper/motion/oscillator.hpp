@@ -1,5 +1,5 @@
-// u'' + 2 a u' + b u = f(t), a >= 0, b > 0 (M3.1): the one equation of which every regime is made. Flight is
-// one such oscillator, sticking another, a contact two of them (contact.hpp).
+// u'' + 2 a u' + b u = f(t), a >= 0, b > 0 (M3.1). Flight is one such oscillator, sticking another, a contact
+// two of them (contact.hpp), unless it is followed without modes (contact_without_modes.hpp).
 //
 // The propagator is (M3.2) with C and S of (M3.3). Each formula keeps its relative accuracy at and near
 // critical damping, for short times (C - 1 and S - t come without cancellation) and through resonance.
@@ -226,8 +226,9 @@ class Oscillator {
       f_next = f_after;
       d_now = d_next;
       d_next = term;
-      // (M4.3) makes the terms to come of these four numbers. Fewer are not enough: two successive terms of d
-      // vanish where omega_f^2 = b and a/sqrt(b) is sqrt(3)/2, sqrt(1/2), cos 36 or cos 72 degrees.
+      // (M4.3) makes the terms to come of these four numbers. Fewer are not enough: where omega_f^2 = b, two
+      // successive terms of d vanish, of order 6 and 7 if a/sqrt(b) is sqrt(3)/2, of order 8 and 9 if it is
+      // sqrt(1/2), of order 10 and 11 if it is cos 18 or cos 54 degrees, and so on.
       const Real force_to_come = (absolute(f_now) + absolute(f_next)) * (over[n + 2] * over[n + 3]);
       if (absolute(d_now) + absolute(d_next) + force_to_come <=
           std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
@@ -236,9 +237,9 @@ class Oscillator {
     return {d, d1 / t, t * integral};
   }
 
-  // The imaginary part of the response to exp(i omega_f t), from rest, is what a force that has just been
-  // zero makes of it: of the order omega_f where the force is slow. Each form below is used where it keeps
-  // the digits of both parts (docs/mathematics.md, section 3).
+  // The response z to exp(i omega_f t), from rest. Its imaginary part is the response to sin(omega_f t),
+  // which is of order omega_f if the force is slow. Each form below is used where both parts keep their
+  // relative accuracy (docs/mathematics.md, chapter 4).
   ComplexResponse response_to_rotation(const Real& frequency, const Real& t,
                                        const Propagator<Real>& p) const {
     const Real square = frequency * frequency;

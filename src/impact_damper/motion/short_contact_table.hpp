@@ -2,10 +2,10 @@
 // Taylor coefficients of q and of the centre a time T after the touch.
 //
 // A rounding error of the table is the same in every impact of a run. So the table is made from the equations
-// themselves (M7.9) by Taylor series. Of the column of w, which is nearly all of an impact, q and q' are
-// Extended<Real> and rounded once; all else is smaller by T^2 or more, and so are its roundings. T,
-// E = exp(-a T) and the share theta of q in the centre are given, rounded; the table is right for these
-// rounded numbers.
+// themselves (M7.9) by Taylor series. Of the column of w, which is nearly all of an impact, the large terms
+// of q and q' are Extended<Real> and rounded once. Its other terms are smaller by 2^-10, all else by a factor
+// of T or more, and so are their roundings. T, E = exp(-a T) and the share theta of q in the centre are
+// given, rounded; the table is right for these rounded numbers.
 #pragma once
 
 #include <array>
