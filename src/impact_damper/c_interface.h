@@ -12,9 +12,9 @@ extern "C" {
 
 typedef struct impact_damper_run impact_damper_run;
 
-/* Equally spaced samples of the motion, both ends included: 0 <= begin < end <= 1e12, 2 <= count <= 500000.
- * Times are dimensionless, also for a scene in units: divided by 1/Omega_n. Samples after the end of the run
- * are not there. */
+/* Equally spaced samples of the motion, both ends included: 0 <= begin < end <= 1e12, 2 <= count <= 500000,
+ * of a scene with a list of n dampers count <= 500000 / n. Times are dimensionless, also for a scene in
+ * units: divided by 1/Omega_n. Samples after the end of the run are not there. */
 typedef struct impact_damper_window {
   double begin, end;
   size_t count;

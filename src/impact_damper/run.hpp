@@ -122,8 +122,9 @@ struct EnergyBalance {
 };
 
 // Largest allowed number of rows that budgets may give a recorded section, and of samples of a history in
-// all. A history of most_samples, with all that the default budgets allow beside it, takes less than 200 MB,
-// and its file is short enough to be read (io/run_file.hpp).
+// all: of a scene with a list of n dampers most_samples / n. A history of most_samples, with all that the
+// default budgets allow beside it, takes less than 200 MB, and its file is short enough to be read
+// (io/run_file.hpp).
 inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
 // Of half cycles: each of several dampers has a column of its own. 0 dampers: the scene has no list of them.
 constexpr std::int64_t most_half_cycles(std::size_t dampers) {
@@ -148,7 +149,8 @@ struct Record {
   bool impacts = false;
   bool contacts = false;
   bool energy = false;
-  // History by times or by amplitudes, not both in one run; at most most_samples in all.
+  // History by times or by amplitudes, not both in one run; at most most_samples in all, with a list of n
+  // dampers most_samples / n.
   std::vector<HistoryWindow> history;          // ascending, not overlapping
   std::vector<AmplitudeWindow> history_below;  // of descending amplitudes
 };

@@ -50,9 +50,10 @@ struct Scene {
   // magnitudes of x0, v0, y0, w0 and force_amplitude are at most 1e12, too.)
   std::optional<double> until_time;       // stop at this time
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
-  // Several dampers in place of the one above, whose numbers (mass_ratio, restitution, wall_stiffness, y0,
-  // w0) then mean nothing. Their order changes no number of a run. At most most_dampers; empty: the one
-  // above.
+  // Several dampers in place of the one above. A run then does not use the numbers of that one (mass_ratio,
+  // restitution, wall_stiffness, y0, w0), but they must be in their ranges, and == compares them: leave them
+  // at their defaults. The order of the dampers changes no number of a run. At most most_dampers; empty: the
+  // one above.
   std::vector<SceneDamper> dampers;
 
   bool operator==(const Scene&) const = default;
@@ -112,16 +113,18 @@ std::string damper_field(std::size_t damper, std::string_view name);
 
 // All secondary masses together, divided by the primary one.
 double secondary_mass(const Scene& scene);
-// The scene's primary mass and force with one of its list of dampers alone: all that a wall's equations need.
+// The scene's primary mass and force with one of its list of dampers alone. Only masses, damping, stiffness,
+// restitution and force, which a wall's equations need, are set: clearance, initial condition and stops are
+// Scene's defaults, so it must not be simulated as it is.
 Scene with_alone(const Scene& scene, const SceneDamper& damper);
 
 // Whether who asks can treat a scene with several dampers.
 enum class DamperList { rejected, allowed };
 
 // What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
-// A NaN is always an offence. Empty means that the exact engine may run it, if it has no list of dampers.
-// simulate() checks what the others ask for besides: the restitution engine 0 <= y0 <= clearance, the
-// component element method a time step within its stability limit.
+// A NaN is always an offence. With DamperList::rejected a list of dampers is a problem itself. Empty means
+// that the exact engine may run the scene. simulate() checks what the others ask for besides: the restitution
+// engine 0 <= y0 <= clearance, the component element method a time step within its stability limit.
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers = DamperList::rejected);
 
 }  // namespace impact_damper

@@ -1,6 +1,7 @@
 // For the design of an impact damper: which clearance, which forces, and what amplitude is left under an
 // exciting force. Dimensionless as in run.hpp, forces divided by K epsilon; the equations are in
-// docs/mathematics.md, chapter 12. No function checks its arguments: scenes must be valid (problems_of).
+// docs/mathematics.md, chapter 12. No function checks its arguments: scenes must be valid (problems_of) and
+// have one damper, not a list, whose numbers are those of the scene.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,8 @@
 // Ensembles: the same scene with perturbed initial conditions, many times.
 //
-// Between the regular windows, from amplitudes of about 4 down to 0.42, the motion is chaotic: a change of
-// the last bit of an initial value changes the third digit of later amplitudes. A number that depends on such
-// a range is therefore the median over an ensemble, and the ensemble's extremes are its error bar.
+// Between the regular windows of a decay the motion is chaotic: a change of the last bit of an initial value
+// changes the third digit of later amplitudes. A number that depends on such a range is therefore the median
+// over an ensemble, and the ensemble's extremes are its error bar.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,12 @@ struct EnsembleOptions {
   Threads threads;  // that simulate the members; no result depends on it
 };
 
-// The scene itself, then members - 1 perturbed ones: x0, v0, each w0, the force's amplitude and the depth of
-// y0 in a wall (0 inside the cavity) are all multiplied by 1 + n step, n a whole number != 0 with |n| <=
-// most_steps, drawn from the seed for each member; the other sign of n is taken where a number would leave
-// its allowed range. If all these are 0, the members are equal. Equal options give equal scenes on every
-// machine. Throws std::invalid_argument if members or most_steps is below 1.
+// The scene itself, then members - 1 perturbed ones: x0, v0, each w0, the force's amplitude and, unless the
+// scene has a list of dampers, the depth of y0 in a wall (0 inside the cavity) are all multiplied by 1 + n
+// step, n a whole number != 0 with |n| <= most_steps, drawn from the seed for each member; the other sign of
+// n is taken where a number would leave its allowed range. If all these are 0, the members are equal. Equal
+// options give equal scenes on every machine. Throws std::invalid_argument if members or most_steps is
+// below 1.
 std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& options = {});
 
 // One run for each scene, in their order. If some fail, throws what simulate() throws for the first of these.

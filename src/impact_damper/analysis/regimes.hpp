@@ -1,7 +1,9 @@
 // The regimes a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and its
 // end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to the
-// first zero crossing, is less than a half cycle, so no rule uses it. "Needs" names the sections that the run
-// must have recorded; without one of them the function throws std::invalid_argument.
+// first zero crossing, is less than a half cycle, so the regimes leave it out; only first_row_below()
+// includes it. "Needs" names the sections that the run must have recorded; without one of them the function
+// throws std::invalid_argument. The scene must have one damper, not a list; of several, each by itself is
+// asked about with the run that one_of_several.hpp makes of it.
 #pragma once
 
 #include <cstdint>

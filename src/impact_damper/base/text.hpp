@@ -22,11 +22,11 @@ constexpr NumberRange within(double least, double most) { return {least, most}; 
 constexpr NumberRange at_least(double least) { return {least}; }
 constexpr NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
-// `text` on one line of UTF-8, shortened to `most` characters; a question mark for each that is no character
-// or a control character.
+// `text` on one line of UTF-8, with a question mark for each byte that is no character and each control
+// character. If it is longer than `most` characters: its first `most`, then "...".
 std::string cut(std::string_view text, std::size_t most = 60);
 std::string in_quotes(std::string_view text);  // cut, between double quotes
-// "a", "a or b", "a, b or c".
+// "a", "a or b", "a, b or c"; `last` is the word before the final item, here "or".
 std::string listed(const std::vector<std::string_view>& words, std::string_view last);
 
 // The word of `known` that was meant by `word`: what the symbol `word` stands for (nu: mass_ratio), else the

@@ -28,7 +28,8 @@ std::optional<Engine> read_engine_of_plan(ObjectReader& engine);
 void check_units(ObjectReader& root);
 // Whether a text ends with the digest of what stands before it (run_file.hpp).
 bool is_sealed(std::string_view text);
-// "provenance", and all problems of the document: without `sealed` at least that.
+// Reads "provenance", then throws InputError if anything of the document was wrong, or if it is not `sealed`:
+// its digest is then a problem, too.
 void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed);
 
 }  // namespace impact_damper

@@ -1,14 +1,15 @@
-// A strict reader for the project's JSON files: every problem of a file is found in one reading and
-// named by its JSON pointer; nothing is predicted, defaulted or overlooked in silence.
+// A strict reader for the project's JSON files: the problems of a file are found in one reading and named by
+// their JSON pointers, the first 50 of them, then how many more there are. Unknown keys are problems, too. An
+// optional key that is missing is none: its target keeps its value.
 //
-//   JsonDocument document = JsonDocument::read("data/claims.json");
-//   for (ObjectReader claim : document.root().required_objects("claims")) {
+//   JsonDocument document = JsonDocument::read("data/claims.json", claims_kind);
+//   for (ObjectReader claim : document.root().required_objects("claims", 10000)) {
 //     claim.required("id", id);                          // std::string
 //     claim.required("tolerance", tolerance, above(0));  // double, in a range
 //     claim.optional("window", window, within(2, 99));   // keeps its default when the key is missing
 //     claim.required("verdict", verdict, {Verdict::reproduced, Verdict::corrected});  // by name_of
 //   }
-//   document.finish();  // throws InputError with all that was wrong, unknown keys included
+//   document.finish();  // throws InputError with what was wrong, unknown keys included
 //
 // What is too long is rejected before it takes memory: the file by its kind, a text and an array by the rule
 // they are read with, all of a file together by the parser (json_parser.hpp).
@@ -91,7 +92,8 @@ class ObjectReader {
   }
   // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
-  // The same of each element of an array. False if it is no array of such words; nothing if it is missing.
+  // The same of each element of an array. False if it is no array of such words. If the key is missing
+  // `target` becomes empty, and the result is true.
   bool words(std::string_view key, const std::vector<std::string_view>& words,
              std::vector<std::size_t>& target);
 

@@ -1,4 +1,5 @@
-// What made this program: written into every run file, so that a result can be traced to its source.
+// What made this program: all but `tree` is written into every run file, so that a result can be traced to
+// its source.
 #pragma once
 
 #include <string_view>

@@ -53,7 +53,7 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 // The run in a file or a text. The check is strict: every key is known and none missing, the columns of a
 // section are equally long, times ascend, sums are equal to their parts, units agree with each other, and the
 // digest is that of the content. What is returned is dimensionless; "units" is for other programs. Throws
-// IoError if `file` cannot be read, InputError, with a line for everything that is not valid; these lines
+// IoError if `file` cannot be read, InputError, with a line for each of the first 50 problems; these lines
 // begin with the name of the file, or with `name`.
 Run read_run(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
 Run parse_run(const std::string& name, const std::string& text, DamperList dampers = DamperList::rejected);

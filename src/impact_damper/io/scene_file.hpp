@@ -10,7 +10,7 @@
 // never both in one file, except restitution and damping_ratio, which mean the same in both. A key that is
 // left out has the default of Scene or SceneInUnits. One of the two stops must be given, and in units mass,
 // stiffness, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
-// file may have at most 64 KiB.
+// file may have at most 1 MiB (scene_kind); a text given to parse_scene() may be longer.
 //
 // Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or
 // damper_unit_fields, in place of what the scene itself would say of its one damper:
@@ -43,7 +43,7 @@ struct SceneFile {
   std::optional<SceneInUnits> in_units;  // as it was given, if it was given so
 };
 
-// Throws IoError if `file` cannot be read, InputError, with a line for everything in it that is not valid.
+// Throws IoError if `file` cannot be read, InputError, with a line for each of the first 50 problems in it.
 // These lines begin with the name of the file, or with `name`.
 SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
 SceneFile parse_scene_file(const std::string& name, const std::string& text,

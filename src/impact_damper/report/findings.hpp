@@ -68,7 +68,8 @@ struct Findings {
   Run run;                  // half cycles, impacts, contacts, energy; history in the windows below
   std::vector<Run> others;  // perturbed initial conditions: half cycles
 
-  std::optional<double> first_amplitude;  // of the first half cycle with a peak; the others if there is one
+  // Amplitude of row 0, or of row 1 if that is larger. If it is absent, the next three mean nothing.
+  std::optional<double> first_amplitude;
   double last_amplitude = 0;
   double first_peak = 0, last_peak = 0;   // their times
   std::vector<Fall> falls;                // free motion: to a half, a tenth, a hundredth, as far as it got

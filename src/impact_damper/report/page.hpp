@@ -13,8 +13,10 @@
 
 namespace impact_damper {
 
-// `svgs`: of each of the `drawings` its picture, by name; of none, and the page has no figures. `frame` is the page with {{title}}, {{body}} and
-// the names of the `parts` that are put into it, as {{page.css}}.
+// `svgs`: one SVG text for each of the `drawings`, by Drawing::name; if empty, the page has no figures.
+// `frame` is the page with {{title}}, {{body}} and the names of the `parts` that are put into it, as
+// {{page.css}}. Throws std::invalid_argument if a text is no SVG or `frame` lacks a place, std::out_of_range
+// if a picture is missing.
 std::string page_html(const Findings& findings, const std::vector<Drawing>& drawings,
                       const std::map<std::string, std::string>& svgs, std::string_view frame,
                       const std::map<std::string, std::string_view>& parts);

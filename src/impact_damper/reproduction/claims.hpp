@@ -85,7 +85,7 @@ struct ClaimsFile {
 // The verdict recorded for runs of that engine.
 Verdict recorded_for(const Claim& claim, std::string_view engine);
 
-// Throws IoError if the file cannot be read, InputError naming everything that is not valid: unknown
+// Throws IoError if the file cannot be read, InputError with what is not valid: unknown
 // measures and measure parameters and duplicate ids among it.
 inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 ClaimsFile read_claims_file(const std::filesystem::path& file);

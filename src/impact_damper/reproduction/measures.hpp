@@ -60,14 +60,15 @@ class Runs {
         wrong_(wrong),
         responses_(std::move(responses)) {}
 
-  // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put.
+  // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put. The
+  // reference is valid until ensemble() of the same name or put() is called.
   const Run& file(const std::string& name);
   // From now on this run stands for the scene's file, and further runs of the scene start from its scene.
   void put(const std::string& scene, Run run);
   // From now on this response is the one of that name, until another run stands for its scene: then it is
   // made anew for that run's scene.
   void put(const std::string& name, Response response) { found_.insert_or_assign(name, std::move(response)); }
-  // The run file, then the other members; throws what read_members() throws.
+  // The run file, then the other members; throws what read_members() throws. Valid until put() is called.
   const std::vector<Run>& ensemble(const std::string& name);
   // The catalogue's response of that name, read, or put, or made for the scene whose run was put. Throws as
   // file() does.

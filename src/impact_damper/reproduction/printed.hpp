@@ -2,7 +2,10 @@
 // is how the paper says it, a number by its digits or a word, never what comes out here.
 //
 //   a number              half a unit of its last digit to either side: what rounding leaves open
-//   "approximately" it    a whole unit, but not more than half of the number
+//   "approximately" it    a whole unit to either side, but not more than half of the number
+//   a range               the same at each end
+//   a bound               half a unit on the side of the bound; open on the other
+//   a count               no tolerance
 //   a word                the same interval wherever the word, or one that says the same, is used
 //
 // The last digit of a whole number is the last that is not zero: "31" is of two digits, "10" of one.

@@ -50,6 +50,7 @@ struct Orbit {
 
   // Without impacts two multipliers are 1: a secondary mass at rest elsewhere rests there, too.
   bool stable() const { return !impacts.empty() && multipliers[0].modulus() < 1; }
+  // The last one. There must be one: branching_off() returns an orbit without any where it finds none.
   double residual() const { return residuals.back(); }
 };
 

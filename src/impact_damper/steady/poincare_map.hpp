@@ -33,9 +33,10 @@ struct PoincareImage {
   StopReason stop_reason = StopReason::time;  // any other: the run did not get there, and nothing else is set
   State<double> state{};                      // H^n(s)
   StateMatrix by_state{};                     // its derivative by s
-  StateVector by_frequency{}, by_amplitude{};  // by omega_f and by f0, if asked for
-  std::vector<OrbitImpact> impacts;            // in these n half periods, not mirrored
-  std::int64_t sticking = 0;                   // rigid walls: times in which the secondary mass sticks
+  // By omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked for.
+  StateVector by_frequency{}, by_amplitude{};
+  std::vector<OrbitImpact> impacts;  // in these n half periods, not mirrored
+  std::int64_t sticking = 0;         // rigid walls: times in which the secondary mass sticks
   // What tells how near the motion is to grazing, where the derivative by s has no bound (rigid walls) or a
   // kink. Absent where there is no such event.
   std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact

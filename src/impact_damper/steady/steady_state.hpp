@@ -43,7 +43,7 @@ struct SteadyRule {
   // and the largest number of the state. In (0, 1e-2].
   double tolerance = 1e-10;
   std::int64_t longest_period = 16;  // in periods of the force, 1 to 64
-  // Periods of the force after which a motion that has not repeated counts as not periodic. >= 1.
+  // Periods of the force after which a motion that has not repeated counts as not periodic. 1 to 1e9.
   std::int64_t max_periods = 5000;
   // Over so many periods a motion that is not periodic is then averaged, in ten blocks. 10 to 1e6.
   std::int64_t mean_periods = 500;
@@ -104,7 +104,8 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine,
 // several threads at a time.
 class ForcedScene {
  public:
-  // Throws InvalidArguments if there are problems_of() the two.
+  // Throws InvalidArguments if there are problems_of() the two, a list of dampers being allowed;
+  // NumericalError if this process's arithmetic is not IEEE 754's (floating_point.hpp).
   ForcedScene(const Scene& scene, const Engine& engine);
 
   // Goes on to the steady state by `rule`, and measures it.

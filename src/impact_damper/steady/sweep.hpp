@@ -28,8 +28,8 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
 // `state`, each other one from the one before; if the number is a clearance, the secondary mass is then at
-// the same fraction of it. `after_each` is called after each of them. Throws InvalidArguments if the scene is
-// not valid at a value.
+// the same fraction of it. `after_each` is called after each of them. The rule must be valid. Throws
+// InvalidArguments if the scene is not valid at a value.
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
                                              const SceneNumber& number, const std::vector<double>& values,
                                              const SteadyRule& rule, SceneState state,
@@ -42,8 +42,8 @@ struct Sweep {
 };
 
 // A sweep from each of `starts`, at the same time on several threads. `progress` is called, from any of them,
-// with the number of steady states that are done. Throws InvalidArguments if the scene is not valid at one of
-// the values.
+// with the number of steady states that are done. Throws InvalidArguments if the rule is not valid, or the
+// scene at one of the values.
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
                          const std::vector<SceneState>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress);

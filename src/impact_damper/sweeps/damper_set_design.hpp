@@ -15,7 +15,7 @@
 namespace impact_damper {
 
 struct DamperSetQuestion {
-  double release = 0;  // initial displacement of the primary mass, > 0
+  double release = 0;  // initial displacement of the primary mass, 1e-6 to 1e6
   // The range of amplitudes: upper <= 0.9 release, as the first cycles set the masses going; upper / 1000 <=
   // to <= upper / 2.
   double upper = 0, to = 0;
@@ -44,8 +44,8 @@ struct DamperSet {
   std::vector<double> expected, worst;
   LossSpread run;     // of the releases, by the restitution engine
   LossSpread varied;  // of the sets that are off at random, uniformly
-  // If more than one was asked for: one damper of all the mass, designed in the same way, and the least eta
-  // of its releases.
+  // If more than one was asked for: one damper of all the mass, designed in the same way; `least` is the
+  // smallest entry of its run.mean.
   struct One {
     double clearance = 0, least = 0;
   };

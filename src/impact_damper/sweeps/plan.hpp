@@ -30,6 +30,7 @@ struct Variable {
 
   // Its value; none where a scene in units leaves it out.
   std::optional<double> of(const SceneFile& scene) const;
+  // Sets it in scene.scene or, of a scene in units, in scene.in_units, which alone is then up to date.
   void set(SceneFile& scene, double value) const;
 };
 std::vector<Variable> variables_of(const SceneFile& scene);
@@ -87,7 +88,7 @@ struct Plan {
   ForcedRules forced;
 };
 
-// In all; at most most_runs.
+// Number of runs; most_runs + 1 if there are more than most_runs, which problems_of(plan) then reports.
 std::int64_t runs_of(const Plan& plan);
 inline constexpr std::int64_t most_runs = 1'000'000'000'000;
 

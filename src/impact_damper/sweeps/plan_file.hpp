@@ -18,7 +18,7 @@ inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
 inline constexpr FileKind plan_kind{"plan", 1 << 20};
 
 // Throws IoError if `file`, or the scene file that it names beside itself, cannot be read, InputError with a
-// line for everything in it that is not valid.
+// line for each of the first 50 problems in it.
 Plan read_plan(const std::filesystem::path& file);
 // The same of a text, whose scene stands in it.
 Plan parse_plan(const std::string& name, const std::string& text);
