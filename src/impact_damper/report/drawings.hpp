@@ -22,8 +22,8 @@ struct Drawing {
 //
 //   decay        "curve" (time, amplitude), "band" (time, least, greatest) if there is an ensemble
 //   loss         as the table of a figure of the loss factor (reproduction/series.hpp) with one curve, that
-//   of the local
-//                loss factor; closed forms are those of zeta = 0, on which 2 zeta is put; "fold" (amplitude)
+//                of the local loss factor; closed forms are those of zeta = 0, on which 2 zeta is put;
+//                "fold" (amplitude)
 //   response     forced motion: "rising" and "falling" (frequency, amplitude) of the motions that are
 //                periodic, "rising-open" and "falling-open" of those that are not, "locked" and "empty"
 //                likewise, "given" (frequency)

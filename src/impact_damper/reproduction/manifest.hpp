@@ -2,12 +2,13 @@
 // from a picture back to all that. Kept in data/reference/manifest.json, made by paper/describe:
 //
 //   {"schema": "impact-damper/manifest/1",
-//    "software": {"title": "impact-damper", "version": "0.1.0", "year": 2026, "license": "MIT", "authors":
-//    ["..."]}, "paper": {"title": "...", "note": "..."}, "figures": [{"figure": "8", "title": "...", "stamp":
-//    "1a2b3c4d · 0.1.0",
+//    "software": {"title": "impact-damper", "version": "0.1.0", "year": 2026, "license": "MIT",
+//                 "authors": ["..."]},
+//    "paper": {"title": "...", "note": "..."},
+//    "figures": [{"figure": "8", "title": "...", "stamp": "1a2b3c4d · 0.1.0",
 //                 "scenes": [{"file": "data/scenes/nu1-e06.json", "sha256": "..."}],
-//                 "tables": [{"engine": "exact", "file": "data/reference/series/fig08.dat", "sha256":
-//                             "1a2b3c4d...", "swhid": "swh:1:cnt:..."},
+//                 "tables": [{"engine": "exact", "file": "data/reference/series/fig08.dat",
+//                             "sha256": "1a2b3c4d...", "swhid": "swh:1:cnt:..."},
 //                            {"engine": "restitution", ...}, {"engine": "cem", ...}],
 //                 "csv": {"file": "data/reference/series/fig08.csv", "sha256": "..."},
 //                 "script": {"file": "figures/fig08.gp", "sha256": "..."},
@@ -58,7 +59,7 @@ struct Manifest {
   std::vector<CitedFigure> figures;
 };
 
-// Throws IoError if the file cannot be read, InputError naming everything that is not valid: a figure
+// Throws IoError if the file cannot be read, InputError with what is not valid: a figure
 // given twice and a stamp that its table does not have among it.
 inline constexpr FileKind manifest_kind{"manifest", 1 << 20};
 Manifest read_manifest(const std::filesystem::path& file);

@@ -41,12 +41,12 @@ struct Basin {
 
 // A point of the map is decided as soon as
 // - each secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
-// - over initial values: it is within the capture radius of a known motion, and nearer a period of that
-// later.
-//   Known are those that a coarse grid of points ends in, each followed until it is steady by `rule`; or
+// - over initial values: it is within the capture radius of a known motion, and nearer to it a period of that
+//   motion later. Known are those that a coarse grid of points ends in, each followed until it is steady by
+//   `rule`; or
 // - it is steady by `rule`.
-// No result depends on the number of threads. Throws InvalidArguments if the scene is not valid at a corner
-// of the map.
+// No result depends on the number of threads. Throws InvalidArguments if the rule is not valid, or the scene
+// at any point of the map: before anything is simulated if the point is on the first row or column.
 Basin basin(const Scene& scene, const Engine& engine, const Axis& first, const Axis& second,
             const BasinRule& rule, const Threads& threads,
             const std::function<void(std::int64_t done)>& progress);

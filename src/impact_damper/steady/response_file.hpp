@@ -91,7 +91,9 @@ struct LyapunovResponse {
   static constexpr std::string_view kind = "lyapunov";
   Scene scene;
   Engine engine;
-  std::int64_t periods = 0, discard = 0;  // of the force: averaged over, and before these
+  // Of the force: averaged over, 10 to 1e9, and before these, 0 to 1e9. The reader
+  // rejects fewer.
+  std::int64_t periods = 0, discard = 0;
   LyapunovExponents found;
 };
 
@@ -112,7 +114,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
 // The response in a file or a text. The check is strict: every key is known and none missing, columns are
 // equally long, whatever follows from what was asked for (the axis's values, the linear amplitudes) is so,
 // and the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a line for
-// everything that is not valid; these lines begin with the name of the file, or with `name`.
+// each of the first 50 problems; these lines begin with the name of the file, or with `name`.
 Response read_response(const std::filesystem::path& file);
 Response parse_response(const std::string& name, const std::string& text);
 
@@ -122,11 +124,9 @@ Response parse_response(const std::string& name, const std::string& text);
 //     impacts take out; a symmetric motion strikes both walls equally often; as many periods are measured as
 //     the rule says; only a motion that is not periodic scatters; |x| does not exceed the amplitude;
 //   basin: no motion without impacts but the idle one; a symmetric one strikes both walls equally often;
-//   those
-//     that most points end in come first;
-//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both walls
-//   equally often; |x| does not exceed the amplitude; branches and events
-//     refer to what is there;
+//     those that most points end in come first;
+//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both
+//     walls equally often; |x| does not exceed the amplitude; branches and events refer to what is there;
 //   lyapunov: as many exponents as errors, none unless the run was completed.
 std::vector<Problem> inconsistencies_of(const Response& response);
 
