@@ -128,6 +128,20 @@ TEST_CASE("a share of another plan, part or program is not gone on with") {
   CHECK(read_text(file) == whole);
 }
 
+TEST_CASE("a file that is no share is left as it was, also without an end of line") {
+  const Folder folder;
+  const fs::path file = folder.path / "t";
+  for (const std::string text : {"my notes", "my notes\n", "#", "{}"}) {
+    put(file, text);
+    if (text == "#") {  // as far as it goes, the head of a share
+      CHECK_NOTHROW(ShareWriter(file, head_of()));
+      continue;
+    }
+    CHECK_THROWS_AS(ShareWriter(file, head_of()), InputError);
+    CHECK(read_text(file) == text);
+  }
+}
+
 TEST_CASE("two cannot write one share at a time") {
   const Folder folder;
   const ShareHead head = head_of();
@@ -191,6 +205,7 @@ TEST_CASE("parts that are missing, doubled, unfinished or of something else are 
   const fs::path table = folder.path / "t.csv";
   const fs::path a = made(table, 1, 3), b = made(table, 2, 3), c = made(table, 3, 3);
   CHECK(problem_of_join({a, c}, table) == table.string() + ": part 2 of 3 is missing");
+  CHECK_THROWS_AS(join_shares({}, table), InvalidArguments);
   CHECK(problem_of_join({b}, table) ==
         table.string() + ": part 1 of 3 is missing\n" + table.string() + ": part 3 of 3 is missing");
   const fs::path copy = folder.path / "copy";

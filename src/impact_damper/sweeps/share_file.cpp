@@ -147,6 +147,8 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
   std::string line;
   std::getline(there, line);
   const bool is_cut = there.eof();  // within its first line, or before it
+  if (is_cut && !first.starts_with(line))
+    reject(file, "must be a part of this sweep, got another file; remove it, or choose another --output");
   Whole whole;
   if (!is_cut) {
     if (line != first) {
@@ -216,12 +218,13 @@ std::string description_of_table(const ShareHead& head, std::uint64_t bytes, con
 }
 
 void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
+  if (files.empty()) throw InvalidArguments(std::vector<Problem>{{"files", "at least one must be given"}});
   // Sorted by part; what is wrong with all of them together is told before any is read through.
   std::vector<std::pair<fs::path, ShareHead>> shares;
   shares.reserve(files.size());
   for (const fs::path& file : files) shares.emplace_back(file, open(file).head);
   std::ranges::stable_sort(shares, {}, [](const auto& share) { return share.second.part; });
-  ShareHead expected = shares.at(0).second;
+  ShareHead expected = shares[0].second;
   std::vector<std::string> problems;
   for (const auto& [file, head] : shares) {
     expected.part = head.part;

@@ -34,8 +34,10 @@ struct ShareHead {
 // FOLDER/NAME.part-K-of-N of a table FOLDER/NAME.
 std::filesystem::path share_file(const std::filesystem::path& table, std::int64_t part, std::int64_t parts);
 
-// Goes on with the share in `file`, or begins it. Throws IoError if it cannot be read or written or is being
-// written by another process, InputError if it is of another plan, part or program.
+// Goes on with the share in `file`, or begins it. What stands after the last digest that is right is deleted
+// and made anew, also all of a file that ends within the head of this share. Throws IoError if it cannot be
+// read or written or is being written by another process, InputError if it is of another plan, part or
+// program, or no share; then it is left as it was.
 class ShareWriter {
  public:
   ShareWriter(const std::filesystem::path& file, const ShareHead& head);
@@ -60,8 +62,8 @@ class ShareWriter {
 
 // Joins the shares of one plan, in any order, into the table of `table`, and writes beside it what it is:
 // TABLE.json. CSV by RFC 4180, or HDF5 if is_hdf5(table). Throws InputError, leaving both as they were,
-// unless every part is there once, whole, and of one plan and program. The same bytes, whatever the number of
-// parts; of HDF5 with one version of its library.
+// unless every part is there once, whole, and of one plan and program; InvalidArguments without `files`. The
+// same bytes, whatever the number of parts; of HDF5 with one version of its library.
 void join_shares(const std::vector<std::filesystem::path>& files, const std::filesystem::path& table);
 
 // That text, schema "impact-damper/sweep/1".
