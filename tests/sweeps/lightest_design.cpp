@@ -336,5 +336,8 @@ TEST_CASE("what is wrong with a question is told") {
   question = mast();
   question.clearance = {50, 25};
   CHECK(fields(question) == Names{"clearance"});
+  question = mast();
+  question.neighbours = 0;
+  CHECK(fields(question) == Names{"neighbours"});
   CHECK_THROWS_AS(find_designs(question, 1, ignore), InvalidArguments);
 }

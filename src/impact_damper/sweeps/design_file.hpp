@@ -8,7 +8,8 @@
 
 namespace impact_damper {
 
-// `dimensionless`: the scene was made by with_unit_scales().
+// `dimensionless`: the scene was made by with_unit_scales(). The question's scene must have secondary_mass
+// and clearance.
 std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless);
 
 // What an answer's numbers are in.
@@ -16,6 +17,7 @@ struct DesignUnits {
   std::string_view mass, length, time, velocity, force;
   double force_scale = 1;  // the answer's forces times it are in `force`
 };
+// `dimensionless` as above; the question's scene must then have a clearance.
 DesignUnits units_of(const DesignQuestion& question, bool dimensionless);
 
 // The plan that `sweep` makes the neighbours of a design with, as the text of its file.

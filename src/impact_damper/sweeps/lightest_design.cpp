@@ -258,6 +258,7 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
   demand(question.time > 0, "time", "must be > 0, got " + number_text(question.time));
   demand(question.share >= 0.5 && question.share <= 0.999, "share",
          "must be >= 0.5 and <= 0.999, got " + number_text(question.share));
+  demand(question.neighbours >= 1, "neighbours", "must be >= 1, got " + std::to_string(question.neighbours));
   if (!problems.empty()) return problems;
 
   const auto value_of = [&](const Variable& variable) -> DesignRange {

@@ -26,16 +26,17 @@ struct DesignRange {
 };
 
 struct DesignQuestion {
-  // A free decay; secondary mass, clearance and stops are not looked at.
+  // A free decay, with the secondary mass released at the left wall. Secondary mass, clearance and stops are
+  // not used by the search, but design_text() needs the first two.
   SceneInUnits scene;
   Engine engine;
-  double amplitude = 0;  // to come below, mm
-  double time = 0;       // s
+  double amplitude = 0;  // to come below, mm: > 0 and < |initial displacement|
+  double time = 0;       // s, > 0
   // Of what the tolerances make of a design this share must do so, 0.5 <= share <= 0.999.
   double share = 0.99;
   DesignRange secondary_mass, clearance;
   std::vector<SampledNumber> tolerances;  // uniform about the design's value; at least one
-  std::int64_t neighbours = 10'000;       // with which a design is checked
+  std::int64_t neighbours = 10'000;       // >= 1, with which a design is checked
   std::int64_t seed = 1;                  // >= 0; of the search, seed + 1 of the check
 };
 inline constexpr double most_mass_ratio = 0.2, least_mass_ratio = 0.005;  // of the default range
@@ -60,7 +61,9 @@ struct Design {
 
   bool operator==(const Design&) const = default;
 };
-// The design as a scene that ends below the amplitude, or at `time`.
+// The design as a scene that ends below the amplitude, or at `time`. Of the result only in_units is set: the
+// dimensionless scene is dimensionless(*file.in_units). The same holds for the scenes of the two plans below,
+// whose question must be valid.
 SceneFile scene_of_design(const DesignQuestion& question, const Design& design, double time);
 // What the search runs: all pairs of masses and clearances, each with the same draws.
 Plan search_plan(const DesignQuestion& question, double time, std::vector<double> masses,
