@@ -23,6 +23,7 @@ void check_numbers(const std::vector<double>& found, const std::vector<double>& 
 TEST_CASE("cells end halfway between two places, and as far beyond the first and the last") {
   check_numbers(MapAxis{.values = {5, 10, 20}}.edges(), {2.5, 7.5, 15, 25});
   check_numbers(MapAxis{.values = {1, 4, 64}, .spacing = Spacing::logarithmic}.edges(), {0.5, 2, 16, 256});
+  CHECK_THROWS_AS(MapAxis{.values = {5}}.edges(), InvalidArguments);
 }
 
 TEST_CASE("levels are round and lie between the least and the greatest value") {

@@ -112,6 +112,7 @@ double MapAxis::value_at(double place) const {
 }
 
 std::vector<double> MapAxis::edges() const {
+  if (values.size() < 2) throw InvalidArguments(std::vector<Problem>{{"values", "must be at least two"}});
   const std::size_t last = values.size() - 1;
   std::vector<double> edges;
   const auto halfway = [&](std::size_t i) { return (place(values[i]) + place(values[i + 1])) / 2; };

@@ -35,7 +35,7 @@ struct MapAxis {
   double place(double value) const;
   double value_at(double place) const;
   // The limits of the cells, one more than there are values: halfway between two places, and as far beyond
-  // the first and the last.
+  // the first and the last. Throws InvalidArguments with fewer than two values.
   std::vector<double> edges() const;
 };
 
@@ -68,7 +68,7 @@ struct Map {
   const Cell& at(std::size_t ix, std::size_t iy) const { return cells[iy * x.values.size() + ix]; }
 };
 
-// Collects the rows of a table.
+// Collects the rows of a table. `plan` must outlive it.
 class MapMaker {
  public:
   MapMaker(const Plan& plan, const MapQuestion& question);
