@@ -182,4 +182,5 @@ TEST_CASE("a record without a decay, or with too few samples in a cycle, is reje
                        InputError);
   CHECK_THROWS_WITH_AS(reduced("r", made({.samples_per_second = 40})),
                        doctest::Contains("r: must have at least 20 samples in a cycle, got"), InputError);
+  CHECK_THROWS_WITH_AS(reduced("r", {}), "r: must have at least 64 samples, got 0", InputError);
 }

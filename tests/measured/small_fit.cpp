@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "impact_damper/measured/comparison.hpp"
 #include "impact_damper/measured/decay_fit.hpp"
 #include "made_records.hpp"
 
@@ -132,4 +133,41 @@ TEST_CASE("a small fit finds what a record was made with, for any number of thre
   CHECK_FALSE(none.fit.has_value());
   CHECK(none.problem ==
         "a fit of 2 numbers needs 3 ranges of amplitude with a known loss factor, the record has 2");
+}
+
+TEST_CASE("a fit for which an option is out of range, or of a list of dampers, is rejected") {
+  Reduction reduction;
+  const auto fields = [&](const SceneInUnits& scene, const FitOptions& options) {
+    std::vector<std::string> names;
+    try {
+      fit_decay(scene, Restitution{}, reduction, {}, options, [](const std::string&) {});
+    } catch (const InvalidArguments& error) {
+      for (const Problem& problem : error.problems()) names.push_back(problem.field);
+    }
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(fields(heavy(), {}).empty());
+  FitOptions options;
+  options.parameters.push_back(options.parameters.front());
+  options.runs = 0, options.level = std::nan("");
+  CHECK(fields(heavy(), options) == Names{"parameters", "runs", "level"});
+  options = {};
+  options.parameters.clear();
+  CHECK(fields(heavy(), options) == Names{"parameters"});
+  SceneInUnits list = heavy();
+  list.secondary_mass.reset(), list.clearance.reset(), list.restitution.reset();
+  list.dampers = {{.secondary_mass = 4, .clearance = 8}};
+  CHECK(fields(list, {}) == Names{"dampers"});
+
+  // The same before a comparison begins.
+  const auto compare = [&](const SceneInUnits& scene, const ComparisonOptions& with) {
+    compared("r", {}, "s", scene, Restitution{}, with, [](const std::string&) {});
+  };
+  CHECK_THROWS_AS(compare(list, {}), InvalidArguments);
+  CHECK_THROWS_AS(compare(heavy(), {.releases = 0}), InvalidArguments);
+}
+
+TEST_CASE("a simulated decay needs a time at which it ends") {
+  CHECK_THROWS_AS(simulated_half_cycles({.until_amplitude = 1}, Restitution{}), InvalidArguments);
 }

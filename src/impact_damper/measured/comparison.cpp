@@ -158,6 +158,10 @@ void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays&
 Comparison compared(const std::string& record_name, const MeasuredRecord& record,
                     const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
                     const ComparisonOptions& options, const std::function<void(const std::string&)>& tell) {
+  std::vector<Problem> problems = problems_of_fit(scene, options.fit);
+  if (options.releases < 1)
+    problems.push_back({"releases", "must be >= 1, got " + std::to_string(options.releases)});
+  require_none(problems);
   Comparison c;
   c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
   c.reduction = reduced(record_name, record);

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <span>
 
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/sweeps/sampling.hpp"
 
@@ -634,9 +636,25 @@ Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double 
 
 // --- The fit ----------------------------------------------------------------------------------------------
 
+std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options) {
+  std::vector<Problem> problems;
+  const auto& chosen = options.parameters;
+  for (auto each = chosen.begin(); each != chosen.end(); ++each)
+    if (std::find(chosen.begin(), each, *each) != each)
+      problems.push_back({"parameters", "must be different, got " + in_quotes(name_of(*each)) + " twice"});
+  if (options.runs < 1) problems.push_back({"runs", "must be >= 1, got " + std::to_string(options.runs)});
+  if (!(options.level > 0))
+    problems.push_back({"level", "must be a number > 0, got " + number_text(options.level)});
+  if (!scene.dampers.empty()) problems.push_back({"dampers", "must be one damper, without a list"});
+  return problems;
+}
+
 FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
                     const std::vector<LossBin>& bins, const FitOptions& options,
                     const std::function<void(const std::string&)>& tell) {
+  std::vector<Problem> problems = problems_of_fit(scene, options);
+  if (options.parameters.empty()) problems.push_back({"parameters", "at least one must be given"});
+  require_none(problems);
   const std::size_t count = options.parameters.size(), nodes = nodes_for(count);
   if (bins.size() < count + 1)
     return {std::nullopt, "a fit of " + std::to_string(count) + " numbers needs " +

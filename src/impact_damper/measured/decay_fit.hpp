@@ -28,8 +28,9 @@ struct LossBin {
 // failed. Empty if the record holds too little.
 std::vector<LossBin> loss_bins(const Reduction& reduction);
 
-// The same of a simulated decay, the logarithms of eta, of the bins before the first one that has too few
-// rows or no loss. Amplitudes in units of `length` mm.
+// ln eta of each bin in a simulated decay, up to the first bin with no loss or for which the decay has too
+// few rows left. A bin with fewer than four rows also uses neighbouring rows. Amplitudes in units of `length`
+// mm.
 std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins);
 
 enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
@@ -45,11 +46,12 @@ Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double 
                   std::int64_t draw);
 
 struct FitOptions {
+  // Different ones, at most 4; at least 1 for fit_decay().
   std::vector<FitParameter> parameters{FitParameter::restitution, FitParameter::damping_ratio,
                                        FitParameter::clearance};
-  std::int64_t runs = 800;  // of each stage; twice as many in the last
+  std::int64_t runs = 800;  // >= 1, of each stage; twice as many in the last
   std::uint64_t seed = 1;
-  double level = 2.705543;  // of (M16.8): intervals of 90 %
+  double level = 2.705543;  // > 0, of (M16.8): intervals of 90 %
   Threads threads;
 };
 
@@ -80,8 +82,11 @@ struct FitResult {
   std::optional<DecayFit> fit;
   std::string problem;
 };
-// `tell` is told how far it is. The scene must be valid and free of force. No result depends on the number of
-// threads.
+// What is wrong with the options, and with a scene that has a list of dampers; `parameters` may be empty.
+std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options);
+// `tell`, which must not be empty, is told how far it is. The scene must be valid, without a force and with
+// one damper, not a list; bins of loss_bins(). No result depends on the number of threads. Throws
+// InvalidArguments for a list of dampers and for options out of range.
 FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
                     const std::vector<LossBin>& bins, const FitOptions& options,
                     const std::function<void(const std::string&)>& tell);

@@ -317,6 +317,10 @@ void find_middle_line(std::vector<Candidate>& all) {
 Reduction reduced(const std::string& name, const MeasuredRecord& record, const ReductionOptions& options) {
   Reduction result;
   const std::vector<double>&time = record.time, &value = record.value;
+  const auto reject = [&](const std::string& what) { throw InputError(std::vector{name + ": " + what}); };
+  if (time.size() < least_samples)
+    reject("must have at least " + std::to_string(least_samples) + " samples, got " +
+           std::to_string(time.size()));
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
   const double step = median_of(std::move(steps));
@@ -327,7 +331,6 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   constexpr double above_noise = 5;
   const std::vector<Extreme> extremes =
       extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
-  const auto reject = [&](const std::string& what) { throw InputError(std::vector{name + ": " + what}); };
   const std::string needed = std::to_string(options.least_half_cycles);
   if (extremes.size() < options.least_half_cycles)
     reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
@@ -458,6 +461,7 @@ HalfCycles half_cycles_of(const Reduction& reduction, double length, double time
 }
 
 HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine, const ReductionOptions& options) {
+  if (!scene.until_time) throw InvalidArguments(std::vector<Problem>{{"until_time", "must be given"}});
   constexpr double samples_per_cycle = 32;
   const double step = 2 * half_turn<double>() / samples_per_cycle;
   const double wanted = whole_above(std::min(*scene.until_time / step, double(most_samples - 1)));

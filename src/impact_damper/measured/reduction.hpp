@@ -43,8 +43,8 @@ struct Reduction {
   bool ends_in_noise = false;
 };
 
-// Throws InputError, naming `name`, if there are fewer than least_half_cycles half cycles that count, or too
-// few samples in each.
+// Throws InputError, naming `name`, if there are fewer than least_samples samples (record.hpp), fewer than
+// least_half_cycles half cycles that count, or too few samples in each.
 Reduction reduced(const std::string& name, const MeasuredRecord& record,
                   const ReductionOptions& options = {});
 
@@ -52,8 +52,9 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record,
 // crossings and impacts are not known.
 HalfCycles half_cycles_of(const Reduction& reduction, double length, double time);
 
-// The peaks that the same fit finds in a simulated free decay with x0 > 0: an impact near a peak moves both
-// alike. Row 0, which is less than a half cycle, is left out.
+// The peaks that the same fit finds in a simulated free decay with x0 > 0 and until_time: an impact near a
+// peak moves both alike. Row 0, which is less than a half cycle, is left out. The fit is made of at most
+// most_samples samples; later peaks are the engine's own. Throws InvalidArguments without until_time.
 HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine,
                                  const ReductionOptions& options = {});
 
