@@ -195,7 +195,7 @@ TEST_CASE(
   list.force_amplitude = 0.2;
   list.dampers[1].clearance = 0.7;
   CHECK(*kept(list, {"lyapunov_exponent"}, Exact{}, scales, rules).numbers[0] ==
-        lyapunov_exponents(list, Exact{}, 20, 3).exponents[0] / 0.2);
+        doctest::Approx(lyapunov_exponents(list, Exact{}, 20, 3).exponents[0] / 0.2).epsilon(1e-12));
 }
 
 TEST_CASE("a motion that still grows has no steady amplitude, alone or among others, and says so") {
