@@ -169,9 +169,7 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
         counts.together += contacts.begin[m] < contacts.end[n] && contacts.begin[n] < contacts.end[m];
     }
   }
-  MESSAGE(counts.columns, " columns, largest difference in units of the largest entry: ", worst, "; ",
-          counts.impacts, " impacts, ", counts.held, " times on a wall, ", counts.held_at_first,
-          " of them at first, ", counts.kicked_off, " ended by impacts, ", counts.together, " together");
+  CHECK(worst > 0);  // something was compared
   return counts;
 }
 
@@ -265,7 +263,6 @@ TEST_CASE("on a stable motion of two dampers the largest exponent is that of its
   const SteadyState steady = ForcedScene(scene, engine).settle(release_of(scene), {});
   REQUIRE(steady.period);
   REQUIRE(steady.contraction);
-  MESSAGE("period ", *steady.period, ", contraction ", *steady.contraction);
   const double expected =
       std::log(*steady.contraction) / (2 * std::numbers::pi / scene.force_frequency * double(*steady.period));
   const LyapunovExponents found = lyapunov_exponents(released_from(scene, steady.state), engine, 400, 100);
