@@ -1,11 +1,13 @@
 #include "impact_damper/steady/lyapunov.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 #include <string>
 
 #include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
 #include "impact_damper/steady/run_with_variation.hpp"
 #include "impact_damper/steady/steady_state.hpp"

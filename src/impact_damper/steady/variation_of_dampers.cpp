@@ -54,8 +54,7 @@ std::vector<double> times_of(std::vector<double> events, double end) {
   events.push_back(0);
   events.push_back(end);
   std::ranges::sort(events);
-  const auto repeated = std::ranges::unique(events);
-  events.erase(repeated.begin(), repeated.end());
+  events.erase(std::unique(events.begin(), events.end()), events.end());
   return events;
 }
 
@@ -214,7 +213,7 @@ class RigidWalls {
   Event impacts_at(double time) {
     Event event{{}, std::vector<bool>(w_.size(), false), 1, std::vector<Role>(w_.size(), Role::flies), 1};
     std::vector<MassAtWall<double>> at_walls;
-    const auto [first, last] = std::ranges::equal_range(impacts_.time, time);
+    const auto [first, last] = std::equal_range(impacts_.time.begin(), impacts_.time.end(), time);
     for (auto each = first; each != last; ++each) {
       const auto row = std::size_t(each - impacts_.time.begin());
       const auto i = std::size_t(impacts_.damper[row]);
@@ -308,7 +307,7 @@ class CompliantWalls {
  private:
   // A contact from the run's beginning on may go on from before.
   bool begins_by_impact(const Held& held) const {
-    const auto [first, last] = std::ranges::equal_range(impacts_.time, held.begin);
+    const auto [first, last] = std::equal_range(impacts_.time.begin(), impacts_.time.end(), held.begin);
     for (auto each = first; each != last; ++each)
       if (std::size_t(impacts_.damper[std::size_t(each - impacts_.time.begin())]) == held.damper) return true;
     return false;
