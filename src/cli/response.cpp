@@ -9,6 +9,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
@@ -356,10 +357,17 @@ void warn_of(const Branches& found, const BranchRule& rule) {
          " branches; --max-branches raises that");
 }
 
-void warn_of(const LyapunovExponents& found) {
+// numbers: of the state.
+void warn_of(const LyapunovExponents& found, std::size_t numbers) {
   if (found.stop_reason != StopReason::time)
     warn("there are no exponents: the run ended early, by " + std::string(name_of(found.stop_reason)) +
          " of the engine; its option raises that");
+  if (const std::size_t given = found.exponents.size(); 0 < given && given < numbers)
+    warn(std::to_string(given) + " of " + std::to_string(numbers) +
+         " exponents are given: the others are minus infinity, because masses stick, or too far below to be "
+         "told");
+  if (found.one_sided)
+    warn("several masses meet walls at one instant: the exponents are of changes that keep them together");
 }
 
 // What the command line asks for, checked.
@@ -427,7 +435,7 @@ std::string averaged(const Request& asked) {
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {
         if (done % 100 == 0 || !scene.dampers.empty()) progress(done);
       });
-  if (!asked.quiet) warn_of(found);
+  if (!asked.quiet) warn_of(found, scene.dampers.empty() ? 4 : dimensions_of(scene));
   return asked.format == Format::csv
              ? lyapunov_csv(found, asked.units)
              : response_text(LyapunovResponse{scene, asked.engine, periods, discard, found},

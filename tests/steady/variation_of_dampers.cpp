@@ -286,3 +286,38 @@ TEST_CASE("exponents are for at most a hundred dampers, which take seconds for e
   CHECK_THROWS_WITH_AS(lyapunov_exponents(scene, Restitution{}, 10),
                        "dampers: must be at most 100 for exponents, got 101", InvalidArguments);
 }
+
+TEST_CASE("a mass that sticks before the periods that are averaged takes nothing away") {
+  // Pressed to their walls at the release, and not again.
+  Scene scene = two_dampers();
+  scene.x0 = -0.3;
+  for (SceneDamper& each : scene.dampers) each.y0 = each.w0 = 0;
+  CHECK(lyapunov_exponents(scene, Restitution{}, 50).exponents.size() == 2);
+  const LyapunovExponents later = lyapunov_exponents(scene, Restitution{}, 50, 100);
+  REQUIRE(later.exponents.size() == 6);
+  int impacts = 0;
+  Scene period = scene;
+  const ForcedScene forced(scene, Restitution{});
+  for (int n = 0; n < 150; ++n) {
+    const Run run = forced.record_period(release_of(period));
+    if (n >= 100) impacts += int(run.impacts->time.size());
+    period = released_from(scene, state_in(*run.history, 1));
+  }
+  const double expected = -2 * 0.02 + 2 * impacts * std::log(0.6) / (50 * forced.period());
+  CHECK(sum_of(later.exponents) == doctest::Approx(expected).epsilon(1e-9));
+  CHECK_FALSE(later.one_sided);
+
+  Scene alone = with_alone(scene, scene.dampers[0]);
+  alone.x0 = scene.x0;
+  CHECK(lyapunov_exponents(alone, Restitution{}, 50).exponents.size() == 2);
+  const LyapunovExponents of_one = lyapunov_exponents(alone, Restitution{}, 50, 100);
+  REQUIRE(of_one.exponents.size() == 4);
+}
+
+TEST_CASE("that several masses meet walls at one instant is told") {
+  Scene scene = two_dampers();
+  scene.dampers[1] = scene.dampers[0];
+  CHECK(lyapunov_exponents(scene, Restitution{}, 20, 5).one_sided);
+  scene.dampers[1].y0 += 1e-6;
+  CHECK_FALSE(lyapunov_exponents(scene, Restitution{}, 20, 5).one_sided);
+}

@@ -41,6 +41,25 @@ void orthonormalise(Columns& columns, std::size_t j, double& logarithm_of_stretc
   logarithm_of_stretch += logarithm(size);
 }
 
+// Puts changes into the columns from `first` on, which have been lost, that are orthonormal to the others.
+template <class Columns>
+void replace_lost(Columns& columns, std::size_t first) {
+  for (std::size_t j = first; j < columns.size(); ++j) {
+    auto& column = columns[j];
+    double largest = 0;
+    for (std::size_t k = 0; k < column.size(); ++k) {  // of the units the one that is least along the others
+      double left = 1;
+      for (std::size_t i = 0; i < j; ++i) left -= columns[i][k] * columns[i][k];
+      if (!(left > largest)) continue;
+      largest = left;
+      std::fill(column.begin(), column.end(), 0.0);
+      column[k] = 1;
+    }
+    double unused = 0;
+    orthonormalise(columns, j, unused);
+  }
+}
+
 // Four orthonormal changes of the state, and the logarithms of what they have been stretched by.
 class Frame final : public VariationReceiver {
  public:
@@ -52,7 +71,11 @@ class Frame final : public VariationReceiver {
     if (loss > 36.0 * most) joined();
     return loss < most ? 1 + int(loss) : most;
   }
-  void forget_logarithms() { logarithms_ = {}; }
+  void begin_to_average() {
+    replace_lost(columns_, dimensions_);
+    dimensions_ = 4;
+    logarithms_ = {};
+  }
   const StateVector& logarithms() const { return logarithms_; }
   std::size_t dimensions() const { return dimensions_; }
 
@@ -86,9 +109,10 @@ class OneDamper {
       period_.x0 = end.x, period_.v0 = end.v, period_.y0 = end.y, period_.w0 = end.w;
     return run.stop_reason;
   }
-  void forget_logarithms() { frame_.forget_logarithms(); }
+  void begin_to_average() { frame_.begin_to_average(); }
   std::span<const double> logarithms() const { return frame_.logarithms(); }
   std::size_t dimensions() const { return frame_.dimensions(); }
+  static bool one_sided() { return false; }
 
  private:
   const Engine& engine_;
@@ -109,16 +133,23 @@ class SeveralDampers {
   StopReason pass_period() {
     const Run run = scene_.record_period(state_);
     if (run.stop_reason != StopReason::time) return run.stop_reason;
-    lost_ = std::max(lost_, carry_changes(run, columns_, [&] {
-                       for (std::size_t j = 0; j < columns_.size(); ++j)
-                         orthonormalise(columns_, j, logarithms_[j]);
-                     }));
+    const Carried carried = carry_changes(run, columns_, [&] {
+      for (std::size_t j = 0; j < columns_.size(); ++j) orthonormalise(columns_, j, logarithms_[j]);
+    });
+    lost_ = std::max(lost_, carried.lost);
+    one_sided_ = one_sided_ || carried.one_sided;
     state_ = state_in(*run.history, 1);
     return run.stop_reason;
   }
-  void forget_logarithms() { logarithms_.assign(logarithms_.size(), 0.0); }
+  void begin_to_average() {
+    replace_lost(columns_, dimensions());
+    lost_ = 0;
+    one_sided_ = false;
+    logarithms_.assign(logarithms_.size(), 0.0);
+  }
   std::span<const double> logarithms() const { return logarithms_; }
   std::size_t dimensions() const { return columns_.size() - lost_; }
+  bool one_sided() const { return one_sided_; }
 
  private:
   ForcedScene scene_;
@@ -126,6 +157,7 @@ class SeveralDampers {
   std::vector<ChangeOfState> columns_;
   std::vector<double> logarithms_;
   std::size_t lost_ = 0;
+  bool one_sided_ = false;
 };
 
 constexpr std::int64_t error_blocks = 10;
@@ -147,7 +179,7 @@ LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64
   std::vector<double> before(motion.logarithms().size(), 0.0);  // when the block began
   std::int64_t begun = 0;                                       // periods that were used by then
   for (std::int64_t n = 0; n < skipped + periods; ++n) {
-    if (n == skipped) motion.forget_logarithms();
+    if (n == skipped) motion.begin_to_average();  // a mass that stuck before may never do so again
     result.stop_reason = motion.pass_period();
     if (result.stop_reason != StopReason::time) return result;
     if (progress) progress(n + 1);
@@ -164,6 +196,7 @@ LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64
     begun = used;
   }
   result.periods = periods;
+  result.one_sided = motion.one_sided();
   for (std::size_t j = 0; j < motion.dimensions(); ++j) {
     result.exponents.push_back(motion.logarithms()[j] / (double(periods) * motion.duration()));
     if (periods >= error_blocks) result.standard_errors.push_back(standard_error(means, j));

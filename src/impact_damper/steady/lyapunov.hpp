@@ -14,14 +14,17 @@ struct LyapunovExponents {
   std::int64_t periods = 0;                   // of the force, over which the exponents are averaged
   // Per unit of time; their sum is the mean of ln|det A|, (M13.9) and (M13.26). In the order in which the
   // orthogonalisation finds them: descending, if there are enough periods. As many as the state has numbers:
-  // four, of several dampers two and two for each. Two fewer for each mass that sticks at the same time, or
-  // that a sustained contact damps by more than exp(-36) 4096 times: these are minus infinity, or too far
-  // below to be told. None unless all periods were completed.
+  // four, of several dampers two and two for each. Two fewer for each mass that in these periods sticks while
+  // most do, or that a sustained contact damps by more than exp(-36) 4096 times: these are minus infinity, or
+  // too far below to be told. None unless all periods were completed.
   std::vector<double> exponents;
   // Of each: the standard deviation of the means of ten blocks of periods, divided by the root of ten. A
   // statistical uncertainty if the motion forgets within one block where it was. None for less than ten
   // periods.
   std::vector<double> standard_errors;
+  // Whether several masses met walls at one instant in these periods. There is no derivative then: the
+  // exponents are those of changes that keep them together. Not written to files.
+  bool one_sided = false;
 };
 
 // A period takes a time that grows with the fourth power of the number of dampers: with so many, seconds.
@@ -29,8 +32,8 @@ inline constexpr std::size_t most_dampers_with_exponents = 100;
 
 // From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0.
 // `progress`, if given, is called with the number of periods, of all these, that are done. Throws
-// InvalidArguments as PoincareMap does, of a scene with a list of dampers as ForcedScene does, and for more than
-// most_dampers_with_exponents.
+// InvalidArguments as PoincareMap does, of a scene with a list of dampers as ForcedScene does, and for more
+// than most_dampers_with_exponents.
 LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
                                      std::int64_t skipped = 0,
                                      const std::function<void(std::int64_t done)>& progress = {});

@@ -105,7 +105,7 @@ class RigidWalls {
     times_ = times_of(std::move(events), run.end_time);
   }
 
-  std::size_t carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) {
+  Carried carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) {
     std::size_t most_held = 0;
     for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
       happens(times_[n], held_between(held_, times_[n], times_[n + 1], is_held_.size()), changes);
@@ -114,7 +114,7 @@ class RigidWalls {
       after_step();
       most_held = std::max(most_held, number_of_held(is_held_));
     }
-    return 2 * most_held;
+    return {2 * most_held, one_sided_};
   }
 
  private:
@@ -177,6 +177,7 @@ class RigidWalls {
       is_held_ = std::move(held_then);
       return;
     }
+    one_sided_ = one_sided_ || event.meeting.size() > 1;
     ChangeOfState kick = rates(time);  // to become F^+ - D F^-
     const std::vector<double> w_before = w_;
     // The velocities jump by the same linear map as changes of them.
@@ -266,6 +267,7 @@ class RigidWalls {
   HeldBy is_held_;
   double x_, v_;
   std::vector<double> w_;
+  bool one_sided_ = false;
 };
 
 // Compliant walls. Neither a motion's propagator nor what touch and end of a contact add depend on the state.
@@ -280,7 +282,7 @@ class CompliantWalls {
     times_ = times_of(std::move(events), run.end_time);
   }
 
-  std::size_t carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) const {
+  Carried carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) const {
     std::size_t most_lost = 0;
     for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
       for (const Held& each : held_) {
@@ -301,7 +303,7 @@ class CompliantWalls {
         after_step();
       }
     }
-    return 2 * most_lost;
+    return {2 * most_lost, false};
   }
 
  private:
@@ -424,8 +426,8 @@ class CompliantWalls {
 
 }  // namespace
 
-std::size_t carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
-                          const std::function<void()>& after_step) {
+Carried carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
+                      const std::function<void()>& after_step) {
   const Numbers numbers(run.scene, run.engine);
   return has_rigid_walls(run.engine) ? RigidWalls(numbers, run).carry(changes, after_step)
                                      : CompliantWalls(numbers, run).carry(changes, after_step);

@@ -17,12 +17,16 @@ inline std::size_t dimensions_of(const Scene& scene) { return 2 + 2 * scene.damp
 // Carries each of the changes of a run's initial state to its end. after_step() is called after each event
 // and each motion, or piece of one that contracts volumes by e at most: there the changes may be replaced by
 // others that span the same. The run, by the engine exact or restitution, of a scene with a list of dampers
-// and a force, has got to its until_time and has impacts and contacts recorded. Returns how many dimensions
-// the changes lose to masses that stick, or that a wall damps by more than exp(-36) 4096 times while it is
-// pushed: two for each that does so at the same time.
-//
-// Where several masses meet walls at one instant the derivative is that of changes that keep them together.
-std::size_t carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
-                          const std::function<void()>& after_step);
+// and a force, has got to its until_time and has impacts and contacts recorded.
+struct Carried {
+  // How many dimensions the changes lose to masses that stick, or that a wall damps by more than exp(-36)
+  // 4096 times while it is pushed: two for each that does so at the same time.
+  std::size_t lost = 0;
+  // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
+  // them together.
+  bool one_sided = false;
+};
+Carried carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
+                      const std::function<void()>& after_step);
 
 }  // namespace impact_damper
