@@ -65,11 +65,9 @@ class Frame final : public VariationReceiver {
  public:
   Frame() : VariationReceiver(false) {}
   void joined() override { dimensions_ = 2; }
-  // Each contracts volumes by at most e; what one contracts by more than exp(-36) is lost in rounding errors.
   int pieces(double loss) override {
-    constexpr int most = 4096;
-    if (loss > 36.0 * most) joined();
-    return loss < most ? 1 + int(loss) : most;
+    if (is_lost(loss)) joined();
+    return pieces_of(loss);
   }
   void begin_to_average() {
     replace_lost(columns_, dimensions_);

@@ -17,12 +17,6 @@ namespace {
 constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
 constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
 
-// In how many pieces a motion is carried that contracts volumes by exp(-loss): each by e, so that
-// orthogonalisation between them keeps the digits of all directions. Too many where a direction is lost.
-constexpr int most_pieces = 4096;
-int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pieces; }
-bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
-
 // A time in which a wall holds a mass: the mass sticks to it, or pushes it in.
 struct Held {
   std::size_t damper;
