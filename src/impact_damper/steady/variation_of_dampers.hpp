@@ -1,5 +1,6 @@
 // What small changes of the state become along a run of several dampers, in linear approximation
-// (docs/mathematics.md, 13.10). It takes the run's record alone: motions are linear, and events are told.
+// (docs/mathematics.md, 13.10). It needs the run's record alone: between events motions are linear, and
+// events are recorded.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +15,16 @@ namespace impact_damper {
 using ChangeOfState = std::vector<double>;
 inline std::size_t dimensions_of(const Scene& scene) { return 2 + 2 * scene.dampers.size(); }
 
-// In how many pieces a motion is carried that contracts volumes by exp(-loss): each by e at most, so that
-// orthogonalisation between them keeps the digits of all directions; but no more than most_pieces.
+// The number of pieces for a motion that contracts volumes by exp(-loss): each contracts by e at most, so
+// that orthogonalisation between them keeps the digits of all directions, unless there would be more than
+// most_pieces.
 inline constexpr int most_pieces = 4096;
 inline int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pieces; }
-// Whether a piece then contracts by more than exp(-36), a rounding error: the directions that it damps are
-// lost.
+// Whether even so many pieces contract by more than exp(-36) each, a rounding error: directions are lost.
 inline bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
 
 struct Carried {
-  // How many dimensions of the changes are lost: two for each mass that sticks, or whose wall damps a contact
-  // so much that is_lost(), counted at the time when most masses do.
+  // The most dimensions that are lost at one time: two for each mass that sticks, or whose contact is_lost().
   std::size_t lost = 0;
   // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
   // them together.
