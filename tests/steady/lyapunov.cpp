@@ -115,14 +115,14 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
     one = map(one).state;
     other = map(other).state;
     const StateVector a = vector_of(one), b = vector_of(other);
-    StateVector c{};
+    StateVector c(4);
     double size = 0;
     for (std::size_t k = 0; k < 4; ++k) size += (b[k] - a[k]) * (b[k] - a[k]);
     size = std::sqrt(size);
     stretch += std::log(size / distance);
     for (std::size_t k = 0; k < 4; ++k) c[k] = a[k] + (b[k] - a[k]) * (distance / size);
     c[2] = std::min(1.0, std::max(0.0, c[2]));
-    other = state_of(c);
+    other = state_of(c, scene);
   }
   const double expected = stretch / (periods * map.duration());
   MESSAGE("largest exponent ", found.exponents[0], ", of two neighbours ", expected);

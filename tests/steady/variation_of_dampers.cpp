@@ -59,9 +59,13 @@ LastState last_of(const Scene& scene, const Engine& engine) {
   return last;
 }
 
-// A scene with the `index`-th number of its initial state, in the order of ChangeOfState, another.
+// A scene with the `index`-th number of its initial state, in the order of ChangeOfState, another; or, behind
+// these, with another frequency or amplitude of its force, or another end.
 Scene changed(Scene scene, std::size_t index, double by) {
-  if (index < 2) {
+  const std::size_t n = dimensions_of(scene);
+  if (index >= n) {
+    (index == n ? scene.force_frequency : index == n + 1 ? scene.force_amplitude : *scene.until_time) += by;
+  } else if (index < 2) {
     (index == 0 ? scene.x0 : scene.v0) += by;
   } else {
     SceneDamper& damper = scene.dampers[index / 2 - 1];
@@ -92,12 +96,19 @@ std::optional<std::vector<double>> difference(const Scene& scene, const Engine& 
   return all;
 }
 
+// By each number of the state, by the force's frequency and amplitude, and by the end.
 std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) {
-  const Run run = simulate(scene, engine, {.half_cycles = false, .impacts = true, .contacts = true});
+  const Run run = simulate(
+      scene, engine,
+      {.half_cycles = false, .impacts = true, .contacts = true, .history = {{0, *scene.until_time, 2}}});
   REQUIRE(run.stop_reason == StopReason::time);
   std::vector<ChangeOfState> columns(dimensions_of(scene), ChangeOfState(dimensions_of(scene), 0.0));
   for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
-  carry_changes(run, columns, [] {});
+  AlongRun along;
+  carry_changes(
+      run, columns, [] {}, &along);
+  for (ChangeOfState* each : {&along.by_frequency, &along.by_amplitude, &along.rates_at_end})
+    columns.push_back(*each);
   return columns;
 }
 
@@ -135,7 +146,8 @@ double largest(const std::vector<ChangeOfState>& columns) {
 }
 
 struct Counts {
-  int columns = 0, impacts = 0, held = 0, held_at_first = 0, kicked_off = 0, together = 0;
+  int columns = 0, by_force = 0, at_end = 0, impacts = 0, held = 0, held_at_first = 0, kicked_off = 0,
+      together = 0;
 };
 Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
   Counts counts;
@@ -149,7 +161,10 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
       const auto expected = difference(scene, engine, j, scale);
       if (!expected) continue;
       ++columns;
-      for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::size_t n = dimensions_of(scene);
+      counts.by_force += j == n || j == n + 1;
+      counts.at_end += j == n + 2;
+      for (std::size_t i = 0; i < expected->size(); ++i) {
         const double off = std::fabs(found[j][i] - (*expected)[i]) / scale;
         worst = std::max(worst, off);
         if (!(off < 1e-8))
@@ -192,7 +207,9 @@ double sum_of(const std::vector<double>& all) { return std::accumulate(all.begin
 
 TEST_CASE("the derivative for several dampers agrees with differences in extended precision: rigid walls") {
   const Counts counts = compare_derivatives(Restitution{}, 40);
-  CHECK(counts.columns > 200);
+  CHECK(counts.columns > 300);
+  CHECK(counts.by_force > 60);
+  CHECK(counts.at_end > 30);
   CHECK(counts.kicked_off > 100);
   CHECK(counts.held_at_first > 3);
   CHECK(counts.together > 20);
@@ -201,7 +218,9 @@ TEST_CASE("the derivative for several dampers agrees with differences in extende
 TEST_CASE(
     "the derivative for several dampers agrees with differences in extended precision: compliant walls") {
   const Counts counts = compare_derivatives(Exact{}, 40);
-  CHECK(counts.columns > 200);
+  CHECK(counts.columns > 300);
+  CHECK(counts.by_force > 60);
+  CHECK(counts.at_end > 30);
   CHECK(counts.held_at_first > 3);
   CHECK(counts.together > 100);
 }
@@ -231,8 +250,9 @@ TEST_CASE("the exponents of several dampers add up to the mean divergence") {
     REQUIRE(found.exponents.size() == 6);
     double loss = 0, duration = 0;
     Scene period = scene;
+    const ForcedScene forced(scene, engine);
     for (int n = 0; n < periods; ++n) {
-      const Run run = ForcedScene(scene, engine).record_period(release_of(period));
+      const Run run = forced.record(release_of(period), forced.period());
       duration += run.end_time;
       loss += 2 * scene.damping_ratio * run.end_time;
       if (has_rigid_walls(engine)) {
@@ -299,7 +319,7 @@ TEST_CASE("a mass that sticks before the periods that are averaged takes nothing
   Scene period = scene;
   const ForcedScene forced(scene, Restitution{});
   for (int n = 0; n < 150; ++n) {
-    const Run run = forced.record_period(release_of(period));
+    const Run run = forced.record(release_of(period), forced.period());
     if (n >= 100) impacts += int(run.impacts->time.size());
     period = released_from(scene, state_in(*run.history, 1));
   }

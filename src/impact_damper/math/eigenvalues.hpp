@@ -1,16 +1,16 @@
-// Eigenvalues of matrices of four rows.
+// Eigenvalues of real matrices.
 #pragma once
 
-#include <array>
 #include <complex>
+#include <vector>
 
 namespace impact_damper {
 
-using Matrix4 = std::array<std::array<double, 4>, 4>;  // row by row
+using Matrix = std::vector<std::vector<double>>;  // row by row
 
-// Conjugates are so exactly.
-std::array<std::complex<double>, 4> eigenvalues_of(const Matrix4& matrix);
+// Of a square matrix. Conjugates are so exactly.
+std::vector<std::complex<double>> eigenvalues_of(const Matrix& matrix);
 // The same of a matrix that is zero below the diagonal next to its own.
-std::array<std::complex<double>, 4> eigenvalues_of_hessenberg(const Matrix4& matrix);
+std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix);
 
 }  // namespace impact_damper

@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 // The roots are about 1. Not std::abs, whose last bit is the C library's.
 double size(const Complex& z) { return std::sqrt(z.real() * z.real() + z.imag() * z.imag()); }
 
-double separation(const std::array<Complex, 4>& roots, int first, int second) {
+double separation(const std::vector<Complex>& roots, int first, int second) {
   double least = INFINITY;
   for (int i : {first, second}) {
     for (int j = 0; j < 4; ++j) {
@@ -31,10 +31,10 @@ double separation(const std::array<Complex, 4>& roots, int first, int second) {
 QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
   // In s = scale t the roots lie about 1.
   const double scale = std::sqrt(std::sqrt(c0));
-  Matrix4 companion{};
+  Matrix companion(4, std::vector<double>(4, 0.0));
   companion[0] = {-c3 / scale, -c2 / (scale * scale), -c1 / (scale * scale * scale), -1};
   companion[1][0] = companion[2][1] = companion[3][2] = 1;
-  std::array<Complex, 4> roots = eigenvalues_of_hessenberg(companion);
+  std::vector<Complex> roots = eigenvalues_of_hessenberg(companion);
   for (Complex& root : roots) root *= scale;
 
   // Conjugates are so exactly, so two roots make a real factor if they are conjugate or both real.

@@ -16,6 +16,8 @@
 namespace impact_damper {
 namespace {
 
+using FourNumbers = std::array<double, 4>;
+
 template <class Column>
 double dot(const Column& a, const Column& b) {
   double sum = a[0] * b[0];
@@ -74,19 +76,22 @@ class Frame final : public VariationReceiver {
     dimensions_ = 4;
     logarithms_ = {};
   }
-  const StateVector& logarithms() const { return logarithms_; }
+  const FourNumbers& logarithms() const { return logarithms_; }
   std::size_t dimensions() const { return dimensions_; }
 
  private:
-  void take(const StateMatrix& a, const RowsOfState<double, 2>*) override {
+  void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>*) override {
     for (std::size_t j = 0; j < 4; ++j) {
-      columns_[j] = product(a, columns_[j]);
+      FourNumbers carried{};
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < 4; ++k) carried[i] += a[i][k] * columns_[j][k];
+      columns_[j] = carried;
       orthonormalise(columns_, j, logarithms_[j]);
     }
   }
 
-  std::array<StateVector, 4> columns_ = identity<double>();
-  StateVector logarithms_{};
+  RowsOfState<double, 4> columns_ = identity<double>();
+  FourNumbers logarithms_{};
   std::size_t dimensions_ = 4;
 };
 
@@ -129,7 +134,7 @@ class SeveralDampers {
   }
   double duration() const { return scene_.period(); }
   StopReason pass_period() {
-    const Run run = scene_.record_period(state_);
+    const Run run = scene_.record(state_, duration());
     if (run.stop_reason != StopReason::time) return run.stop_reason;
     const Carried carried = carry_changes(run, columns_, [&] {
       for (std::size_t j = 0; j < columns_.size(); ++j) orthonormalise(columns_, j, logarithms_[j]);

@@ -7,14 +7,12 @@
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/steady/saltation.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
 
-constexpr std::size_t at_parameter = 4;
-using Point = std::array<double, 5>;  // x, v, y, w and the parameter
-using Square = std::array<Point, 5>;
+using Point = std::vector<double>;  // a state, and the parameter
 
 double dot(const Point& a, const Point& b) {
   double sum = 0;
@@ -40,8 +38,14 @@ double largest(const StateVector& s) {
   for (const double entry : s) most = std::max(most, std::fabs(entry));
   return most;
 }
-State<double> state_at(const Point& p) { return {p[0], p[1], p[2], p[3]}; }
-Point point_at(const State<double>& s, double parameter) { return {s.x, s.v, s.y, s.w, parameter}; }
+StateVector state_at(Point p) {
+  p.pop_back();
+  return p;
+}
+Point point_at(StateVector s, double parameter) {
+  s.push_back(parameter);
+  return s;
+}
 
 // The equation H^n(s) - s = 0 for states and values of one parameter.
 struct Equation {
@@ -56,13 +60,18 @@ struct Equation {
     changed.*member_of(parameter) = value;
     return {changed, engine, half_periods};
   }
+  // The dampers that rest in whole periods: in half of one they are mirrored.
+  std::vector<std::size_t> resting(const PoincareImage& image) const {
+    return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
+  }
+  PoincareImage image_of(const Point& p) const { return map(p.back())(state_of(state_at(p), scene)); }
   // Whether an iterate is one that a scene may have.
   bool allows(const Point& p) const {
     for (const SceneField& field : scene_fields)
       if (field.member == member_of(parameter) &&
-          !(p[at_parameter] > 0 && p[at_parameter] >= field.least && p[at_parameter] <= field.most))
+          !(p.back() > 0 && p.back() >= field.least && p.back() <= field.most))
         return false;
-    return largest(vector_of(state_at(p))) <= 1e12;
+    return largest(state_at(p)) <= 1e12;
   }
 };
 
@@ -74,77 +83,127 @@ struct Plane {
 // A state on the other side of an event at phase 0, and its derivative.
 struct Crossing {
   StateMatrix by_state;
-  State<double> state;
+  StateVector state;
 };
 
+// What one of the dampers and its cavity are like.
+struct Cavity {
+  std::size_t damper;
+  double mass_ratio, restitution, clearance, wall_damping;
+
+  bool contains(double y) const { return y >= 0 && y <= clearance; }
+  double nearer_wall(double y) const { return y < clearance / 2 ? 0 : clearance; }
+};
+std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
+  std::vector<Cavity> all;
+  const auto add = [&](const Scene& alone, double clearance) {
+    const auto* const exact = std::get_if<Exact>(&engine);
+    const double damping = exact ? 2 * zeta_m<double>(alone, exact->calibration) *
+                                       std::sqrt(alone.wall_stiffness / alone.mass_ratio)
+                                 : 0;
+    all.push_back({all.size(), alone.mass_ratio, alone.restitution, clearance, damping});
+  };
+  if (scene.dampers.empty()) add(scene, 1);
+  for (const SceneDamper& each : scene.dampers) add(with_alone(scene, each), each.clearance);
+  return all;
+}
+
+Matrix identity_of(std::size_t n) {
+  Matrix one(n, std::vector<double>(n));
+  for (std::size_t i = 0; i < n; ++i) one[i][i] = 1;
+  return one;
+}
+
 // With rigid walls an iterate may come to lie beyond a wall. Then the impact has passed phase 0: one that was
-// to come has just been, or the other way round, and the state is taken across it (M13.13).
-std::optional<Crossing> across_impact(const Scene& scene, const State<double>& s) {
-  const double wall = s.y < 0 ? 0 : 1, away = s.y < 0 ? 1 : -1, e = scene.restitution;
-  const bool approaching = away * s.w < 0;
-  if (!approaching && !(away * s.w > 0 && e > 0)) return {};
-  StateMatrix jump = impact_jump(scene.mass_ratio, e);
-  if (!approaching) {  // the inverse
-    jump[1][3] /= e;
-    jump[3][3] = -1 / e;
+// to come has just been, or the other way round, and the state is taken across it (M13.13). All other masses
+// are taken to fly.
+std::optional<Crossing> across_impact(double zeta, const Cavity& cavity, const StateVector& s) {
+  const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
+  const double wall = s[y] < 0 ? 0 : cavity.clearance, away = s[y] < 0 ? 1 : -1, e = cavity.restitution;
+  const bool approaching = away * s[w] < 0;
+  if (!approaching && !(away * s[w] > 0 && e > 0)) return {};
+  // (M13.5) or, where the mass leaves the wall, its inverse.
+  StateMatrix jump = identity_of(s.size());
+  double gained = cavity.mass_ratio * (1 + e) / (1 + cavity.mass_ratio);
+  if (!approaching) gained /= e;
+  jump[1][w] = gained;
+  for (std::size_t i = 3; i < s.size(); i += 2) jump[i][w] = -gained;
+  jump[w][w] = approaching ? -e : -1 / e;
+  const auto rates = [&](const StateVector& at) {
+    const double a = -2 * zeta * at[1] - at[0];  // the force is 0 at phase 0
+    StateVector all{at[1], a};
+    for (std::size_t i = 2; i < at.size(); i += 2) all.insert(all.end(), {at[i + 1], -a});
+    return all;
+  };
+  const auto moved = [](StateVector from, const StateVector& by, double time) {
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] += by[i] * time;
+    return from;
+  };
+  const double since = (s[y] - wall) / s[w];
+  const StateVector before = rates(s);
+  const StateVector at_wall = product(jump, moved(s, before, -since));
+  const StateVector after = rates(at_wall);
+  Crossing crossing{jump, moved(at_wall, after, since)};
+  for (std::size_t i = 0; i < s.size(); ++i) {  // (M13.4)
+    double kick = after[i];
+    for (std::size_t k = 0; k < s.size(); ++k) kick -= jump[i][k] * before[k];
+    crossing.by_state[i][y] += kick / s[w];
   }
-  const auto rates = [&](const State<double>& at) {
-    return rates_in_flight(scene.damping_ratio, at, 0.0);  // the force is 0 at phase 0
-  };
-  const auto moved = [](const State<double>& from, const Rates<double>& by, double time) {
-    return State<double>{from.x + by[0] * time, from.v + by[1] * time, from.y + by[2] * time,
-                         from.w + by[3] * time};
-  };
-  const double since = (s.y - wall) / s.w;
-  const Rates<double> before = rates(s);
-  const State<double> at_wall = state_of(product(jump, vector_of(moved(s, before, -since))));
-  const Rates<double> after = rates(at_wall);
-  return Crossing{saltation(jump, before, after, s.w), moved(at_wall, after, since)};
+  return crossing;
 }
 
 // The same with compliant walls, where the touch, or the end of a contact, passes phase 0 (M13.6): the branch
 // has a kink there.
-Crossing across_edge(const Scene& scene, double zeta_m, bool into_contact, const State<double>& s) {
-  const double damping = 2 * zeta_m * std::sqrt(scene.wall_stiffness / scene.mass_ratio);
-  const StateMatrix edge = contact_edge(scene.mass_ratio, damping, into_contact ? 1 : -1);
-  const double q = s.y < 0.5 ? s.y : s.y - 1;
-  return {edge, {s.x, s.v + edge[1][2] * q, s.y, s.w + edge[3][2] * q}};
+Crossing across_edge(const Cavity& cavity, bool into_contact, StateVector s) {
+  const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
+  const double force = (into_contact ? 1 : -1) * cavity.wall_damping, shared = cavity.mass_ratio * force;
+  StateMatrix edge = identity_of(s.size());
+  edge[1][y] = shared;
+  for (std::size_t i = 3; i < s.size(); i += 2) edge[i][y] = -shared;
+  edge[w][y] = -(1 + cavity.mass_ratio) * force;
+  const double q = s[y] - cavity.nearer_wall(s[y]);
+  for (std::size_t i = 1; i < s.size(); i += 2) s[i] += edge[i][y] * q;
+  return {std::move(edge), std::move(s)};
 }
-
-bool is_inside(double y) { return y >= 0 && y <= 1; }
 
 // Takes an iterate that came from `before` to where the equation holds that led it there, and the plane with
 // it. False: that is not possible.
 bool carry_across(const Scene& scene, const Engine& engine, const Point& before, Point& p, Plane& plane) {
   const auto carry = [&](const Crossing& crossing) {
     const auto carried = [&](const Point& direction) {
-      const StateVector by =
-          product(crossing.by_state, {direction[0], direction[1], direction[2], direction[3]});
-      return Point{by[0], by[1], by[2], by[3], direction[at_parameter]};
+      return point_at(product(crossing.by_state, state_at(direction)), direction.back());
     };
     const Point apart = carried(along(plane.through, -1, p));
     plane.normal = normalized(carried(plane.normal));
-    p = point_at(crossing.state, p[at_parameter]);
+    p = point_at(crossing.state, p.back());
     plane.through = along(p, 1, apart);
   };
-  if (const auto* exact = std::get_if<Exact>(&engine)) {
-    const bool into_contact = is_inside(before[2]);
-    if (into_contact == is_inside(p[2])) return true;
-    carry(across_edge(scene, zeta_m<double>(scene, exact->calibration), into_contact, state_at(p)));
+  const std::vector<Cavity> cavities = cavities_of(scene, engine);
+  if (!has_rigid_walls(engine)) {
+    for (const Cavity& cavity : cavities) {
+      const std::size_t y = index_of_y(cavity.damper);
+      const bool into_contact = cavity.contains(before[y]);
+      if (into_contact != cavity.contains(p[y])) carry(across_edge(cavity, into_contact, state_at(p)));
+    }
     return true;
   }
-  for (int impacts = 0; impacts < 8; ++impacts) {
-    const State<double> s = state_at(p);
+  constexpr double rounding = 1e-13;
+  bool some_rest = false;
+  for (const Cavity& cavity : cavities) {
+    double &y = p[index_of_y(cavity.damper)], &w = p[index_of_w(cavity.damper)];
+    const double wall = cavity.nearer_wall(y);
     // At rest on a wall, but for rounding errors.
-    constexpr double rounding = 1e-13;
-    const double wall = s.y < 0.5 ? 0 : 1;
-    if (std::fabs(s.y - wall) < rounding && std::fabs(s.w) < rounding) {
-      p[2] = wall;
-      p[3] = 0;
-      return true;
-    }
-    if (is_inside(s.y)) return true;
-    const std::optional<Crossing> crossing = across_impact(scene, s);
+    if (!(std::fabs(y - wall) < rounding && std::fabs(w) < rounding)) continue;
+    y = wall;
+    w = 0;
+    some_rest = true;
+  }
+  for (std::size_t impacts = 0; impacts < 8 * cavities.size(); ++impacts) {
+    const auto beyond = std::ranges::find_if(
+        cavities, [&](const Cavity& cavity) { return !cavity.contains(p[index_of_y(cavity.damper)]); });
+    if (beyond == cavities.end()) return true;
+    if (some_rest) return false;
+    const std::optional<Crossing> crossing = across_impact(scene.damping_ratio, *beyond, state_at(p));
     if (!crossing) return false;
     carry(*crossing);
   }
@@ -153,23 +212,31 @@ bool carry_across(const Scene& scene, const Engine& engine, const Point& before,
 
 struct Solution {
   OrbitEnd end = OrbitEnd::no_convergence;
-  Point point{};
+  Point point;
   PoincareImage image;
   std::vector<double> residuals;
-  Plane plane{};
+  Plane plane;
 };
 
 const StateVector& by_parameter(const PoincareImage& image, Parameter parameter) {
   return parameter == Parameter::force_frequency ? image.by_frequency : image.by_amplitude;
 }
-// The derivative of H^n(s) - s by s and the parameter, and a last row.
-Square bordered(const PoincareImage& image, Parameter parameter, const Point& last) {
-  Square a{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t k = 0; k < 4; ++k) a[i][k] = image.by_state[i][k] - (i == k);
-    a[i][at_parameter] = by_parameter(image, parameter)[i];
+// The derivative of H^n(s) - s by s and the parameter, and a last row. In whole periods a mass that is not
+// struck keeps y + x and y' + x' (M13.28): for the latter, which is zero anyhow, the equation is that the
+// former stays.
+Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last) {
+  const std::size_t n = image.by_state.size();
+  Matrix a = image.by_state;
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i][i] -= 1;
+    a[i].push_back(by_parameter(image, equation.parameter)[i]);
   }
-  a[at_parameter] = last;
+  for (const std::size_t damper : equation.resting(image)) {
+    std::vector<double>& row = a[index_of_w(damper)];
+    std::ranges::fill(row, 0.0);
+    row[0] = row[index_of_y(damper)] = 1;
+  }
+  a.push_back(last);
   return a;
 }
 
@@ -181,24 +248,25 @@ struct Rest {
 Rest rest_of(const Solution& at) {
   Rest rest;
   rest.state = vector_of(at.image.state);
-  for (std::size_t k = 0; k < 4; ++k) rest.state[k] -= at.point[k];
+  for (std::size_t k = 0; k < rest.state.size(); ++k) rest.state[k] -= at.point[k];
   rest.off = dot(at.plane.normal, along(at.point, -1, at.plane.through));
-  rest.size = std::max(largest(rest.state), std::fabs(rest.off)) /
-              std::max(1.0, largest(vector_of(state_at(at.point))));
+  rest.size = std::max(largest(rest.state), std::fabs(rest.off)) / std::max(1.0, largest(state_at(at.point)));
   return rest;
 }
 
-// Newton's step (M13.10). Written as the image and A times the change: where the masses stick y and w are
-// then those of the image, to the bit.
-std::optional<Point> newton_step(const Solution& at, const Rest& rest, Parameter parameter) {
-  const StateVector& r = rest.state;
-  const auto change =
-      solution<5>(bordered(at.image, parameter, at.plane.normal), {-r[0], -r[1], -r[2], -r[3], -rest.off});
+// Newton's step (M13.10). Written as the image and A times the change: where masses stick y and w are then
+// those of the image, to the bit.
+std::optional<Point> newton_step(const Equation& equation, const Solution& at, const Rest& rest) {
+  std::vector<double> missing;
+  for (const double r : rest.state) missing.push_back(-r);
+  missing.push_back(-rest.off);
+  for (const std::size_t damper : equation.resting(at.image)) missing[index_of_w(damper)] = 0;
+  const auto change = solution(bordered(equation, at.image, at.plane.normal), missing);
   if (!change) return {};
-  Point next = point_at(at.image.state, at.point[at_parameter] + (*change)[at_parameter]);
-  for (std::size_t i = 0; i < 4; ++i) {
-    next[i] += by_parameter(at.image, parameter)[i] * (*change)[at_parameter];
-    for (std::size_t k = 0; k < 4; ++k) next[i] += at.image.by_state[i][k] * (*change)[k];
+  Point next = point_at(vector_of(at.image.state), at.point.back() + change->back());
+  for (std::size_t i = 0; i + 1 < next.size(); ++i) {
+    next[i] += by_parameter(at.image, equation.parameter)[i] * change->back();
+    for (std::size_t k = 0; k + 1 < next.size(); ++k) next[i] += at.image.by_state[i][k] * (*change)[k];
   }
   return next;
 }
@@ -210,13 +278,14 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
   now.point = start;
   best.plane = now.plane = plane;
   double least = std::numeric_limits<double>::infinity(), fraction = 1;
-  Point step{}, last = before;
+  Point step, last = before;
   std::vector<double> residuals;
   for (int i = 0; i < equation.options.max_iterations; ++i) {
     if (!equation.allows(now.point)) break;
-    const PoincareMap map = equation.map(now.point[at_parameter]);
+    const PoincareMap map = equation.map(now.point.back());
     if (!carry_across(map.scene(), equation.engine, last, now.point, now.plane)) break;
-    now.image = map(state_at(now.point), PoincareMap::Derivatives::by_state_and_parameters);
+    now.image =
+        map(state_of(state_at(now.point), equation.scene), PoincareMap::Derivatives::by_state_and_parameters);
     if (now.image.stop_reason != StopReason::time) {
       best.end = OrbitEnd::run_stopped;
       break;
@@ -235,7 +304,7 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
     least = rest.size;
     best = now;
     last = now.point;
-    const auto next = least > 0 ? newton_step(now, rest, equation.parameter) : std::nullopt;
+    const auto next = least > 0 ? newton_step(equation, now, rest) : std::nullopt;
     if (!next) break;
     step = along(*next, -1, now.point);
     now.point = *next;
@@ -247,22 +316,36 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
 }
 
 // Across the parameter: a plane on which it has one value.
-Plane at_value(const Point& p) { return {p, {0, 0, 0, 0, 1}}; }
+Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 1)}; }
 
 // How far a point of n half periods is from being one of m; nothing where the run does not get that far.
 std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
-  const PoincareImage image = shorter.map(p[at_parameter])(state_at(p));
+  const PoincareImage image = shorter.image_of(p);
   if (image.stop_reason != StopReason::time) return {};
   StateVector rest = vector_of(image.state);
-  for (std::size_t i = 0; i < 4; ++i) rest[i] -= p[i];
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= p[i];
   return rest;
 }
 // Whether it is one, to within `gap` in units of the larger of 1 and |s|.
 bool closes_after(const Equation& equation, const Point& p, int half_periods, double gap) {
   const auto rest = rest_after(equation, p, half_periods);
-  return rest && largest(*rest) <= gap * std::max(1.0, largest(vector_of(state_at(p))));
+  return rest && largest(*rest) <= gap * std::max(1.0, largest(state_at(p)));
+}
+
+// Without the two of each mass that rests, which are 1, or -1 in half a period.
+Multipliers multipliers_of(const PoincareImage& image) {
+  std::vector<bool> taken(image.by_state.size(), true);
+  for (const std::size_t damper : image.idle) taken[index_of_y(damper)] = taken[index_of_w(damper)] = false;
+  Matrix moving;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (!taken[i]) continue;
+    moving.emplace_back();
+    for (std::size_t k = 0; k < taken.size(); ++k)
+      if (taken[k]) moving.back().push_back(image.by_state[i][k]);
+  }
+  return impact_damper::multipliers_of(moving);
 }
 
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
@@ -274,13 +357,14 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.symmetric = symmetric;
   orbit.scene = equation.scene;
   if (found.end != OrbitEnd::converged) return orbit;
-  const PoincareMap map = equation.map(found.point[at_parameter]);
+  const PoincareMap map = equation.map(found.point.back());
   orbit.scene = map.scene();
-  const State<double> s = state_at(found.point);
-  orbit.scene.x0 = s.x, orbit.scene.v0 = s.v, orbit.scene.y0 = s.y, orbit.scene.w0 = s.w;
+  orbit.scene = released_from(orbit.scene, state_of(state_at(found.point), orbit.scene));
   orbit.impacts = found.image.impacts;
   orbit.sticking = found.image.sticking;
-  orbit.multipliers = multipliers_of(found.image.by_state);
+  orbit.idle = found.image.idle;
+  orbit.one_sided = found.image.one_sided;
+  orbit.multipliers = multipliers_of(found.image);
   orbit.slowest_impact = found.image.slowest_impact;
   orbit.nearest_miss = found.image.nearest_miss;
   if (!symmetric) return orbit;
@@ -288,13 +372,14 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   // The other half is the mirror image of this one.
   orbit.scene.until_time = 2 * map.duration();
   for (const OrbitImpact& impact : found.image.impacts)
-    orbit.impacts.push_back(
-        {impact.time + map.duration(), impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed});
+    orbit.impacts.push_back({impact.time + map.duration(),
+                             impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed,
+                             impact.damper});
   orbit.sticking *= 2;
   orbit.half_multipliers = orbit.multipliers;
   for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im + 0.0};
   // A square may lie below the real axis where the number does not; the + 0.0 makes no -0.
-  for (std::size_t i = 0; i + 1 < 4; ++i)
+  for (std::size_t i = 0; i + 1 < orbit.multipliers.size(); ++i)
     if (orbit.multipliers[i].im < 0 && orbit.multipliers[i + 1].im == -orbit.multipliers[i].im)
       std::swap(orbit.multipliers[i], orbit.multipliers[i + 1]);
   return orbit;
@@ -303,15 +388,15 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
 // The eigenvector of -1, of length 1, of a matrix that has this eigenvalue nearly; by inverse iteration.
 std::optional<StateVector> reversed_by(StateMatrix a) {
   constexpr double shift = 1e-9;  // so that the matrix is not singular
-  for (std::size_t i = 0; i < 4; ++i) a[i][i] += 1 + shift;
-  StateVector v{1, 1, 1, 1};
+  for (std::size_t i = 0; i < a.size(); ++i) a[i][i] += 1 + shift;
+  StateVector v(a.size(), 1.0);
   for (int pass = 0; pass < 4; ++pass) {
-    const auto next = solution<4>(a, v);
+    const auto next = solution(a, v);
     if (!next) return {};
     double size = 0;
     for (const double entry : *next) size += entry * entry;
     size = std::sqrt(size);
-    for (std::size_t i = 0; i < 4; ++i) v[i] = (*next)[i] / size;
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (*next)[i] / size;
   }
   return v;
 }
@@ -330,16 +415,16 @@ struct Products {
   double fold, flip, pairs;
 };
 Products products_of(const PoincareImage& image) {
-  const Multipliers all = multipliers_of(image.by_state);
+  const Multipliers all = multipliers_of(image);
   struct Complex {
     double re = 1, im = 0;
     void times(double re2, double im2) { *this = {re * re2 - im * im2, re * im2 + im * re2}; }
   };
   Complex fold, flip, pairs;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
     fold.times(1 - all[i].re, -all[i].im);
     flip.times(1 + all[i].re, all[i].im);
-    for (std::size_t j = i + 1; j < 4; ++j)
+    for (std::size_t j = i + 1; j < all.size(); ++j)
       pairs.times(1 - (all[i].re * all[j].re - all[i].im * all[j].im),
                   -(all[i].re * all[j].im + all[i].im * all[j].re));
   }
@@ -365,17 +450,17 @@ class Follower {
     const double begin = scene.*member_of(equation_.parameter);
     if (first_.end != OrbitEnd::converged || !(begin >= options_.least && begin <= options_.most))
       return branch;
-    const Point start = point_at({scene.x0, scene.v0, scene.y0, scene.w0}, begin);
+    const Point start = point_at(vector_of(release_of(scene)), begin);
     Solution now = solve(equation_, start, start, at_value(start));
     if (now.end != OrbitEnd::converged) return branch;
     const Point origin = now.point;
     add(branch, now);
-    auto tangent = tangent_at(now, Point{0, 0, 0, 0, options_.upwards ? 1.0 : -1.0});
+    auto tangent = tangent_at(now, point_at(StateVector(start.size() - 1), options_.upwards ? 1.0 : -1.0));
     double step = options_.first_step;
     branch.end = BranchEnd::points;
     while (tangent && int(branch.orbits.size()) < options_.max_points) {
       // Smaller where the parameter changes more, but not for it alone too small to go on.
-      const double share = std::fabs((*tangent)[at_parameter]);
+      const double share = std::fabs((*tangent).back());
       if (step * share > options_.largest_change)
         step = std::max(options_.largest_change / share, options_.smallest_step);
       if (far_from_grazing(now.image)) {
@@ -387,7 +472,7 @@ class Follower {
                               ? tangent_at(next, next.plane.normal)
                               : std::nullopt;
       if (!turned || !(dot(*turned, next.plane.normal) > 0.9) ||
-          jumped(now, (*tangent)[at_parameter], next, (*turned)[at_parameter])) {
+          jumped(now, (*tangent).back(), next, (*turned).back())) {
         step /= 2;
         if (step >= options_.smallest_step) continue;
         branch.end = BranchEnd::step_too_small;
@@ -436,9 +521,7 @@ class Follower {
     return !(image.slowest_impact && *image.slowest_impact < far) &&
            !(image.nearest_miss && *image.nearest_miss < far);
   }
-  bool in_range(const Point& p) const {
-    return p[at_parameter] >= options_.least && p[at_parameter] <= options_.most;
-  }
+  bool in_range(const Point& p) const { return p.back() >= options_.least && p.back() <= options_.most; }
   // Whether `next` is near enough to where it was expected, and of the same kind if a grazing ends branches.
   bool follows(const Solution& now, const Solution& next, double step) const {
     return distance(next.point, next.plane.through) < step / 2 &&
@@ -453,7 +536,8 @@ class Follower {
   }
   // The direction of the branch, (M13.11), the one that `like` points to.
   std::optional<Point> tangent_at(const Solution& at, const Point& like) const {
-    const auto direction = solution<5>(bordered(at.image, equation_.parameter, like), {0, 0, 0, 0, 1});
+    const auto direction =
+        solution(bordered(equation_, at.image, like), point_at(StateVector(like.size() - 1), 1));
     return direction ? std::optional(normalized(*direction)) : std::nullopt;
   }
 
@@ -469,10 +553,10 @@ class Follower {
     if (first_.symmetric) return tangent;
     const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
     if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
-    const Point across = normalized(Point{(*rest)[0], (*rest)[1], (*rest)[2], (*rest)[3], 0});
+    const Point across = normalized(point_at(*rest, 0));
     const double along_tangent = dot(across, tangent);
     if (!(std::fabs(along_tangent) > 0.95)) return tangent;
-    return along_tangent > 0 ? across : along(Point{}, -1, across);
+    return along_tangent > 0 ? across : along(Point(across.size()), -1, across);
   }
 
   // Those in the range between two orbits, of which the second may lie beyond it.
@@ -484,15 +568,15 @@ class Follower {
       if (!in_range(at->point)) return;
       branch.events.push_back(
           {first_.periods % 2 == 0 ? BranchEventKind::flip : BranchEventKind::symmetry_breaking,
-           at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
+           at->point.back(), orbit_at(*at), std::ssize(branch.orbits)});
       branch.end = BranchEnd::joined;
       return;
     }
     const auto slope = [&](const Solution& at) {
       const auto direction = tangent_at(at, at.plane.normal);
-      return direction ? (*direction)[at_parameter] : 0;
+      return direction ? (*direction).back() : 0;
     };
-    add_event(branch, now, tangent, step, BranchEventKind::fold, tangent[at_parameter], slope(next), slope);
+    add_event(branch, now, tangent, step, BranchEventKind::fold, tangent.back(), slope(next), slope);
     const auto flip = [](const Solution& at) { return products_of(at.image).flip; };
     add_event(branch, now, tangent, step,
               first_.symmetric ? BranchEventKind::symmetry_breaking : BranchEventKind::flip, flip(now),
@@ -511,22 +595,22 @@ class Follower {
     const Point middle = along(now.point, 0.5, along(next.point, -1, now.point));
     const auto at_parameter_value = [&](const Point& from, double value) {
       Point p = from;
-      p[at_parameter] = value;
+      p.back() = value;
       return solve(half, middle, p, at_value(p));
     };
-    Solution other = at_parameter_value(middle, middle[at_parameter] * (1 + 1e-6)),
-             at = at_parameter_value(middle, middle[at_parameter]);
+    Solution other = at_parameter_value(middle, middle.back() * (1 + 1e-6)),
+             at = at_parameter_value(middle, middle.back());
     for (int i = 0; i < 20; ++i) {
       if (at.end != OrbitEnd::converged || other.end != OrbitEnd::converged) return {};
       const double value = products_of(at.image).flip, change = value - products_of(other.image).flip;
-      const double by = value * (at.point[at_parameter] - other.point[at_parameter]) / change;
+      const double by = value * (at.point.back() - other.point.back()) / change;
       if (!std::isfinite(by)) break;
-      other = std::exchange(at, at_parameter_value(at.point, at.point[at_parameter] - by));
-      if (std::fabs(by) <= 1e-14 * at.point[at_parameter]) break;
+      other = std::exchange(at, at_parameter_value(at.point, at.point.back() - by));
+      if (std::fabs(by) <= 1e-14 * at.point.back()) break;
     }
     if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image))
       return {};
-    at.image = equation_.map(at.point[at_parameter])(state_at(at.point));
+    at.image = equation_.image_of(at.point);
     return at;
   }
   // Whether H^n(s) - s has turned round.
@@ -536,11 +620,11 @@ class Follower {
                after = rest_after(equation_, next.point, equation_.half_periods / 2);
     if (!before || !after) return false;
     double product_of_both = 0;
-    for (std::size_t i = 0; i < 4; ++i) product_of_both += (*before)[i] * (*after)[i];
+    for (std::size_t i = 0; i < before->size(); ++i) product_of_both += (*before)[i] * (*after)[i];
     return product_of_both < 0;
   }
   static bool is_flip(const PoincareImage& image) {
-    const Multipliers all = multipliers_of(image.by_state);
+    const Multipliers all = multipliers_of(image);
     return std::any_of(all.begin(), all.end(), [](const Multiplier& m) {
       return std::fabs(m.re + 1) < 1e-6 && std::fabs(m.im) < 1e-6;
     });
@@ -554,11 +638,11 @@ class Follower {
     const auto at = root_between(now, tangent, step, before, after, test);
     if (!at || !in_range(at->point)) return;
     if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
-    branch.events.push_back({kind, at->point[at_parameter], orbit_at(*at), std::ssize(branch.orbits)});
+    branch.events.push_back({kind, at->point.back(), orbit_at(*at), std::ssize(branch.orbits)});
   }
   // Of two real multipliers, one the inverse of the other, the product is 1 as well.
   static bool on_unit_circle(const PoincareImage& image) {
-    const Multipliers all = multipliers_of(image.by_state);
+    const Multipliers all = multipliers_of(image);
     return std::any_of(all.begin(), all.end(),
                        [](const Multiplier& m) { return m.im > 1e-6 && std::fabs(m.modulus() - 1) < 1e-6; });
   }
@@ -611,7 +695,7 @@ class Follower {
     }
     if (!in_range(last.point)) return;
     branch.events.push_back(
-        {BranchEventKind::grazing, last.point[at_parameter], orbit_at(last), std::ssize(branch.orbits)});
+        {BranchEventKind::grazing, last.point.back(), orbit_at(last), std::ssize(branch.orbits)});
   }
 
   // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
@@ -624,8 +708,8 @@ class Follower {
           !(last.image.slowest_impact && *last.image.slowest_impact < 1e-4))
         return;
       branch.end = BranchEnd::grazing;
-      branch.events.push_back({BranchEventKind::grazing, last.point[at_parameter], branch.orbits.back(),
-                               std::ssize(branch.orbits)});
+      branch.events.push_back(
+          {BranchEventKind::grazing, last.point.back(), branch.orbits.back(), std::ssize(branch.orbits)});
       return;
     }
     for (const auto member : {&PoincareImage::slowest_impact, &PoincareImage::nearest_miss}) {
@@ -653,7 +737,7 @@ class Follower {
       const Solution at = between(anchor_, anchor_tangent_, -spacing * double(i));
       if (at.end != OrbitEnd::converged || !(at.image.*size_of)) return {};
       size[i] = *(at.image.*size_of);
-      value[i] = at.point[at_parameter];
+      value[i] = at.point.back();
     }
     double before = 0;
     for (std::size_t order = 1; order < size.size(); ++order) {
@@ -668,11 +752,10 @@ class Follower {
   }
 
   void finish_at_end_of_range(Branch& branch, const Solution& now, const Solution& next) {
-    const double end = next.point[at_parameter] > options_.most ? options_.most : options_.least;
-    const double share =
-        (end - now.point[at_parameter]) / (next.point[at_parameter] - now.point[at_parameter]);
+    const double end = next.point.back() > options_.most ? options_.most : options_.least;
+    const double share = (end - now.point.back()) / (next.point.back() - now.point.back());
     Point p = along(now.point, share, along(next.point, -1, now.point));
-    p[at_parameter] = end;
+    p.back() = end;
     const Solution last = solve(equation_, now.point, p, at_value(p));
     branch.end = last.end == OrbitEnd::converged ? BranchEnd::range : BranchEnd::step_too_small;
     if (last.end == OrbitEnd::converged) add(branch, last);
@@ -757,12 +840,11 @@ std::string_view name_of(BranchEnd end) {
   return {};
 }
 
-Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const State<double>& guess,
+Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const SceneState& guess,
                  const OrbitOptions& options) {
-  Scene guessed = scene;
-  guessed.x0 = guess.x, guessed.v0 = guess.v, guessed.y0 = guess.y, guessed.w0 = guess.w;
+  Scene guessed = released_from(scene, guess);
   guessed.until_time = 1;
-  std::vector<Problem> problems = impact_damper::problems_of(guessed);
+  std::vector<Problem> problems = impact_damper::problems_of(guessed, DamperList::allowed);
   if (problems.empty()) problems = incompatibilities_of(guessed, engine);
   for (const Problem& problem : problems_of(options)) problems.push_back(problem);
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
@@ -772,7 +854,7 @@ Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const St
 
   Equation equation{scene, engine, options.symmetric ? periods : 2 * periods, Parameter::force_frequency,
                     options};
-  const Point start = point_at(guess, scene.force_frequency);
+  const Point start = point_at(vector_of(guess), scene.force_frequency);
   Solution found = solve(equation, start, start, at_value(start));
   bool symmetric = options.symmetric;
   if (found.end != OrbitEnd::converged) return orbit_of(equation, found, periods, symmetric);
@@ -819,13 +901,12 @@ Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOp
   if (!doubles || from.end != OrbitEnd::converged) return none;
   const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
   const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
-  const Point origin =
-      point_at({from.scene.x0, from.scene.v0, from.scene.y0, from.scene.w0}, event.parameter);
+  const Point origin = point_at(vector_of(release_of(from.scene)), event.parameter);
   const std::optional<StateVector> direction = reversed_by(
-      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(state_at(origin))
+      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene))
           .by_state);
   if (!direction) return none;
-  const Point normal{(*direction)[0], (*direction)[1], (*direction)[2], (*direction)[3], 0};
+  const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {
     const Point start = along(origin, gap, normal);
     const Solution found = solve(equation, origin, start, {start, normal});

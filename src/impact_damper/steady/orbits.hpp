@@ -23,10 +23,10 @@ std::string_view name_of(OrbitEnd end);  // the enumerator's own name
 
 struct OrbitOptions {
   // Only among orbits that are their own mirror image half of the periods later; `periods` must be odd. An
-  // orbit without impacts needs this: its secondary mass may rest anywhere, and only y + x = 1/2 is
-  // symmetric.
+  // orbit without impacts needs this: its secondary mass may rest anywhere, and only y + x = 1/2, half of its
+  // clearance, is symmetric. Where other dampers are struck one that is not rests where the guess has it.
   bool symmetric = false;
-  // Of |H^n(s) - s|, the largest of four, in units of the larger of 1 and the largest of |s|. In (0, 1e-3].
+  // Of |H^n(s) - s|, the largest number, in units of the larger of 1 and the largest of |s|. In (0, 1e-3].
   // Newton's iteration goes on beyond it for as long as each step halves the rest.
   double tolerance = 1e-10;
   int max_iterations = 40;  // >= 1
@@ -41,8 +41,12 @@ struct Orbit {
   int periods = 1;                   // of the force, after which the orbit first closes
   bool symmetric = false;            // its own mirror image half a period of its own later
   std::vector<OrbitImpact> impacts;  // in one period of its own
-  std::int64_t sticking = 0;         // in one period of its own, times in which the masses stick
-  Multipliers multipliers{};         // of one period of its own; a mass that sticks makes two of them 0
+  std::int64_t sticking = 0;         // in one period of its own, times in which masses stick
+  std::vector<std::size_t> idle;     // as in PoincareImage
+  bool one_sided = false;            // as there: the multipliers are then of such changes
+  // Of one period of its own; a mass that sticks makes two of them 0. Without those of dampers that are idle,
+  // which are 1: one that rests elsewhere rests there, too.
+  Multipliers multipliers;
   // Of half of that with the mirror, if symmetric: their squares are the multipliers.
   std::optional<Multipliers> half_multipliers;
   // How near to grazing, as in PoincareImage.
@@ -54,8 +58,9 @@ struct Orbit {
   double residual() const { return residuals.back(); }
 };
 
-// guess: at phase 0 of the force. Throws InvalidArguments as PoincareMap does, and for options out of range.
-Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const State<double>& guess,
+// guess: at phase 0 of the force, of as many dampers as the scene has. Throws InvalidArguments as PoincareMap
+// does, and for options out of range.
+Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const SceneState& guess,
                  const OrbitOptions& options = {});
 
 enum class Parameter { force_frequency, force_amplitude };
@@ -94,7 +99,7 @@ enum class BranchEnd {
 };
 std::string_view name_of(BranchEnd end);
 
-// Steps are measured along the branch in the space of x, v, y, w and the parameter.
+// Steps are measured along the branch in the space of the state and the parameter.
 struct FollowOptions {
   double least = 0, most = 0;   // range of the parameter, > 0; the first orbit lies in it
   bool upwards = true;          // which way the parameter goes first

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/steady/run_with_variation.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
@@ -28,12 +31,22 @@ class Product final : public VariationReceiver {
   }
 };
 
+struct Sticking {
+  std::size_t impacts_before;  // of all dampers
+  std::int32_t damper;
+};
 // Complete chattering counts with its first impact only: those behind it are as slow as one likes.
-std::optional<double> slowest(const std::vector<OrbitImpact>& impacts,
-                              const std::vector<std::size_t>& impacts_before_sticking) {
+std::optional<double> slowest(const std::vector<OrbitImpact>& impacts, const std::vector<Sticking>& all) {
   std::vector<bool> counts(impacts.size(), true);
-  for (const std::size_t end : impacts_before_sticking)
-    for (std::size_t i = end; i-- > 1 && impacts[i - 1].wall == impacts[i].wall;) counts[i] = false;
+  for (const auto& [impacts_before, damper] : all) {
+    std::optional<std::size_t> later;
+    for (std::size_t i = impacts_before; i-- > 0;) {
+      if (impacts[i].damper != damper) continue;
+      if (later && impacts[i].wall != impacts[*later].wall) break;
+      if (later) counts[*later] = false;
+      later = i;
+    }
+  }
   std::optional<double> least;
   for (std::size_t i = 0; i < impacts.size(); ++i)
     if (counts[i] && !(least && *least <= impacts[i].speed)) least = impacts[i].speed;
@@ -42,12 +55,22 @@ std::optional<double> slowest(const std::vector<OrbitImpact>& impacts,
 
 }  // namespace
 
-StateVector vector_of(const State<double>& s) { return {s.x, s.v, s.y, s.w}; }
-State<double> state_of(const StateVector& s) { return {s[0], s[1], s[2], s[3]}; }
+StateVector vector_of(const SceneState& s) {
+  StateVector all{s.x, s.v};
+  if (s.dampers.empty()) all.insert(all.end(), {s.y, s.w});
+  for (const PlaceInCavity& each : s.dampers) all.insert(all.end(), {each.y, each.w});
+  return all;
+}
+SceneState state_of(const StateVector& s, const Scene& scene) {
+  if (scene.dampers.empty()) return {s[0], s[1], s[2], s[3]};
+  SceneState state(s[0], s[1], 0, 0);
+  for (std::size_t i = 2; i < s.size(); i += 2) state.dampers.push_back({s[i], s[i + 1]});
+  return state;
+}
 StateVector product(const StateMatrix& a, const StateVector& s) {
-  StateVector t{};
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t k = 0; k < 4; ++k) t[i] += a[i][k] * s[k];
+  StateVector t(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < s.size(); ++k) t[i] += a[i][k] * s[k];
   return t;
 }
 
@@ -55,41 +78,97 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
     : scene_(scene), engine_(engine), half_periods_(half_periods) {
   scene_.x0 = scene_.v0 = scene_.w0 = 0;
   scene_.y0 = 0.5;
+  for (SceneDamper& damper : scene_.dampers) damper.y0 = damper.clearance / 2, damper.w0 = 0;
   scene_.until_amplitude.reset();
   scene_.until_time = half_periods * (half_turn<double>() / scene.force_frequency);
-  std::vector<Problem> problems = problems_of(scene_);
+  std::vector<Problem> problems = problems_of(scene_, DamperList::allowed);
   for (const Problem& problem : problems_of(engine)) problems.push_back(problem);
   if (!(half_periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (scene.force_amplitude == 0) problems.push_back({"force_amplitude", "must not be 0"});
   if (std::holds_alternative<Cem>(engine))
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   require_none(problems);
+  if (!scene_.dampers.empty()) several_.emplace(scene_, engine_);
 }
 
-PoincareImage PoincareMap::operator()(const State<double>& s, Derivatives wanted) const {
-  Scene scene = scene_;
-  scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
-  Product all(wanted == Derivatives::by_state_and_parameters);
-  VariedRun run = run_with_variation(scene, engine_, all, Kept::impacts);
-  PoincareImage image;
-  image.stop_reason = run.stop_reason;
-  if (image.stop_reason != StopReason::time) return image;
+PoincareImage PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {
+  auto [image, rates] = several_ ? of_several(s, wanted) : of_one_damper(s, wanted);
+  if (image.stop_reason != StopReason::time) return std::move(image);
 
   // The end of the time moves with omega_f (M13.8).
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) image.by_state[i][j] = mirror * all.by_state[i][j];
+  for (std::vector<double>& row : image.by_state)
+    for (double& entry : row) entry *= mirror;
+  for (std::size_t i = 0; i < image.by_frequency.size(); ++i) {
     image.by_frequency[i] =
-        mirror * (all.by_parameters[i][0] - run.rates_at_end[i] * (duration() / scene.force_frequency));
-    image.by_amplitude[i] = mirror * all.by_parameters[i][1];
+        mirror * (image.by_frequency[i] - rates[i] * (duration() / scene_.force_frequency));
+    image.by_amplitude[i] *= mirror;
   }
-  const State<double>& end = run.end;
-  image.state = mirror == 1 ? end : State<double>{-end.x, -end.v, 1 - end.y, -end.w};
-  image.sticking = std::int64_t(run.impacts_before_sticking.size());
-  image.slowest_impact = slowest(run.impacts, run.impacts_before_sticking);
+  if (mirror < 0) image.state = mirrored(image.state, scene_);
+  return std::move(image);
+}
+
+PoincareMap::End PoincareMap::of_one_damper(const SceneState& s, Derivatives wanted) const {
+  Product all(wanted == Derivatives::by_state_and_parameters);
+  VariedRun run = run_with_variation(released_from(scene_, s), engine_, all, Kept::impacts);
+  PoincareImage image;
+  image.stop_reason = run.stop_reason;
+  if (image.stop_reason != StopReason::time) return {std::move(image), {}};
+  image.state = run.end;
+  for (std::size_t i = 0; i < 4; ++i) {
+    image.by_state.emplace_back(all.by_state[i].begin(), all.by_state[i].end());
+    image.by_frequency.push_back(all.by_parameters[i][0]);
+    image.by_amplitude.push_back(all.by_parameters[i][1]);
+  }
+  std::vector<Sticking> sticking;
+  for (const std::size_t impacts : run.impacts_before_sticking) sticking.push_back({impacts, 0});
+  image.sticking = std::ssize(sticking);
+  image.slowest_impact = slowest(run.impacts, sticking);
   image.nearest_miss = run.nearest_miss;
   image.impacts = std::move(run.impacts);
-  return image;
+  return {std::move(image), {run.rates_at_end.begin(), run.rates_at_end.end()}};
+}
+
+PoincareMap::End PoincareMap::of_several(const SceneState& s, Derivatives wanted) const {
+  const Run run = several_->record(s, duration());
+  PoincareImage image;
+  image.stop_reason = run.stop_reason;
+  if (image.stop_reason != StopReason::time) return {std::move(image), {}};
+  image.state = state_in(*run.history, 1);
+  const std::size_t n = dimensions_of(scene_);
+  std::vector<ChangeOfState> columns(n, ChangeOfState(n));
+  for (std::size_t j = 0; j < n; ++j) columns[j][j] = 1;
+  AlongRun along;
+  image.one_sided = carry_changes(
+                        run, columns, [] {}, wanted == Derivatives::by_state ? nullptr : &along)
+                        .one_sided;
+  image.by_state.assign(n, StateVector(n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) image.by_state[i][j] = columns[j][i];
+  image.by_frequency = std::move(along.by_frequency);
+  image.by_amplitude = std::move(along.by_amplitude);
+  image.nearest_miss = along.nearest_miss;
+
+  const Impacts& impacts = *run.impacts;
+  const Contacts& contacts = *run.contacts;
+  std::vector<bool> idle(scene_.dampers.size(), !impacts.time.empty());
+  for (std::size_t i = 0; i < impacts.time.size(); ++i) {
+    image.impacts.push_back(
+        {impacts.time[i], impacts.wall[i], std::fabs(impacts.relative_velocity[i]), impacts.damper[i]});
+    idle[std::size_t(impacts.damper[i])] = false;
+  }
+  std::vector<Sticking> sticking;
+  for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
+    idle[std::size_t(contacts.damper[i])] = false;
+    if (!has_rigid_walls(engine_)) continue;
+    const auto before = std::ranges::upper_bound(impacts.time, contacts.begin[i]) - impacts.time.begin();
+    sticking.push_back({std::size_t(before), contacts.damper[i]});
+  }
+  for (std::size_t i = 0; i < idle.size(); ++i)
+    if (idle[i]) image.idle.push_back(i);
+  image.sticking = std::ssize(sticking);
+  image.slowest_impact = slowest(image.impacts, sticking);
+  return {std::move(image), std::move(along.rates_at_end)};
 }
 
 }  // namespace impact_damper

@@ -52,7 +52,7 @@ struct VariedRun {
   // The state in which the last motion ended, and its x', x'', y', y'' there: before what an event at that
   // very instant changes.
   State<double> end{};
-  StateVector rates_at_end{};
+  Rates<double> rates_at_end{};
 
   // These three with Kept::impacts only.
   std::vector<OrbitImpact> impacts;

@@ -223,14 +223,14 @@ Scene ForcedScene::released(const SceneState& state, double until) const {
   return from;
 }
 
-Run ForcedScene::record_period(const SceneState& state) const {
+Run ForcedScene::record(const SceneState& state, double until) const {
   Run run;
-  run.scene = released(state, period_);
+  run.scene = released(state, until);
   run.engine = engine_;
   Record record;
   record.half_cycles = false;
   record.impacts = record.contacts = true;
-  record.history = {{0, period_, 2}};
+  record.history = {{0, until, 2}};
   Recorder recorder(std::move(record), scene_.dampers.size());
   const Outcome outcome = run_(run.scene, recorder);
   run.stop_reason = outcome.stop_reason;

@@ -132,8 +132,9 @@ class ForcedScene {
   Watched pass_periods(const SceneState& state) const;
   // All but the states after each period.
   Watched watch(const SceneState& state, std::int64_t periods) const;
-  // The run of one period, with its impacts and contacts, and a sample at its beginning and one at its end.
-  Run record_period(const SceneState& state) const;
+  // The run from phase 0 until a time, with its impacts and contacts, a sample at its beginning and one at
+  // its end.
+  Run record(const SceneState& state, double until) const;
   double period() const { return period_; }  // of the force, 2 pi / omega_f
 
  private:

@@ -59,13 +59,14 @@ struct Motion {
   }
 
   // From one departure to the next, mirrored: of the time of it, x, x' and the absolute velocity z' (M13.20).
-  Matrix4 from_wall_to_wall() const {
+  Matrix from_wall_to_wall() const {
     const double omega = c.omega, steady_v = omega * cos, steady_a = -omega * omega * sin;
     const double v = v0 + 2 * c.nu * speed;  // -x' just before the impact at the right wall
     const double force = steady_a + 2 * zeta * steady_v + sin;  // at the left wall, at the right minus that
     const double acceleration = 2 * zeta * v + x0 - force, w = speed + v;
-    const Matrix4 units{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-    Matrix4 m{};
+    constexpr std::array<std::array<double, 4>, 4> units{
+        {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    Matrix m(4, std::vector<double>(4));
     for (std::size_t j = 0; j < 4; ++j) {
       const auto& [dt, dx0, dv0, dz1] = units[j];
       const double du = dx0 - steady_v * dt, du1 = dv0 - steady_a * dt;

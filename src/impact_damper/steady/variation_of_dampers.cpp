@@ -6,16 +6,13 @@
 #include <utility>
 #include <variant>
 
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/impact_law.hpp"
-#include "impact_damper/motion/joint_contact.hpp"
-#include "impact_damper/motion/oscillator.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
 namespace {
-
-constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
-constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
 
 // A time in which a wall holds a mass: the mass sticks to it, or pushes it in.
 struct Held {
@@ -52,16 +49,28 @@ std::vector<double> times_of(std::vector<double> events, double end) {
   return events;
 }
 
+// The changes that a run carries along: by address, as whoever asked may replace them meanwhile.
+using Changes = std::vector<ChangeOfState*>;
+Changes changes_of(std::vector<ChangeOfState>& changes, AlongRun* along) {
+  Changes all;
+  for (ChangeOfState& each : changes) all.push_back(&each);
+  if (along) {
+    all.push_back(&along->by_frequency);
+    all.push_back(&along->by_amplitude);
+  }
+  return all;
+}
+
 // The numbers of a scene that the motion of changes depends on.
 struct Damper {
-  double nu, e;
+  double nu, e, clearance;
   double stiffness = 0, damping = 0;  // compliant walls: K and gamma of (M17.9)
 };
 struct Numbers {
   Numbers(const Scene& scene, const Engine& engine)
       : zeta(scene.damping_ratio), force{scene.force_amplitude, scene.force_frequency} {
     for (const SceneDamper& each : scene.dampers) {
-      Damper damper{each.mass_ratio, each.restitution};
+      Damper damper{each.mass_ratio, each.restitution, each.clearance};
       if (const auto* const exact = std::get_if<Exact>(&engine)) {
         const Scene alone = with_alone(scene, each);
         damper.stiffness = alone.wall_stiffness / alone.mass_ratio;
@@ -81,14 +90,18 @@ struct Numbers {
 // others, are followed along.
 class RigidWalls {
  public:
-  RigidWalls(const Numbers& of, const Run& run)
+  RigidWalls(const Numbers& of, const Run& run, AlongRun* along)
       : of_(of),
         impacts_(*run.impacts),
         held_(held_in(run)),
+        along_(along),
         is_held_(of.dampers.size(), 0),
         x_(run.scene.x0),
         v_(run.scene.v0) {
-    for (const SceneDamper& each : run.scene.dampers) w_.push_back(each.w0);
+    for (const SceneDamper& each : run.scene.dampers) {
+      y_.push_back(each.y0);
+      w_.push_back(each.w0);
+    }
     std::vector<double> events = impacts_.time;
     for (Held& each : held_) {
       events.push_back(each.end);
@@ -99,7 +112,7 @@ class RigidWalls {
     times_ = times_of(std::move(events), run.end_time);
   }
 
-  Carried carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) {
+  Carried carry(const Changes& changes, const std::function<void()>& after_step) {
     std::size_t most_held = 0;
     for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
       happens(times_[n], held_between(held_, times_[n], times_[n + 1], is_held_.size()), changes);
@@ -108,6 +121,7 @@ class RigidWalls {
       after_step();
       most_held = std::max(most_held, number_of_held(is_held_));
     }
+    if (along_) along_->rates_at_end = rates(times_.back());
     return {2 * most_held, one_sided_};
   }
 
@@ -132,12 +146,15 @@ class RigidWalls {
   }
 
   // (M13.22), and the state.
-  void move(double begin, double duration, std::vector<ChangeOfState>& changes) {
+  void move(double begin, double duration, const Changes& changes) {
     const double mass = mass_with(is_held_);
+    const Forcing<double> force{of_.force.amplitude / mass, of_.force.frequency};
+    if (along_) look_for_turns(mass, force, begin, duration);
     const Oscillator<double> oscillator(of_.zeta / mass, 1 / mass);
     const Propagator<double> p = oscillator.propagate(duration);
     const double spring = oscillator.b() * p.s, slowed = p.c1 - 2 * oscillator.a() * p.s;  // S' - 1
-    for (ChangeOfState& s : changes) {
+    for (ChangeOfState* const each : changes) {
+      ChangeOfState& s = *each;
       const double x = s[0], v = s[1], departs = x * p.c1 + v * p.s1, gains = v * slowed - x * spring;
       s[0] = x * p.c + v * p.s;
       s[1] = v * p.v - x * spring;
@@ -147,18 +164,80 @@ class RigidWalls {
         s[index_of_w(i)] -= gains;
       }
     }
-    const Forcing<double> force{of_.force.amplitude / mass, of_.force.frequency};
+    if (along_) add_driven(oscillator, mass, begin, duration);
     const DrivenResponse<double> driven = oscillator.respond(force, force.phase(begin), duration, p);
     const double x = x_ * p.c + v_ * p.s + driven.d, v = v_ * p.v - x_ * spring + driven.d1;
-    for (std::size_t i = 0; i < w_.size(); ++i)
-      if (is_held_[i] == 0) w_[i] -= v - v_;
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      if (is_held_[i] != 0) continue;
+      y_[i] += w_[i] * duration - (x_ * p.c1 + v_ * p.s1 + driven.d);
+      w_[i] -= v - v_;
+    }
     x_ = x;
     v_ = v;
+  }
+  // (M13.3), by Gauss's 16 points in panels of the time tau that is left until the end.
+  void add_driven(const Oscillator<double>& oscillator, double mass, double begin, double duration) {
+    struct Sum {
+      double x = 0, v = 0;
+    } by_frequency, by_amplitude;
+    for (double from = 0; from < duration;) {
+      const double panel = panel_under(of_.force, oscillator.panel(from)),
+                   to = std::min(duration, from + std::max(panel, duration / 65536));
+      const double half = (to - from) / 2, middle = from + half;
+      for (const auto& [abscissa, weight] : gauss_16) {
+        for (const double side : {-abscissa, abscissa}) {
+          const double tau = middle + half * side, time = begin + (duration - tau);
+          const auto [sin, cos] = of_.force.phase(time);
+          const Propagator<double> p = oscillator.propagate(tau);
+          const double impulse = half * weight / mass, secular = of_.force.amplitude * time * cos;
+          by_frequency.x += impulse * p.s * secular;
+          by_frequency.v += impulse * p.v * secular;
+          by_amplitude.x += impulse * p.s * sin;
+          by_amplitude.v += impulse * p.v * sin;
+        }
+      }
+      from = to;
+    }
+    const auto add = [&](const Sum& sum, ChangeOfState& s) {
+      s[0] += sum.x;
+      s[1] += sum.v;
+      for (std::size_t i = 0; i < is_held_.size(); ++i) {
+        if (is_held_[i] != 0) continue;
+        s[index_of_y(i)] -= sum.x;
+        s[index_of_w(i)] -= sum.v;
+      }
+    };
+    add(by_frequency, along_->by_frequency);
+    add(by_amplitude, along_->by_amplitude);
+  }
+  // Of those that fly, where they turn back.
+  void look_for_turns(double mass, const Forcing<double>& force, double begin, double duration) const {
+    const Driven<double, Forcing<double>> oscillator(of_.zeta / mass, 1 / mass, of_.force);
+    const ForcedMotion<double> primary(oscillator, force, begin, x_, v_);
+    Search<double> search{2};
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+      if (is_held_[i] != 0) continue;
+      const double clearance = of_.dampers[i].clearance;
+      const bool left = y_[i] <= clearance / 2;
+      const Flight<double, Forcing<double>, OwnClearance<double>, const ForcedMotion<double>&> flight(
+          primary, {clearance},
+          {{x_, v_, y_[i], w_[i]},
+           left ? 0 : clearance,
+           left ? 1.0 : -1.0,
+           left ? y_[i] : clearance - y_[i]});
+      double sign = y_[i] == 0 ? 1 : y_[i] == clearance ? -1 : w_[i] >= 0 ? 1 : -1, from = 0;
+      while (const auto turn = flight.turn_of_y(sign, from, duration, search)) {
+        const double y = flight.at(*turn).y, gap = sign > 0 ? clearance - y : y;
+        if (!(along_->nearest_miss && *along_->nearest_miss <= gap)) along_->nearest_miss = gap;
+        sign = -sign;
+        from = *turn;
+      }
+    }
   }
 
   // What impacts at a time change, and that masses are held from then on: a saltation (M13.4). Letting go of
   // a mass changes nothing, as it has no speed.
-  void happens(double time, HeldBy held_then, std::vector<ChangeOfState>& changes) {
+  void happens(double time, HeldBy held_then, const Changes& changes) {
     Event event = impacts_at(time);
     event.mass_then = mass_with(held_then);
     // Whom its wall leaves behind, but so little that it is taken for held at once, joins anew.
@@ -186,7 +265,8 @@ class RigidWalls {
     jump(event, kick);
     const ChangeOfState after = rates(time);
     for (std::size_t k = 0; k < kick.size(); ++k) kick[k] = after[k] - kick[k];
-    for (ChangeOfState& s : changes) {
+    for (ChangeOfState* const each : changes) {
+      ChangeOfState& s = *each;
       double earlier = 0;
       for (const std::size_t i : event.meeting)
         earlier += s[index_of_y(i)] / w_before[i] / double(event.meeting.size());
@@ -212,6 +292,7 @@ class RigidWalls {
     for (auto each = first; each != last; ++each) {
       const auto row = std::size_t(each - impacts_.time.begin());
       const auto i = std::size_t(impacts_.damper[row]);
+      y_[i] = impacts_.wall[row] == Wall::left ? 0 : of_.dampers[i].clearance;
       w_[i] = impacts_.relative_velocity[row];
       event.meeting.push_back(i);
       at_walls.push_back({i, of_.dampers[i].nu, of_.dampers[i].e, w_[i] < 0 ? 1.0 : -1.0, -std::fabs(w_[i])});
@@ -257,17 +338,19 @@ class RigidWalls {
   const Numbers& of_;
   const Impacts& impacts_;
   std::vector<Held> held_;
+  AlongRun* along_;
   std::vector<double> times_;
   HeldBy is_held_;
   double x_, v_;
-  std::vector<double> w_;
+  std::vector<double> y_, w_;
   bool one_sided_ = false;
 };
 
 // Compliant walls. Neither a motion's propagator nor what touch and end of a contact add depend on the state.
 class CompliantWalls {
  public:
-  CompliantWalls(const Numbers& of, const Run& run) : of_(of), impacts_(*run.impacts), held_(held_in(run)) {
+  CompliantWalls(const Numbers& of, const Run& run, AlongRun* along)
+      : of_(of), run_(run), along_(along), held_(held_in(run)) {
     std::vector<double> events;
     for (const Held& each : held_) {
       events.push_back(each.begin);
@@ -276,121 +359,171 @@ class CompliantWalls {
     times_ = times_of(std::move(events), run.end_time);
   }
 
-  Carried carry(std::vector<ChangeOfState>& changes, const std::function<void()>& after_step) const {
+  Carried carry(const Changes& changes, const std::function<void()>& after_step) const {
     std::size_t most_lost = 0;
+    HeldBy held;
     for (std::size_t n = 0; n + 1 < times_.size(); ++n) {
       for (const Held& each : held_) {
         if (each.end == times_[n]) edge(each.damper, -1, changes);
         if (each.begin == times_[n] && begins_by_impact(each)) edge(each.damper, 1, changes);
       }
       after_step();
-      const HeldBy held = held_between(held_, times_[n], times_[n + 1], of_.dampers.size());
+      held = held_between(held_, times_[n], times_[n + 1], of_.dampers.size());
       const double duration = times_[n + 1] - times_[n];
       double rate_of_loss = 2 * of_.zeta;
       for (std::size_t i = 0; i < held.size(); ++i)
         if (held[i] != 0) rate_of_loss += (1 + of_.dampers[i].nu) * of_.dampers[i].damping;
       if (is_lost(rate_of_loss * duration)) most_lost = std::max(most_lost, number_of_held(held));
       const int pieces = pieces_of(rate_of_loss * duration);
-      const Step step(of_, held, duration / pieces);
+      const Step step(of_, held, duration / pieces, along_ != nullptr);
       for (int i = 0; i < pieces; ++i) {
-        step.carry(changes);
+        const double time = times_[n] + duration * i / pieces;
+        for (ChangeOfState* const each : changes) {
+          const bool by_frequency = along_ && each == &along_->by_frequency,
+                     by_amplitude = along_ && each == &along_->by_amplitude;
+          step.carry(*each, by_frequency   ? Step::secular(of_.force, time)
+                            : by_amplitude ? Step::harmonic(of_.force, time)
+                                           : std::array<double, 4>{});
+        }
         after_step();
       }
     }
+    if (along_) along_->rates_at_end = rates_at_end(held);
     return {2 * most_lost, false};
   }
 
  private:
   // A contact from the run's beginning on may go on from before.
   bool begins_by_impact(const Held& held) const {
-    const auto [first, last] = std::equal_range(impacts_.time.begin(), impacts_.time.end(), held.begin);
+    const Impacts& impacts = *run_.impacts;
+    const auto [first, last] = std::equal_range(impacts.time.begin(), impacts.time.end(), held.begin);
     for (auto each = first; each != last; ++each)
-      if (std::size_t(impacts_.damper[std::size_t(each - impacts_.time.begin())]) == held.damper) return true;
+      if (std::size_t(impacts.damper[std::size_t(each - impacts.time.begin())]) == held.damper) return true;
     return false;
   }
   // Touch (sign 1) or end (-1) of a contact (M13.25).
-  void edge(std::size_t damper, int sign, std::vector<ChangeOfState>& changes) const {
-    const auto& [nu, e, stiffness, damping] = of_.dampers[damper];
-    for (ChangeOfState& s : changes) {
-      const double force = sign * damping * s[index_of_y(damper)];
-      s[1] += nu * force;
-      for (std::size_t i = 0; i < of_.dampers.size(); ++i) s[index_of_w(i)] -= nu * force;
+  void edge(std::size_t damper, int sign, const Changes& changes) const {
+    const Damper& of = of_.dampers[damper];
+    for (ChangeOfState* const each : changes) {
+      ChangeOfState& s = *each;
+      const double force = sign * of.damping * s[index_of_y(damper)];
+      s[1] += of.nu * force;
+      for (std::size_t i = 0; i < of_.dampers.size(); ++i) s[index_of_w(i)] -= of.nu * force;
       s[index_of_w(damper)] -= force;
     }
   }
+  ChangeOfState rates_at_end(const HeldBy& held) const {
+    const History& history = *run_.history;
+    const double x = history.x.back(), v = history.v.back();
+    double a = of_.force.amplitude * of_.force.phase(run_.end_time).sin - 2 * of_.zeta * v - x;
+    ChangeOfState all(of_.dimensions());
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const double y = history.dampers[i].y.back(), w = history.dampers[i].w.back();
+      all[index_of_y(i)] = w;
+      if (held[i] == 0) continue;
+      const Damper& of = of_.dampers[i];
+      const double push = of.damping * w + of.stiffness * (held[i] > 0 ? y : y - of.clearance);
+      a += of.nu * push;
+      all[index_of_w(i)] = -push;
+    }
+    all[0] = v, all[1] = a;
+    for (std::size_t i = 0; i < held.size(); ++i) all[index_of_w(i)] -= a;
+    return all;
+  }
 
-  // What a time in which the same masses push their walls makes of changes.
+  // What a time in which the same masses push their walls makes of a change.
   class Step {
    public:
-    Step(const Numbers& of, const HeldBy& held, double duration) : duration_(duration) {
-      std::vector<PushedWall<double>> walls;
-      for (std::size_t i = 0; i < held.size(); ++i) {
-        if (held[i] == 0) {
-          free_.push_back(i);
-        } else {
-          pushed_.push_back(i);
-          walls.push_back({of.dampers[i].nu, of.dampers[i].stiffness, of.dampers[i].damping, 0, 0});
-        }
+    // with_force: of changes of the force, too.
+    Step(const Numbers& of, const HeldBy& held, double duration, bool with_force) : duration_(duration) {
+      for (std::size_t i = 0; i < held.size(); ++i) (held[i] == 0 ? free_ : pushed_).push_back(i);
+      const std::size_t n = 2 + 2 * pushed_.size() + (with_force ? 4 : 0);
+      // By Taylor's series of a time so short that its terms fall from the first on, squared as often as the
+      // duration is halved for that.
+      double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
+      for (const std::size_t i : pushed_) {
+        const Damper& each = of.dampers[i];
+        all_k += each.nu * each.stiffness;
+        most_k = std::max(most_k, each.stiffness);
+        rate += (1 + each.nu) * each.damping;
       }
-      const std::size_t n = 2 + 2 * pushed_.size();
-      if (pushed_.empty()) {
-        const Propagator<double> p = Oscillator<double>(of.zeta, 1).propagate(duration);
-        matrix_ = {{p.c, p.s}, {-p.s, p.v}};
-        departs_ = {p.c1, p.s1};
-        return;
-      }
-      // By series (M17.16) of each of the states that have one number, 1; squared as often as the duration is
-      // halved for that.
-      JointContact<double, NoForcing<double>> contact;
-      contact.set_walls(of.zeta, {}, walls);
+      rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
       int halvings = 0;
-      while (duration > contact.length()) {
+      while (duration * rate > 1) {
         duration /= 2;
         ++halvings;
       }
       matrix_.assign(n, std::vector<double>(n));
+      std::vector<double> term(n), next(n);
       for (std::size_t j = 0; j < n; ++j) {
-        for (PushedWall<double>& wall : walls) wall.q = wall.w = 0;
-        if (j >= 2) (j % 2 == 0 ? walls[j / 2 - 1].q : walls[j / 2 - 1].w) = 1;
-        contact.begin(0, j == 0 ? 1 : 0, j == 1 ? 1 : 0, walls);
-        const auto now = contact.change(duration);
-        matrix_[0][j] = now.x;
-        matrix_[1][j] = now.v;
-        for (std::size_t k = 0; k < walls.size(); ++k) {
-          const auto [q, w] = contact.overlap(k, duration);
-          matrix_[2 + 2 * k][j] = q;
-          matrix_[3 + 2 * k][j] = w;
+        std::ranges::fill(term, 0.0);
+        term[j] = 1;
+        for (int order = 0; order < terms; ++order) {
+          for (std::size_t i = 0; i < n; ++i) matrix_[i][j] += term[i];
+          derive(of, term, next);
+          for (std::size_t i = 0; i < n; ++i) term[i] = next[i] * (duration / (order + 1));
         }
       }
       for (; halvings > 0; --halvings) square();
-      departs_ = matrix_[0];
-      departs_[0] -= 1;
-      departs_[1] -= duration_;
     }
 
-    void carry(std::vector<ChangeOfState>& changes) const {
+    // The change g of the force at a time, by f0 and by omega_f, and the three numbers that lead it on
+    // (M13.27).
+    static std::array<double, 4> harmonic(const Forcing<double>& force, double time) {
+      const auto [sin, cos] = force.phase(time);
+      return {sin, cos, 0, 0};
+    }
+    static std::array<double, 4> secular(const Forcing<double>& force, double time) {
+      const auto [sin, cos] = force.phase(time);
+      return {force.amplitude * time * cos, -force.amplitude * time * sin, force.amplitude * cos,
+              -force.amplitude * sin};
+    }
+
+    // `force`: how the force changes when the step begins, as the last four of the matrix.
+    void carry(ChangeOfState& s, const std::array<double, 4>& force) const {
       std::vector<double> from(matrix_.size());
-      for (ChangeOfState& s : changes) {
-        from[0] = s[0], from[1] = s[1];
-        for (std::size_t k = 0; k < pushed_.size(); ++k) {
-          from[2 + 2 * k] = s[index_of_y(pushed_[k])];
-          from[3 + 2 * k] = s[index_of_w(pushed_[k])];
-        }
-        const double departs = product(departs_, from);
-        s[0] = product(matrix_[0], from);
-        s[1] = product(matrix_[1], from);
-        for (std::size_t k = 0; k < pushed_.size(); ++k) {
-          s[index_of_y(pushed_[k])] = product(matrix_[2 + 2 * k], from);
-          s[index_of_w(pushed_[k])] = product(matrix_[3 + 2 * k], from);
-        }
-        for (const std::size_t i : free_) {
-          s[index_of_y(i)] += duration_ * s[index_of_w(i)] - departs;
-          s[index_of_w(i)] -= s[1] - from[1];
-        }
+      from[0] = s[0], from[1] = s[1];
+      const std::size_t n = 2 + 2 * pushed_.size();
+      for (std::size_t k = 0; k < pushed_.size(); ++k) {
+        from[2 + 2 * k] = s[index_of_y(pushed_[k])];
+        from[3 + 2 * k] = s[index_of_w(pushed_[k])];
+      }
+      if (from.size() > n) std::ranges::copy(force, from.begin() + std::ptrdiff_t(n));
+      s[0] = product(matrix_[0], from);
+      s[1] = product(matrix_[1], from);
+      for (std::size_t k = 0; k < pushed_.size(); ++k) {
+        s[index_of_y(pushed_[k])] = product(matrix_[2 + 2 * k], from);
+        s[index_of_w(pushed_[k])] = product(matrix_[3 + 2 * k], from);
+      }
+      for (const std::size_t i : free_) {
+        s[index_of_y(i)] += duration_ * s[index_of_w(i)] - (s[0] - from[0] - duration_ * from[1]);
+        s[index_of_w(i)] -= s[1] - from[1];
       }
     }
 
    private:
+    static constexpr int terms = 24;
+    // The rates of change of a change (M13.27).
+    void derive(const Numbers& of, const std::vector<double>& s, std::vector<double>& rates) const {
+      const std::size_t n = 2 + 2 * pushed_.size();
+      double a = -2 * of.zeta * s[1] - s[0];
+      if (s.size() > n) a += s[n];
+      for (std::size_t k = 0; k < pushed_.size(); ++k) {
+        const Damper& each = of.dampers[pushed_[k]];
+        const double push = each.damping * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
+        a += each.nu * push;
+        rates[2 + 2 * k] = s[3 + 2 * k];
+        rates[3 + 2 * k] = -push;
+      }
+      rates[0] = s[1], rates[1] = a;
+      for (std::size_t k = 0; k < pushed_.size(); ++k) rates[3 + 2 * k] -= a;
+      if (s.size() == n) return;
+      const double omega = of.force.frequency, *g = s.data() + n;
+      rates[n] = omega * g[1] + g[2];
+      rates[n + 1] = -omega * g[0] + g[3];
+      rates[n + 2] = omega * g[3];
+      rates[n + 3] = -omega * g[2];
+    }
     static double product(const std::vector<double>& row, const std::vector<double>& column) {
       double sum = 0;
       for (std::size_t k = 0; k < row.size(); ++k) sum += row[k] * column[k];
@@ -408,12 +541,13 @@ class CompliantWalls {
 
     double duration_;
     std::vector<std::size_t> pushed_, free_;
-    std::vector<std::vector<double>> matrix_;  // of x, x', then q and q' of each that pushes its wall
-    std::vector<double> departs_;              // by which x departs from its straight line
+    // Of x, x', then q and q' of each that pushes its wall, then of a change of the force (M13.27).
+    std::vector<std::vector<double>> matrix_;
   };
 
   const Numbers& of_;
-  const Impacts& impacts_;
+  const Run& run_;
+  AlongRun* along_;
   std::vector<Held> held_;
   std::vector<double> times_;
 };
@@ -421,10 +555,16 @@ class CompliantWalls {
 }  // namespace
 
 Carried carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
-                      const std::function<void()>& after_step) {
+                      const std::function<void()>& after_step, AlongRun* along) {
   const Numbers numbers(run.scene, run.engine);
-  return has_rigid_walls(run.engine) ? RigidWalls(numbers, run).carry(changes, after_step)
-                                     : CompliantWalls(numbers, run).carry(changes, after_step);
+  if (along) {
+    *along = {};
+    along->by_frequency.assign(numbers.dimensions(), 0.0);
+    along->by_amplitude.assign(numbers.dimensions(), 0.0);
+  }
+  const Changes all = changes_of(changes, along);
+  return has_rigid_walls(run.engine) ? RigidWalls(numbers, run, along).carry(all, after_step)
+                                     : CompliantWalls(numbers, run, along).carry(all, after_step);
 }
 
 }  // namespace impact_damper

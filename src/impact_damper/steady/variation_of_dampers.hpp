@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "impact_damper/run.hpp"
@@ -13,6 +14,8 @@ namespace impact_damper {
 
 // Of x, x', then y and y' of each damper by number in the scene; divided as in run.hpp.
 using ChangeOfState = std::vector<double>;
+constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
+constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
 inline std::size_t dimensions_of(const Scene& scene) { return 2 + 2 * scene.dampers.size(); }
 
 // The number of pieces for a motion that contracts volumes by exp(-loss): each contracts by e at most, so
@@ -30,11 +33,20 @@ struct Carried {
   // them together.
   bool one_sided = false;
 };
+// What a change by one unit of omega_f, and of f0, has led to by the run's end; and what else there is to
+// know of the run there, and of its flights.
+struct AlongRun {
+  ChangeOfState by_frequency, by_amplitude;
+  ChangeOfState rates_at_end;  // x', x'', then y' and y'' of each damper, before what happens at that instant
+  // Rigid walls: the least distance from a wall at which a mass turns back in flight.
+  std::optional<double> nearest_miss;
+};
 // Replaces each change of a run's initial state by what it has become at the run's end. after_step() is
 // called after each event and each motion, or piece of one: it may replace the changes by others that span
-// the same directions. Required of the run: the engine exact or restitution, a scene with a list of dampers
-// and a force, the end at its until_time, and impacts and contacts recorded.
+// the same directions. `along` is filled in if it is not null. Required of the run: the engine exact or
+// restitution, a scene with a list of dampers and a force, the end at its until_time, impacts and contacts
+// recorded, and with `along` a sample at the end as the last of its history.
 Carried carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
-                      const std::function<void()>& after_step);
+                      const std::function<void()>& after_step, AlongRun* along = nullptr);
 
 }  // namespace impact_damper
