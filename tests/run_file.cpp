@@ -676,8 +676,8 @@ TEST_CASE("a run of several dampers reads back as it was, and only where it may"
     }
     CHECK(run_text(back) == text);
     CHECK(problems(text) ==
-          Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response, but not "
-                "orbits: give one damper without a list"});
+          Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response: give one "
+                "damper without a list"});
   }
 }
 
@@ -743,8 +743,7 @@ TEST_CASE(
         std::string::npos);
   CHECK_THROWS_WITH_AS(
       parse_scene("s.json", text),
-      "s.json: /dampers: a list is for run, sweep, report and response, but not orbits: give one "
-      "damper without a list",
+      "s.json: /dampers: a list is for run, sweep, report and response: give one damper without a list",
       InputError);
 }
 

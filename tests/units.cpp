@@ -258,8 +258,7 @@ TEST_CASE("a scene file with several dampers in units is read as the scene that 
   CHECK(file.scales == scales_of(mast()));
   CHECK_THROWS_WITH_AS(
       parse_scene("boxes.json", text),
-      "boxes.json: /dampers: a list is for run, sweep, report and response, but not orbits: give "
-      "one damper without a list",
+      "boxes.json: /dampers: a list is for run, sweep, report and response: give one damper without a list",
       InputError);
 }
 

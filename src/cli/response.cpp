@@ -332,7 +332,10 @@ void warn_of(const Branches& found, const BranchRule& rule) {
     const bool is_ended = start.steady.stop_reason != StopReason::time;
     ended += is_ended;
     open += !is_ended && !start.orbit;
-    if (start.orbit && *start.orbit != OrbitEnd::converged)
+    if (start.orbit == OrbitEnd::no_derivative)
+      warn("several masses meet walls at one instant, so their motion has no multipliers: give those that move "
+           "alike as one with the sum of their masses, or release them apart");
+    else if (start.orbit && *start.orbit != OrbitEnd::converged)
       warn("no periodic orbit is found near a motion that repeats: " + std::string(end_of(start)));
   }
   const std::size_t all = found.starts.size();
@@ -417,12 +420,12 @@ std::string mapped(const Request& asked) {
 std::string followed(const Request& asked) {
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
-  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits,
-                                       {asked.starts.begin(), asked.starts.end()}, asked.threads,
-                                       [&](std::int64_t done) { progress(done); });
+  const Branches found =
+      find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts, asked.threads,
+                    [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(found, asked.orbits);
   return asked.format == Format::csv
-             ? orbits_csv(*asked.range, found, asked.units)
+             ? orbits_csv(scene, *asked.range, found, asked.units)
              : response_text(orbits_response(scene, asked.engine, asked.orbits, *asked.range, found),
                              asked.file.scales);
 }
@@ -464,8 +467,7 @@ int respond(Arguments& arguments) {
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
   Request asked;
   asked.kind = kinds[word.value_or(0)];
-  asked.file = scene_of(arguments, Stops::ignored,
-                        asked.kind == Kind::orbits ? DamperList::rejected : DamperList::allowed);
+  asked.file = scene_of(arguments, Stops::ignored, DamperList::allowed);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
   asked.sweep = rule_of(arguments, SteadyRule{});

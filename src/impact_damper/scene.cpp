@@ -90,8 +90,7 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
     problems.push_back(
         {"dampers",
-         "a list is for run, sweep, report and response, but not orbits: give one damper without "
-         "a list"});
+         "a list is for run, sweep, report and response: give one damper without a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {

@@ -206,7 +206,7 @@ class Map {
     return known;
   }
   void require_valid() const {
-    require_none(problems_of(first_.at(second_.at(scene_, 0), 0), engine_, DamperList::allowed));
+    require_none(problems_of(first_.at(second_.at(scene_, 0), 0), engine_));
     impact_damper::require_valid(second_.at(scene_, 0), engine_, first_);
     impact_damper::require_valid(first_.at(scene_, 0), engine_, second_);
   }

@@ -6,6 +6,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
@@ -31,17 +32,28 @@ class BranchSearch {
   double value_of(const Orbit& orbit) const { return orbit.scene.*member_of(range_.parameter); }
 
   // What a simulation ends in, and the orbit there.
-  PeriodicMotion settled(const Scene& scene, const State<double>& state) const {
+  PeriodicMotion settled(const Scene& scene, const SceneState& state) const {
     const ForcedScene forced(scene, engine_);
     PeriodicMotion motion;
-    motion.steady = forced.follow(state, rule_.steady, [](const State<double>&) { return false; });
+    motion.steady = forced.follow(state, rule_.steady, [](const SceneState&) { return false; });
     if (motion.steady.stop_reason != StopReason::time || !motion.steady.period) return motion;
     const int periods = int(*motion.steady.period);
-    const State<double>& s = motion.steady.state;
-    const bool is_struck = forced.watch(s, periods).impacts != ImpactCounts{};
-    motion.orbit = is_struck
-                       ? find_orbit(scene, engine_, periods, s)
-                       : find_orbit(scene, engine_, 1, {s.x, s.v, 0.5 - s.x, -s.v}, {.symmetric = true});
+    const SceneState& s = motion.steady.state;
+    const ForcedScene::Watched watched = forced.watch(s, periods);
+    SceneState centred = s;
+    centred.y = 0.5 - s.x;
+    centred.w = -s.v;
+    for (std::size_t i = 0; i < s.dampers.size(); ++i)
+      if (watched.by_damper[i] == ImpactCounts{})
+        centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
+    if (watched.impacts == ImpactCounts{}) {
+      motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});
+    } else if (scene.dampers.empty()) {
+      motion.orbit = find_orbit(scene, engine_, periods, s);
+    } else {
+      motion.orbit = find_orbit(scene, engine_, periods, centred);
+      if (motion.orbit->end != OrbitEnd::converged) motion.orbit = find_orbit(scene, engine_, periods, s);
+    }
     return motion;
   }
 
@@ -112,9 +124,9 @@ class BranchSearch {
 
  private:
   // Whether a state is one of the orbit's at phase 0, or of its mirror image's, to within `gap`.
-  bool is_twin(const Orbit& orbit, const State<double>& state, double gap) const {
+  bool is_twin(const Orbit& orbit, const SceneState& state, double gap) const {
     const PoincareMap half(orbit.scene, engine_, 1);
-    State<double> s = release_of(orbit.scene);
+    SceneState s = release_of(orbit.scene);
     for (int n = 0; n < 2 * orbit.periods; ++n) {
       if (distance(s, state) <= gap * size_of(state)) return true;
       const PoincareImage image = half(s);
@@ -177,22 +189,25 @@ std::string_view name_of(BranchOrigin origin) {
 }
 
 Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
-                       const BranchRule& rule, const std::vector<State<double>>& starts,
+                       const BranchRule& rule, const std::vector<SceneState>& starts,
                        const Threads& threads, const std::function<void(std::int64_t done)>& progress) {
   std::vector<Problem> problems = problems_of(rule);
   if (!(range.from > 0 && range.to > 0 && range.from != range.to))
     problems.push_back({"range", "must be two different numbers > 0"});
+  if (scene.dampers.size() > most_dampers_with_changes)
+    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
+                                       " for orbits, got " + std::to_string(scene.dampers.size())});
   require_none(problems);
   const BranchSearch search(engine, range, rule);
   for (const double value : {range.from, range.to})
-    for (const State<double>& start : starts)
+    for (const SceneState& start : starts)
       require_none(problems_of(search.at(released_from(scene, start), value), engine));
 
   Branches all;
   progress(0);
   std::vector<PeriodicMotion> motions(starts.size());
   for_each_index(std::int64_t(starts.size()), threads, [&](std::int64_t n) {
-    const State<double>& start = starts[static_cast<std::size_t>(n)];
+    const SceneState& start = starts[static_cast<std::size_t>(n)];
     motions[static_cast<std::size_t>(n)] = search.settled(search.at(scene, range.from), start);
   });
 

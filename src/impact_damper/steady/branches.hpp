@@ -28,7 +28,7 @@ struct BranchRule {
   // When a simulation has become periodic. Branches of orbits longer than its longest_period are not
   // followed.
   SteadyRule steady;
-  // Largest distance of two points of a branch, in the space of x, v, y, w and the parameter. In [1e-6, 1e6].
+  // Largest distance of two points of a branch, in the space of the state and the parameter. In [1e-6, 1e6].
   double largest_step = 5e-2;
   double max_multiplier = 1e4;     // FollowOptions::max_multiplier; 1 to 1e12
   std::int64_t max_points = 1000;  // of each branch; 1 to 1e6
@@ -41,7 +41,7 @@ std::vector<Problem> problems_of(const BranchRule& rule);
 
 // What a simulation from an initial state ended in, at ParameterRange::from.
 struct BranchStart {
-  State<double> state{};
+  SceneState state;
   SteadyState steady;                  // without what is measured
   std::optional<OrbitEnd> orbit;       // of Newton's iteration from there; absent: it is not periodic
   std::optional<std::int64_t> branch;  // on which it lies
@@ -74,11 +74,13 @@ struct Branches {
 };
 
 // From each of `starts`, states at phase 0 of the force. A motion on a branch that is known begins no other.
-// A secondary mass that is not struck is taken to rest where the motion is symmetric (OrbitOptions).
+// A secondary mass that is not struck is taken to rest where the motion is symmetric (OrbitOptions), or among
+// others that are struck where the simulation left it, if there is no orbit with it there. A list may have
+// most_dampers_with_changes.
 // `progress` is called with the number of branches that are done. No result depends on the number of
 // threads. Throws InvalidArguments if scene, range or rule are not valid.
 Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
-                       const BranchRule& rule, const std::vector<State<double>>& starts,
+                       const BranchRule& rule, const std::vector<SceneState>& starts,
                        const Threads& threads, const std::function<void(std::int64_t done)>& progress);
 
 }  // namespace impact_damper

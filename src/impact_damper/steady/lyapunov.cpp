@@ -215,8 +215,8 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   std::vector<Problem> problems;
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
-  if (scene.dampers.size() > most_dampers_with_exponents)
-    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_exponents) +
+  if (scene.dampers.size() > most_dampers_with_changes)
+    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for exponents, got " + std::to_string(scene.dampers.size())});
   require_none(problems);
   return scene.dampers.empty() ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)

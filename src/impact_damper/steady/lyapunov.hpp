@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "impact_damper/run.hpp"
+#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 
@@ -27,13 +28,10 @@ struct LyapunovExponents {
   bool one_sided = false;
 };
 
-// A period takes a time that grows with the fourth power of the number of dampers: with so many, seconds.
-inline constexpr std::size_t most_dampers_with_exponents = 100;
-
 // From the scene's initial condition at phase 0, over `periods` >= 1 after the first `skipped` >= 0.
 // `progress`, if given, is called with the number of periods, of all these, that are done. Throws
 // InvalidArguments as PoincareMap does, of a scene with a list of dampers as ForcedScene does, and for more
-// than most_dampers_with_exponents.
+// than most_dampers_with_changes.
 LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
                                      std::int64_t skipped = 0,
                                      const std::function<void(std::int64_t done)>& progress = {});

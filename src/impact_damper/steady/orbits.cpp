@@ -310,7 +310,7 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
     now.point = *next;
   }
   if (best.end != OrbitEnd::run_stopped && least <= equation.options.tolerance)
-    best.end = OrbitEnd::converged;
+    best.end = best.image.one_sided ? OrbitEnd::no_derivative : OrbitEnd::converged;
   best.residuals = std::move(residuals);
   return best;
 }
@@ -318,7 +318,8 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
 // Across the parameter: a plane on which it has one value.
 Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 1)}; }
 
-// How far a point of n half periods is from being one of m; nothing where the run does not get that far.
+// How far a point of n half periods is from being one of m, wherever masses rest that are not struck; nothing
+// where the run does not get that far.
 std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
@@ -326,6 +327,10 @@ std::optional<StateVector> rest_after(const Equation& equation, const Point& p, 
   if (image.stop_reason != StopReason::time) return {};
   StateVector rest = vector_of(image.state);
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= p[i];
+  for (const std::size_t damper : image.idle) {
+    rest[index_of_y(damper)] = -rest[0];
+    rest[index_of_w(damper)] = -rest[1];
+  }
   return rest;
 }
 // Whether it is one, to within `gap` in units of the larger of 1 and |s|.
@@ -334,18 +339,27 @@ bool closes_after(const Equation& equation, const Point& p, int half_periods, do
   return rest && largest(*rest) <= gap * std::max(1.0, largest(state_at(p)));
 }
 
-// Without the two of each mass that rests, which are 1, or -1 in half a period.
-Multipliers multipliers_of(const PoincareImage& image) {
-  std::vector<bool> taken(image.by_state.size(), true);
-  for (const std::size_t damper : image.idle) taken[index_of_y(damper)] = taken[index_of_w(damper)] = false;
-  Matrix moving;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (!taken[i]) continue;
-    moving.emplace_back();
-    for (std::size_t k = 0; k < taken.size(); ++k)
-      if (taken[k]) moving.back().push_back(image.by_state[i][k]);
+// The numbers of the state without those of masses that are not struck, and the derivative of these alone: the
+// others do not act on them, and add two multipliers that are 1, or -1 in half a period.
+std::vector<std::size_t> moving_in(const PoincareImage& image) {
+  std::vector<bool> rests(image.by_state.size(), false);
+  for (const std::size_t damper : image.idle) rests[index_of_y(damper)] = rests[index_of_w(damper)] = true;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < rests.size(); ++i)
+    if (!rests[i]) all.push_back(i);
+  return all;
+}
+Matrix derivative_of_moving(const PoincareImage& image) {
+  const std::vector<std::size_t> moving = moving_in(image);
+  Matrix all;
+  for (const std::size_t i : moving) {
+    all.emplace_back();
+    for (const std::size_t k : moving) all.back().push_back(image.by_state[i][k]);
   }
-  return impact_damper::multipliers_of(moving);
+  return all;
+}
+Multipliers multipliers_of(const PoincareImage& image) {
+  return impact_damper::multipliers_of(derivative_of_moving(image));
 }
 
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
@@ -363,7 +377,6 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.impacts = found.image.impacts;
   orbit.sticking = found.image.sticking;
   orbit.idle = found.image.idle;
-  orbit.one_sided = found.image.one_sided;
   orbit.multipliers = multipliers_of(found.image);
   orbit.slowest_impact = found.image.slowest_impact;
   orbit.nearest_miss = found.image.nearest_miss;
@@ -385,8 +398,10 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   return orbit;
 }
 
-// The eigenvector of -1, of length 1, of a matrix that has this eigenvalue nearly; by inverse iteration.
-std::optional<StateVector> reversed_by(StateMatrix a) {
+// The eigenvector of -1, of length 1, of a derivative that has this eigenvalue nearly; by inverse iteration.
+// Masses that are not struck stay where they rest.
+std::optional<StateVector> reversed_by(const PoincareImage& image) {
+  StateMatrix a = derivative_of_moving(image);
   constexpr double shift = 1e-9;  // so that the matrix is not singular
   for (std::size_t i = 0; i < a.size(); ++i) a[i][i] += 1 + shift;
   StateVector v(a.size(), 1.0);
@@ -398,7 +413,15 @@ std::optional<StateVector> reversed_by(StateMatrix a) {
     size = std::sqrt(size);
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = (*next)[i] / size;
   }
-  return v;
+  if (image.idle.empty()) return v;
+  StateVector whole(image.by_state.size());
+  const std::vector<std::size_t> moving = moving_in(image);
+  for (std::size_t i = 0; i < moving.size(); ++i) whole[moving[i]] = v[i];
+  for (const std::size_t damper : image.idle) {
+    whole[index_of_y(damper)] = -whole[0];
+    whole[index_of_w(damper)] = -whole[1];
+  }
+  return normalized(whole);
 }
 
 std::vector<Problem> problems_of(const OrbitOptions& options) {
@@ -796,6 +819,8 @@ std::string_view name_of(OrbitEnd end) {
       return "converged";
     case OrbitEnd::no_convergence:
       return "no_convergence";
+    case OrbitEnd::no_derivative:
+      return "no_derivative";
     case OrbitEnd::run_stopped:
       return "run_stopped";
   }
@@ -902,9 +927,8 @@ Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOp
   const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
   const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
   const Point origin = point_at(vector_of(release_of(from.scene)), event.parameter);
-  const std::optional<StateVector> direction = reversed_by(
-      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene))
-          .by_state);
+  const std::optional<StateVector> direction = reversed_by(PoincareMap(
+      equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene)));
   if (!direction) return none;
   const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {

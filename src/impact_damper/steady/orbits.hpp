@@ -17,6 +17,7 @@ namespace impact_damper {
 enum class OrbitEnd {
   converged,
   no_convergence,  // the iteration went astray; or the orbit is not isolated (OrbitOptions::symmetric)
+  no_derivative,   // several masses meet rigid walls at one instant: who is first decides what comes of a change
   run_stopped,     // a run ended before its periods were over, by a budget
 };
 std::string_view name_of(OrbitEnd end);  // the enumerator's own name
@@ -43,7 +44,6 @@ struct Orbit {
   std::vector<OrbitImpact> impacts;  // in one period of its own
   std::int64_t sticking = 0;         // in one period of its own, times in which masses stick
   std::vector<std::size_t> idle;     // as in PoincareImage
-  bool one_sided = false;            // as there: the multipliers are then of such changes
   // Of one period of its own; a mass that sticks makes two of them 0. Without those of dampers that are idle,
   // which are 1: one that rests elsewhere rests there, too.
   Multipliers multipliers;

@@ -68,16 +68,16 @@ RowColumn<SteadyState> impacts_on(std::string_view name) {
 
 // Of one of several dampers.
 template <std::size_t wall>
-RowColumn<DamperOfSteadyState> of_damper_impacts(std::string_view name) {
-  using D = DamperOfSteadyState;
+RowColumn<DamperOfMotion> of_damper_impacts(std::string_view name) {
+  using D = DamperOfMotion;
   return whole(always<D>(
       name, ratio, counts,
-      [](const D& d) { return d.has_means ? std::optional(double(d.impacts[wall])) : std::nullopt; },
+      [](const D& d) { return d.is_known ? std::optional(double(d.impacts[wall])) : std::nullopt; },
       [](D& d, double value) { d.impacts[wall] = std::int64_t(value); }));
 }
 template <auto member>
-RowColumn<DamperOfSteadyState> of_place(std::string_view name, const UnitInSi& unit) {
-  using D = DamperOfSteadyState;
+RowColumn<DamperOfMotion> of_place(std::string_view name, const UnitInSi& unit) {
+  using D = DamperOfMotion;
   return always<D>(
       name, unit, any, [](const D& d) { return std::optional(d.place.*member); },
       [](D& d, double value) { d.place.*member = value; });
@@ -107,6 +107,20 @@ RowColumn<OrbitPoint> multiplier(std::string_view name) {
   return always<OrbitPoint>(
       name, ratio, any, [](const OrbitPoint& p) { return std::optional(p.multipliers[i].*part); },
       [](OrbitPoint& p, double value) { p.multipliers[i].*part = value; });
+}
+
+template <class Motion, class IsKnown>
+std::vector<DamperOfMotion> of_damper_in(const std::vector<Motion>& motions, std::size_t number,
+                                         IsKnown&& is_known) {
+  std::vector<DamperOfMotion> rows;
+  rows.reserve(motions.size());
+  for (const Motion& each : motions) {
+    DamperOfMotion& row = rows.emplace_back();
+    row.is_known = is_known(each);
+    if (number < each.impacts_by_damper.size()) row.impacts = each.impacts_by_damper[number];
+    row.place = each.state.dampers[number];
+  }
+  return rows;
 }
 
 }  // namespace
@@ -162,26 +176,21 @@ std::span<const RowColumn<SteadyState>> steady_columns(bool several) {
   return std::span(table).first(table.size() - (several ? 2 : 0));
 }
 
-std::span<const RowColumn<DamperOfSteadyState>> damper_columns() {
+std::span<const RowColumn<DamperOfMotion>> damper_columns() {
   static const std::array table{of_damper_impacts<0>("impacts_left"), of_damper_impacts<1>("impacts_right"),
                                 of_place<&PlaceInCavity::y>("y", length),
                                 of_place<&PlaceInCavity::w>("w", velocity)};
   return table;
 }
 
-std::vector<DamperOfSteadyState> of_damper(const std::vector<SteadyState>& way, std::size_t number) {
-  std::vector<DamperOfSteadyState> rows;
-  rows.reserve(way.size());
-  for (const SteadyState& each : way) {
-    DamperOfSteadyState& row = rows.emplace_back();
-    row.has_means = each.means.has_value();
-    if (number < each.impacts_by_damper.size()) row.impacts = each.impacts_by_damper[number];
-    row.place = each.state.dampers[number];
-  }
-  return rows;
+std::vector<DamperOfMotion> of_damper(const std::vector<SteadyState>& way, std::size_t number) {
+  return of_damper_in(way, number, [](const SteadyState& steady) { return steady.means.has_value(); });
+}
+std::vector<DamperOfMotion> of_damper(const std::vector<OrbitPoint>& points, std::size_t number) {
+  return of_damper_in(points, number, [](const OrbitPoint&) { return true; });
 }
 
-std::span<const RowColumn<OrbitPoint>> orbit_columns() {
+std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several) {
   using P = OrbitPoint;
   static const std::array table{
       whole(of_point<&P::period>("period", ratio, within(1, 64))),
@@ -206,7 +215,7 @@ std::span<const RowColumn<OrbitPoint>> orbit_columns() {
       of_state<P, &State<double>::y>("y", length),
       of_state<P, &State<double>::w>("w", velocity),
   };
-  return table;
+  return std::span(table).first(table.size() - (several ? 2 : 0));
 }
 
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {

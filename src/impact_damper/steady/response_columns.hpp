@@ -35,15 +35,17 @@ struct RowColumn {
 };
 // Of a scene with several dampers without y and w, which each of them has for itself: damper_columns().
 std::span<const RowColumn<SteadyState>> steady_columns(bool several);
-struct DamperOfSteadyState {
-  bool has_means = false;
+std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several);
+// What one of several dampers does in a steady state or an orbit.
+struct DamperOfMotion {
+  bool is_known = false;  // whether the impacts are: not where a budget ended the run
   ImpactCounts impacts{};
   PlaceInCavity place{};
 };
-std::span<const RowColumn<DamperOfSteadyState>> damper_columns();
-// Of the states of a way those of one damper, by number.
-std::vector<DamperOfSteadyState> of_damper(const std::vector<SteadyState>& way, std::size_t number);
-std::span<const RowColumn<OrbitPoint>> orbit_columns();
+std::span<const RowColumn<DamperOfMotion>> damper_columns();
+// Of the states of a way, or of the points of a branch, those of one damper, by number.
+std::vector<DamperOfMotion> of_damper(const std::vector<SteadyState>& way, std::size_t number);
+std::vector<DamperOfMotion> of_damper(const std::vector<OrbitPoint>& points, std::size_t number);
 
 // Numbers under a name.
 struct Column {

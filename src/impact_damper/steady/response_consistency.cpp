@@ -39,13 +39,7 @@ class Examination {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const SteadyState& s = states[i];
       const std::string row = '/' + std::to_string(i);
-      for (const std::size_t wall : {0, 1}) {
-        std::int64_t all = s.impacts_by_damper.empty() ? s.impacts[wall] : 0;
-        for (const ImpactCounts& each : s.impacts_by_damper) all += each[wall];
-        require(s.impacts[wall] == all, place(way, wall == 0 ? "impacts_left" : "impacts_right", row),
-                "must be " + std::to_string(all) + ", the sum over the dampers, got " +
-                    std::to_string(s.impacts[wall]));
-      }
+      examine_sum(way, row, s.impacts, s.impacts_by_damper);
       require(!s.contraction || s.period, place(way, "contraction", row),
               "must be null: the motion is not periodic");
       require(s.transient_periods <= response.rule.max_periods, place(way, "transient_periods", row),
@@ -55,6 +49,17 @@ class Examination {
       require(s.measured_periods == measured, place(way, "measured_periods", row),
               "must be " + std::to_string(measured) + ", got " + std::to_string(s.measured_periods));
       examine_means(response, way, row, response.axis.at(response.scene, std::int64_t(i)), s);
+    }
+  }
+
+  void examine_sum(const std::string& way, const std::string& row, const ImpactCounts& impacts,
+                   const std::vector<ImpactCounts>& by_damper) {
+    for (const std::size_t wall : {0, 1}) {
+      std::int64_t all = by_damper.empty() ? impacts[wall] : 0;
+      for (const ImpactCounts& each : by_damper) all += each[wall];
+      require(impacts[wall] == all, place(way, wall == 0 ? "impacts_left" : "impacts_right", row),
+              "must be " + std::to_string(all) + ", the sum over the dampers, got " +
+                  std::to_string(impacts[wall]));
     }
   }
 
@@ -141,6 +146,7 @@ class Examination {
               place(branch, "multiplier_" + std::to_string(i + 1) + "_re", row),
               "must not exceed the one before in modulus");
     examine_symmetry(place(branch, "symmetric", row), point.symmetric, point.period, point.impacts);
+    examine_sum(branch, row, point.impacts, point.impacts_by_damper);
     // A simulation drifts away from what is unstable (FollowedBranch::amplitudes).
     require(std::abs(point.state.x) <= point.amplitude + 1e-5, place(branch, "x", row),
             "must not exceed the amplitude, " + number_text(point.amplitude) + ", got " +

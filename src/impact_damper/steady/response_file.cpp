@@ -16,18 +16,25 @@ using Layout = JsonWriter::Layout;
 constexpr UnitInSi rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
 
 OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
-  return {.value = value,
-          .period = orbit.periods,
-          .symmetric = orbit.symmetric,
-          .stable = orbit.stable(),
-          .impacts = {std::ranges::count(orbit.impacts, Wall::left, &OrbitImpact::wall),
-                      std::ranges::count(orbit.impacts, Wall::right, &OrbitImpact::wall)},
-          .sticking = orbit.sticking,
-          .amplitude = amplitude,
-          .multipliers = orbit.multipliers,
-          .slowest_impact = orbit.slowest_impact,
-          .nearest_miss = orbit.nearest_miss,
-          .state = release_of(orbit.scene)};
+  OrbitPoint point{.value = value,
+                   .period = orbit.periods,
+                   .symmetric = orbit.symmetric,
+                   .stable = orbit.stable(),
+                   .impacts = {},
+                   .sticking = orbit.sticking,
+                   .amplitude = amplitude,
+                   .multipliers = orbit.multipliers,
+                   .slowest_impact = orbit.slowest_impact,
+                   .nearest_miss = orbit.nearest_miss,
+                   .state = release_of(orbit.scene),
+                   .impacts_by_damper = std::vector<ImpactCounts>(orbit.scene.dampers.size())};
+  point.multipliers.resize(4);
+  for (const OrbitImpact& impact : orbit.impacts) {
+    const auto side = std::size_t(impact.wall);
+    ++point.impacts[side];
+    if (!orbit.scene.dampers.empty()) ++point.impacts_by_damper[std::size_t(impact.damper)][side];
+  }
+  return point;
 }
 std::vector<OrbitPoint> points_of(const FollowedBranch& followed, double Scene::*number) {
   std::vector<OrbitPoint> points;
@@ -96,6 +103,19 @@ void write_state(JsonWriter& out, std::string_view name, const SceneState& s) {
   out.close();
 }
 
+template <class Motion>
+void write_dampers(JsonWriter& out, const std::vector<Motion>& motions, std::size_t dampers) {
+  if (dampers == 0) return;
+  out.open_array("dampers", Layout::lines);
+  for (std::size_t n = 0; n < dampers; ++n) {
+    out.open_object(Layout::lines);
+    for (const Column& column : columns_of(damper_columns(), of_damper(motions, n)))
+      out.field(column.name, column.numbers);
+    out.close();
+  }
+  out.close();
+}
+
 void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyState>& way,
                std::size_t dampers) {
   out.open_object(name, Layout::lines);
@@ -105,18 +125,11 @@ void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyS
   out.field("end", ends);
   for (const Column& column : columns_of(steady_columns(dampers > 0), way))
     out.field(column.name, column.numbers);
-  if (dampers > 0) out.open_array("dampers", Layout::lines);
-  for (std::size_t n = 0; n < dampers; ++n) {
-    out.open_object(Layout::lines);
-    for (const Column& column : columns_of(damper_columns(), of_damper(way, n)))
-      out.field(column.name, column.numbers);
-    out.close();
-  }
-  if (dampers > 0) out.close();
+  write_dampers(out, way, dampers);
   out.close();
 }
 
-void write_branch(JsonWriter& out, const OrbitBranch& branch) {
+void write_branch(JsonWriter& out, const OrbitBranch& branch, std::size_t dampers) {
   out.open_object(Layout::lines);
   out.fields("origin", name_of(branch.origin), "from", branch.from, "event", index_of(branch.event), "end",
              name_of(branch.end));
@@ -124,8 +137,9 @@ void write_branch(JsonWriter& out, const OrbitBranch& branch) {
   values.reserve(branch.points.size());
   for (const OrbitPoint& each : branch.points) values.push_back(each.value);
   out.field("values", values);
-  for (const Column& column : columns_of(orbit_columns(), branch.points))
+  for (const Column& column : columns_of(orbit_columns(dampers > 0), branch.points))
     out.field(column.name, column.numbers);
+  write_dampers(out, branch.points, dampers);
   out.open_array("events", Layout::lines);
   for (const OrbitEvent& event : branch.events) {
     out.open_object(Layout::one_line);
@@ -229,7 +243,7 @@ void write_rest(JsonWriter& out, const OrbitsResponse& response) {
   out.close();
   out.field("complete", response.complete);
   out.open_array("branches", Layout::lines);
-  for (const OrbitBranch& each : response.branches) write_branch(out, each);
+  for (const OrbitBranch& each : response.branches) write_branch(out, each, response.scene.dampers.size());
   out.close();
 }
 void write_rest(JsonWriter& out, const LyapunovResponse& response) {
@@ -263,6 +277,18 @@ class CsvRow {
   const std::optional<SiUnits>& units_;
   bool first_ = true;
 };
+
+void add_headings_of_dampers(CsvRow& row, std::size_t dampers) {
+  for (std::size_t d = 0; d < dampers; ++d)
+    for (const Column& column : columns_of(damper_columns(), std::vector<DamperOfMotion>{}))
+      row.heading(std::string(column.name) + "_" + std::to_string(d + 1), column.unit);
+}
+template <class Motion>
+void add_columns_of_dampers(std::vector<Column>& columns, const std::vector<Motion>& motions,
+                            std::size_t dampers) {
+  for (std::size_t d = 0; d < dampers; ++d)
+    std::ranges::move(columns_of(damper_columns(), of_damper(motions, d)), std::back_inserter(columns));
+}
 
 }  // namespace
 
@@ -307,7 +333,7 @@ Response found_for(Response asked, const Threads& threads) {
   } else if (auto* const map = std::get_if<BasinResponse>(&asked)) {
     map->basin = basin(map->scene, map->engine, map->first, map->second, map->rule, threads, ignored);
   } else if (auto* const orbits = std::get_if<OrbitsResponse>(&asked)) {
-    std::vector<State<double>> starts;
+    std::vector<SceneState> starts;
     for (const OrbitStart& each : orbits->starts) starts.push_back(each.state);
     return orbits_response(
         orbits->scene, orbits->engine, orbits->rule, orbits->range,
@@ -405,16 +431,13 @@ std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sw
     row.word("end");
     for (const Column& column : columns_of(steady_columns(dampers > 0), std::vector<SteadyState>{}))
       row.heading(column.name, column.unit);
-    for (std::size_t d = 0; d < dampers; ++d)
-      for (const Column& column : columns_of(damper_columns(), std::vector<DamperOfSteadyState>{}))
-        row.heading(std::string(column.name) + "_" + std::to_string(d + 1), column.unit);
+    add_headings_of_dampers(row, dampers);
     for (const Column& column : linear) row.heading(column.name, column.unit);
   }
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
     const auto add_way = [&](std::string_view name, const std::vector<SteadyState>& way) {
       std::vector<Column> columns = columns_of(steady_columns(dampers > 0), way);
-      for (std::size_t d = 0; d < dampers; ++d)
-        std::ranges::move(columns_of(damper_columns(), of_damper(way, d)), std::back_inserter(columns));
+      add_columns_of_dampers(columns, way, dampers);
       for (std::size_t i = 0; i < way.size(); ++i) {
         CsvRow row(text, units);
         row.word(std::to_string(n));
@@ -450,9 +473,10 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
   return text;
 }
 
-std::string orbits_csv(const ParameterRange& range, const Branches& branches,
+std::string orbits_csv(const Scene& scene, const ParameterRange& range, const Branches& branches,
                        const std::optional<SiUnits>& units) {
   std::string text;
+  const std::size_t dampers = scene.dampers.size();
   double Scene::*const number = member_of(range.parameter);
   const UnitInSi varied = unit_in_si_of(number);
   {
@@ -460,12 +484,14 @@ std::string orbits_csv(const ParameterRange& range, const Branches& branches,
     row.word("branch");
     row.word("event");
     row.heading(name_of(range.parameter), varied);
-    for (const Column& column : columns_of(orbit_columns(), std::vector<OrbitPoint>{}))
+    for (const Column& column : columns_of(orbit_columns(dampers > 0), std::vector<OrbitPoint>{}))
       row.heading(column.name, column.unit);
+    add_headings_of_dampers(row, dampers);
   }
   for (std::size_t n = 0; n < branches.branches.size(); ++n) {
     const auto& [points, events] = points_and_events_of(branches.branches[n], number);
-    const std::vector<Column> columns = columns_of(orbit_columns(), points);
+    std::vector<Column> columns = columns_of(orbit_columns(dampers > 0), points);
+    add_columns_of_dampers(columns, points, dampers);
     for (std::size_t i = 0; i < points.size(); ++i) {
       CsvRow row(text, units);
       row.word(std::to_string(n));

@@ -50,15 +50,16 @@ struct OrbitPoint {
   ImpactCounts impacts{};     // in one period of its own
   std::int64_t sticking = 0;  // in one period of its own
   double amplitude = 0;       // largest |x|
-  Multipliers multipliers{};
+  Multipliers multipliers = Multipliers(4);  // of several dampers those four that are largest
   std::optional<double> slowest_impact, nearest_miss;
-  State<double> state{};  // at phase 0 of the force
+  SceneState state;                             // at phase 0 of the force
+  std::vector<ImpactCounts> impacts_by_damper;  // the same of each of several
 };
 struct OrbitEvent {
   BranchEventKind kind = BranchEventKind::fold;
   double value = 0;
   std::int64_t points_before = 0;
-  State<double> state{};
+  SceneState state;
 };
 struct OrbitBranch {
   BranchOrigin origin = BranchOrigin::start;
@@ -72,7 +73,7 @@ struct OrbitStart {
   std::string end;  // end_of(BranchStart)
   std::int64_t transient_periods = 0;
   std::optional<std::int64_t> branch;
-  State<double> state{};
+  SceneState state;
 };
 struct OrbitsResponse {
   static constexpr std::string_view kind = "orbits";
@@ -140,7 +141,7 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
                       const std::optional<SiUnits>& units = {});
 // A row for each point of each branch and, in its place among these, for each event, which "event" names: the
 // index of the branch, the parameter's value, and the columns of the JSON file.
-std::string orbits_csv(const ParameterRange& range, const Branches& branches,
+std::string orbits_csv(const Scene& scene, const ParameterRange& range, const Branches& branches,
                        const std::optional<SiUnits>& units = {});
 // A row for each exponent.
 std::string lyapunov_csv(const LyapunovExponents& found, const std::optional<SiUnits>& units = {});

@@ -18,9 +18,9 @@ constexpr std::array budgets{StopReason::impact_budget, StopReason::half_cycle_b
                              StopReason::time_budget, StopReason::step_budget};
 
 // Every number of the scene; the stops do not count, and are not there.
-Scene read_forced_scene(ObjectReader object, DamperList dampers) {
+Scene read_forced_scene(ObjectReader object) {
   Scene scene;
-  const bool several = dampers == DamperList::allowed && object.has("dampers");
+  const bool several = object.has("dampers");
   for (const SceneField& field : scene_fields) {
     if (!several || !is_of_one_damper(field))
       object.required(field.name, scene.*field.member, within(field.least, field.most));
@@ -103,7 +103,7 @@ std::vector<SteadyState> read_way(ObjectReader object, std::size_t dampers) {
   read_columns(object, steady_columns(dampers > 0), way);
   std::size_t n = 0;
   for (ObjectReader& damper : read_dampers(object, dampers)) {
-    std::vector<DamperOfSteadyState> rows = of_damper(way, n);
+    std::vector<DamperOfMotion> rows = of_damper(way, n);
     read_columns(damper, damper_columns(), rows);
     for (std::size_t i = 0; i < way.size(); ++i) {
       if (way[i].means) way[i].impacts_by_damper[n] = rows[i].impacts;
@@ -143,7 +143,7 @@ void check_column(ObjectReader& object, std::string_view name,
 // Whether the scene is valid at both ends of the axis; says so if it is not.
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
-    for (const Problem& problem : problems_of(axis.at(scene, i), engine, DamperList::allowed)) {
+    for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {
       root.reject("scene", "with " + axis.number.name() + " = " + number_text(axis.value(i)) + ": " +
                                problem.field + " " + problem.message);
       return false;
@@ -245,7 +245,7 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
                                  ", as many as the points that are -1, got " + std::to_string(open));
 }
 
-OrbitBranch read_branch(ObjectReader& item) {
+OrbitBranch read_branch(ObjectReader& item, std::size_t dampers) {
   OrbitBranch branch;
   item.required("origin", branch.origin, {BranchOrigin::start, BranchOrigin::event, BranchOrigin::beyond});
   item.required("from", branch.from, counts);
@@ -255,8 +255,23 @@ OrbitBranch read_branch(ObjectReader& item) {
                  BranchEnd::step_too_small, BranchEnd::unstable, BranchEnd::points, BranchEnd::not_an_orbit});
   std::vector<double> values;
   item.required("values", values);
-  for (const double value : values) branch.points.emplace_back().value = value;
-  read_columns(item, orbit_columns(), branch.points);
+  for (const double value : values) {
+    OrbitPoint& point = branch.points.emplace_back();
+    point.value = value;
+    point.impacts_by_damper.resize(dampers);
+    point.state.dampers.resize(dampers);
+  }
+  read_columns(item, orbit_columns(dampers > 0), branch.points);
+  std::size_t n = 0;
+  for (ObjectReader& damper : read_dampers(item, dampers)) {
+    std::vector<DamperOfMotion> rows = of_damper(branch.points, n);
+    read_columns(damper, damper_columns(), rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      branch.points[i].impacts_by_damper[n] = rows[i].impacts;
+      branch.points[i].state.dampers[n] = rows[i].place;
+    }
+    ++n;
+  }
   for (ObjectReader entry : item.required_objects("events", most_parts)) {
     OrbitEvent& event = branch.events.emplace_back();
     entry.required("kind", event.kind,
@@ -264,7 +279,7 @@ OrbitBranch read_branch(ObjectReader& item) {
                     BranchEventKind::neimark_sacker, BranchEventKind::grazing});
     entry.required("value", event.value);
     entry.required("points_before", event.points_before, within(0, double(values.size())));
-    event.state = read_state(entry.required_object("state"));
+    event.state = read_state(entry.required_object("state"), dampers);
   }
   return branch;
 }
@@ -276,17 +291,17 @@ void read_rest(ObjectReader& root, OrbitsResponse& response) {
   for (ObjectReader item : root.required_objects("starts", most_parts)) {
     OrbitStart& start = response.starts.emplace_back();
     std::vector<std::string_view> ends{"periodic", "not_periodic", name_of(OrbitEnd::no_convergence),
-                                       name_of(OrbitEnd::run_stopped)};
+                                       name_of(OrbitEnd::no_derivative), name_of(OrbitEnd::run_stopped)};
     for (const StopReason budget : budgets) ends.push_back(name_of(budget));
     if (item.require("end"))
       if (const auto end = item.word("end", ends)) start.end = ends[*end];
     item.required("transient_periods", start.transient_periods, counts);
     start.branch = read_index(item, "branch");
-    start.state = read_state(item.required_object("state"));
+    start.state = read_state(item.required_object("state"), response.scene.dampers.size());
   }
   root.required("complete", response.complete);
   for (ObjectReader item : root.required_objects("branches", most_parts))
-    response.branches.push_back(read_branch(item));
+    response.branches.push_back(read_branch(item, response.scene.dampers.size()));
 }
 
 void read_rest(ObjectReader& root, LyapunovResponse& response) {
@@ -302,16 +317,11 @@ void read_rest(ObjectReader& root, LyapunovResponse& response) {
   root.required("standard_errors", found.standard_errors, at_least(0));
 }
 
-// Whether a scene of such a response may have a list of dampers.
-template <class Kind>
-constexpr bool takes_dampers = !std::is_same_v<Kind, OrbitsResponse>;
-
 template <class Kind>
 Response read_as(JsonDocument& document, ObjectReader& root, bool sealed) {
   Kind response;
   ObjectReader engine = root.required_object("engine");
-  response.scene = read_forced_scene(root.required_object("scene"),
-                                     takes_dampers<Kind> ? DamperList::allowed : DamperList::rejected);
+  response.scene = read_forced_scene(root.required_object("scene"));
   if (const std::optional<Engine> read = read_engine_of_response(engine)) response.engine = *read;
   if (std::holds_alternative<Cem>(response.engine))
     engine.reject("name", "must be exact or restitution, got cem");

@@ -177,8 +177,8 @@ std::optional<bool> is_balanced(const SteadyState& steady) {
   return std::abs(fed - lost) <= largest_imbalance * std::max(fed, lost);
 }
 
-std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, DamperList dampers) {
-  std::vector<Problem> problems = problems_of(without_stops(scene), dampers);
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
+  std::vector<Problem> problems = problems_of(without_stops(scene), DamperList::allowed);
   for (const Problem& each : problems_of(engine)) problems.push_back(each);
   if (std::holds_alternative<Cem>(engine)) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
@@ -193,7 +193,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, Dampe
 ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
     : scene_(without_stops(scene)), engine_(engine), rigid_(has_rigid_walls(engine)) {
   require_arithmetic();
-  require_none(problems_of(scene, engine, DamperList::allowed));
+  require_none(problems_of(scene, engine));
   period_ = 2 * half_turn<double>() / scene_.force_frequency;
   run_ = std::visit(
       [&](auto options) {

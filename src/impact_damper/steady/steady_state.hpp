@@ -96,16 +96,14 @@ std::optional<bool> is_balanced(const SteadyState& steady);
 
 // What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
 // or the engine is not valid, or it is the component element method, whose steps would begin anew with each
-// run. A list of dampers is allowed for steady states alone.
-std::vector<Problem> problems_of(const Scene& scene, const Engine& engine,
-                                 DamperList dampers = DamperList::rejected);
+// run.
+std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 
 // A scene and an engine, with all that does not depend on the state made once. It may be copied, and used by
 // several threads at a time.
 class ForcedScene {
  public:
-  // Throws InvalidArguments if there are problems_of() the two, a list of dampers being allowed;
-  // NumericalError if this process's arithmetic is not IEEE 754's (floating_point.hpp).
+  // Throws InvalidArguments if there are problems_of() the two; NumericalError if this process's arithmetic is not IEEE 754's (floating_point.hpp).
   ForcedScene(const Scene& scene, const Engine& engine);
 
   // Goes on to the steady state by `rule`, and measures it.

@@ -22,7 +22,7 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
         {{axis.number.name(), scene.dampers.empty() ? "is for several dampers: the scene has no list"
                                                     : "must be of one of the scene's several dampers"}});
   for (std::int64_t i = 0; i < axis.count; ++i)
-    require_none(problems_of(axis.at(scene, i), engine, DamperList::allowed));
+    require_none(problems_of(axis.at(scene, i), engine));
 }
 
 Scene Axis::at(Scene scene, std::int64_t i) const {

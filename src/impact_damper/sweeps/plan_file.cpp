@@ -286,9 +286,9 @@ std::vector<Problem> problems_of(const Plan& plan) {
     return each.quantity->experiment == Experiment::lyapunov;
   });
   const std::size_t dampers = plan.scene.scene.dampers.size();
-  if (exponents && dampers > most_dampers_with_exponents)
+  if (exponents && dampers > most_dampers_with_changes)
     problems.push_back({"quantities", "must not be of exponents with more than " +
-                                          std::to_string(most_dampers_with_exponents) +
+                                          std::to_string(most_dampers_with_changes) +
                                           " dampers, as the scene has " + std::to_string(dampers)});
   if (worst && !plan.forced.frequencies)
     problems.push_back(
