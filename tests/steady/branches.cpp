@@ -14,7 +14,7 @@ namespace {
 
 Branches found_from(const Scene& scene, const ParameterRange& range, const std::vector<State<double>>& starts,
                     const BranchRule& rule = {}, const Engine& engine = Restitution{}) {
-  return find_branches(scene, engine, range, rule, starts, {}, [](std::int64_t) {});
+  return find_branches(scene, engine, range, rule, {starts.begin(), starts.end()}, {}, [](std::int64_t) {});
 }
 const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
   const auto at = std::ranges::find(branch.events, kind, &BranchEvent::kind);

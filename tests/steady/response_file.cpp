@@ -66,6 +66,16 @@ OrbitsResponse asked_orbits() {
   orbits.scene.damping_ratio = 0.02;
   return orbits;
 }
+OrbitsResponse several_orbits() {
+  OrbitsResponse orbits = asked_orbits();
+  orbits.scene.damping_ratio = 0.05;
+  orbits.scene.force_frequency = 0.9;
+  orbits.scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.4, .w0 = 0.2},
+                          {.mass_ratio = 0.04, .clearance = 1.5, .y0 = 0.7}};
+  orbits.range = {Parameter::force_frequency, 0.9, 1.1};
+  orbits.starts = {{{}, 0, {}, release_of(orbits.scene)}};
+  return orbits;
+}
 LyapunovResponse asked_exponents() { return {active_scene(), Restitution{}, 40, 10, {}}; }
 
 // With something else in it, and the digest that belongs to it.
@@ -95,9 +105,9 @@ std::string complaint(const std::string& text) {
 }
 
 TEST_CASE("a response of each kind reads back as it was written, byte by byte") {
-  for (const Response& asked :
-       {Response(asked_sweep()), Response(several_sweep()), Response(ended_sweep()), Response(asked_basin()),
-        Response(asked_map()), Response(asked_orbits()), Response(asked_exponents())}) {
+  for (const Response& asked : {Response(asked_sweep()), Response(several_sweep()), Response(ended_sweep()),
+                                Response(asked_basin()), Response(asked_map()), Response(asked_orbits()),
+                                Response(several_orbits()), Response(asked_exponents())}) {
     const Response found = found_for(asked, 1);
     const std::string text = response_text(found);
     const Response read = parse_response("f", text);
@@ -124,6 +134,29 @@ TEST_CASE("of several dampers each has its columns, whose sums are those of all"
             .find("must be as many as in the scene, 2, got 1") != std::string::npos);
   CHECK(complaint(altered(text, "{\"damping_ratio\"", "{\"mass_ratio\": 1, \"damping_ratio\""))
             .find("must not be given beside dampers") != std::string::npos);
+}
+
+TEST_CASE("branches of several dampers tell state and impacts of each, whose sums are those of all") {
+  const auto found = std::get<OrbitsResponse>(found_for(several_orbits(), 1));
+  const std::string text = response_text(found);
+  const auto read = std::get<OrbitsResponse>(parse_response("f", text));
+  REQUIRE_FALSE(found.branches.empty());
+  const OrbitBranch &a = found.branches[0], &b = read.branches[0];
+  REQUIRE(a.points.size() == b.points.size());
+  REQUIRE_FALSE(a.events.empty());
+  CHECK(b.points[1].impacts == ImpactCounts{2, 2});
+  CHECK(b.points[1].impacts_by_damper == std::vector<ImpactCounts>{{1, 1}, {1, 1}});
+  CHECK(a.points[1].state.dampers[1].y == b.points[1].state.dampers[1].y);
+  CHECK(a.points[1].multipliers[3].re == b.points[1].multipliers[3].re);
+  CHECK(a.events[0].state.dampers[0].w == b.events[0].state.dampers[0].w);
+  CHECK(a.points[1].state.x != 0);
+  CHECK(
+      complaint(changed(text, "impacts_left", [](double n) {
+        return n + 1;
+      })).find("/branches/0/impacts_left/0 must be 2, the sum over the dampers, got 3") != std::string::npos);
+  CHECK(
+      complaint(altered(text, "{\"y\": 0.4, \"w\": 0.2}, ", "")).find("as many as in the scene, 2, got 1") !=
+      std::string::npos);
 }
 
 TEST_CASE("what is swept may be a number of one of several dampers") {

@@ -339,8 +339,8 @@ bool closes_after(const Equation& equation, const Point& p, int half_periods, do
   return rest && largest(*rest) <= gap * std::max(1.0, largest(state_at(p)));
 }
 
-// The numbers of the state without those of masses that are not struck, and the derivative of these alone: the
-// others do not act on them, and add two multipliers that are 1, or -1 in half a period.
+// The numbers of the state without those of masses that are not struck, and the derivative of these alone:
+// the others do not act on them, and add two multipliers that are 1, or -1 in half a period.
 std::vector<std::size_t> moving_in(const PoincareImage& image) {
   std::vector<bool> rests(image.by_state.size(), false);
   for (const std::size_t damper : image.idle) rests[index_of_y(damper)] = rests[index_of_w(damper)] = true;
@@ -888,11 +888,13 @@ Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const Sc
   for (int n = 1; n < equation.half_periods; ++n) {
     const bool divides = equation.half_periods % n == 0;
     if (!divides || !closes_after(equation, found.point, n, 100 * options.tolerance)) continue;
-    equation.half_periods = n;
-    std::vector<double> residuals = std::move(found.residuals);
-    Solution shorter = solve(equation, found.point, found.point, at_value(found.point));
-    if (shorter.end == OrbitEnd::converged) found = std::move(shorter);
-    found.residuals = std::move(residuals);
+    Equation less = equation;
+    less.half_periods = n;
+    Solution shorter = solve(less, found.point, found.point, at_value(found.point));
+    if (shorter.end != OrbitEnd::converged) continue;
+    shorter.residuals = std::move(found.residuals);
+    found = std::move(shorter);
+    equation = less;
     break;
   }
   symmetric = equation.half_periods % 2 != 0;
@@ -927,8 +929,8 @@ Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOp
   const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
   const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
   const Point origin = point_at(vector_of(release_of(from.scene)), event.parameter);
-  const std::optional<StateVector> direction = reversed_by(PoincareMap(
-      equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene)));
+  const std::optional<StateVector> direction = reversed_by(
+      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene)));
   if (!direction) return none;
   const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {

@@ -145,8 +145,8 @@ class Examination {
       require(point.multipliers[i].modulus() <= point.multipliers[i - 1].modulus() * (1 + 1e-9),
               place(branch, "multiplier_" + std::to_string(i + 1) + "_re", row),
               "must not exceed the one before in modulus");
-    examine_symmetry(place(branch, "symmetric", row), point.symmetric, point.period, point.impacts);
     examine_sum(branch, row, point.impacts, point.impacts_by_damper);
+    examine_symmetry(place(branch, "symmetric", row), point.symmetric, point.period, point.impacts);
     // A simulation drifts away from what is unstable (FollowedBranch::amplitudes).
     require(std::abs(point.state.x) <= point.amplitude + 1e-5, place(branch, "x", row),
             "must not exceed the amplitude, " + number_text(point.amplitude) + ", got " +

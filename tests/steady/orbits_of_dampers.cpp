@@ -1,0 +1,296 @@
+// The Poincare map and the orbits of several dampers: against those of one, and against simulations.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "forced_scene.hpp"
+#include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/branches.hpp"
+#include "reference.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+constexpr auto with_parameters = PoincareMap::Derivatives::by_state_and_parameters;
+
+// The same with the damper in a list.
+Scene as_list(Scene scene) {
+  scene.dampers = {{.mass_ratio = scene.mass_ratio,
+                    .restitution = scene.restitution,
+                    .clearance = 1,
+                    .wall_stiffness = scene.wall_stiffness}};
+  return scene;
+}
+SceneState as_list(const State<double>& s) {
+  SceneState state(s.x, s.v, 0, 0);
+  state.dampers = {{s.y, s.w}};
+  return state;
+}
+
+// Two dampers that a force near resonance keeps striking.
+Scene two_dampers(double amplitude, double frequency, double second_clearance, double second_y0) {
+  Scene scene = forced_scene(0.02, 0.05, frequency, amplitude);
+  scene.x0 = 0.5;
+  scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.4, .w0 = 0.2},
+                   {.mass_ratio = 0.04, .clearance = second_clearance, .y0 = second_y0}};
+  return scene;
+}
+
+Branches branches_of(const Scene& scene, const Engine& engine, double to) {
+  return find_branches(scene, engine, {Parameter::force_frequency, scene.force_frequency, to}, {},
+                       {release_of(scene)}, {}, [](std::int64_t) {});
+}
+SteadyState settled(const Scene& scene, const Engine& engine) {
+  return ForcedScene(scene, engine).settle(release_of(scene), {.max_periods = 20'000});
+}
+const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
+  const auto at = std::ranges::find(branch.events, kind, &BranchEvent::kind);
+  return at == branch.events.end() ? nullptr : &*at;
+}
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::fabs(a[i] - b[i]));
+  return most;
+}
+bool agree(const std::optional<double>& a, const std::optional<double>& b) {
+  return a.has_value() == b.has_value() && (!a || std::fabs(*a - *b) < 1e-9);
+}
+
+}  // namespace
+
+TEST_CASE("the Poincare map of a list of one damper is that of the scene without a list") {
+  int compared = 0, misses = 0, sticking = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    reference::Random random(seed);
+    Scene scene = forced_scene(random.log_uniform(1e-3, 1), random.log_uniform(1e-3, 0.5),
+                               random.uniform(0.4, 2), random.log_uniform(0.1, 3));
+    scene.restitution = random.uniform(0.2, 0.9);
+    const bool rigid = seed % 2 == 0;
+    const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
+    const int half_periods = 1 + int(seed % 3);
+    State<double> start{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0.1, 0.9),
+                        random.uniform(-1, 1)};
+    if (rigid && random.chance(0.2)) start.y = start.w = 0;
+    const PoincareImage one = PoincareMap(scene, engine, half_periods)(start, with_parameters),
+                        list = PoincareMap(as_list(scene), engine, half_periods)(as_list(start),
+                                                                                 with_parameters);
+    REQUIRE(list.stop_reason == one.stop_reason);
+    double scale = 1;
+    for (const StateVector& row : one.by_state)
+      for (const double entry : row) scale = std::max(scale, std::fabs(entry));
+    if (scale > 1e4 || one.slowest_impact.value_or(1) < 0.01) continue;
+    ++compared;
+    CHECK(farthest(vector_of(list.state), vector_of(one.state)) < 1e-11 * scale);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(farthest(list.by_state[i], one.by_state[i]) < 1e-8 * scale);
+    const double by_force =
+        std::max({scale, farthest(one.by_frequency, {0, 0, 0, 0}), farthest(one.by_amplitude, {0, 0, 0, 0})});
+    CHECK(farthest(list.by_frequency, one.by_frequency) < 1e-8 * by_force);
+    CHECK(farthest(list.by_amplitude, one.by_amplitude) < 1e-8 * by_force);
+    REQUIRE(list.impacts.size() == one.impacts.size());
+    for (std::size_t i = 0; i < one.impacts.size(); ++i) {
+      CHECK(list.impacts[i].wall == one.impacts[i].wall);
+      CHECK(list.impacts[i].damper == 0);
+      CHECK(std::fabs(list.impacts[i].speed - one.impacts[i].speed) < 1e-9 * scale);
+    }
+    CHECK(list.sticking == one.sticking);
+    sticking += one.sticking > 0;
+    CHECK(agree(list.slowest_impact, one.slowest_impact));
+    CHECK(list.idle.empty());
+    if (!rigid) {
+      CHECK_FALSE(list.nearest_miss.has_value());
+      continue;
+    }
+    CHECK(agree(list.nearest_miss, one.nearest_miss));
+    misses += one.nearest_miss.has_value();
+  }
+  CHECK(compared > 100);
+  CHECK(misses > 10);
+  CHECK(sticking > 10);
+}
+
+TEST_CASE("half a period of several dampers applied twice is a period") {
+  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
+    const SceneState start = settled(scene, engine).state;
+    const PoincareImage whole = PoincareMap(scene, engine, 2)(start);
+    const PoincareMap half(scene, engine, 1);
+    const PoincareImage first = half(start), second = half(first.state);
+    CHECK(farthest(vector_of(second.state), vector_of(whole.state)) < 1e-10);
+    CHECK(whole.impacts.size() == first.impacts.size() + second.impacts.size());
+    for (std::size_t j = 0; j < 6; ++j) {
+      StateVector unit(6);
+      unit[j] = 1;
+      CHECK(farthest(product(second.by_state, product(first.by_state, unit)), product(whole.by_state, unit)) <
+            1e-7);
+    }
+  }
+}
+
+TEST_CASE("the nearest miss of several dampers is that of their samples") {
+  int compared = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    reference::Random random(seed);
+    Scene scene =
+        two_dampers(random.uniform(0.1, 0.6), random.uniform(0.6, 1.4), random.uniform(0.5, 3), 0.2);
+    const SceneState start = release_of(scene);
+    const PoincareMap map(scene, Restitution{}, 4);
+    const PoincareImage image = map(start, with_parameters);
+    scene.until_time = map.duration();
+    const Run run = simulate(
+        scene, Restitution{},
+        {.half_cycles = false, .impacts = true, .contacts = true, .history = {{0, map.duration(), 100'001}}});
+    if (!run.contacts->begin.empty()) continue;
+    const History& history = *run.history;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& [y, w] = history.dampers[i];
+      for (std::size_t n = 1; n < y.size(); ++n) {
+        const bool is_impact = std::ranges::any_of(run.impacts->time, [&](double time) {
+          return time > history.time[n - 1] && time <= history.time[n];
+        });
+        if (w[n] * w[n - 1] < 0 && !is_impact)
+          nearest = std::min(nearest, w[n] < 0 ? scene.dampers[i].clearance - y[n] : y[n]);
+      }
+    }
+    REQUIRE(image.nearest_miss.has_value() == std::isfinite(nearest));
+    if (!image.nearest_miss) continue;
+    ++compared;
+    CHECK(*image.nearest_miss == doctest::Approx(nearest).epsilon(1e-6));
+  }
+  CHECK(compared > 10);
+}
+
+TEST_CASE("a stable orbit of two dampers is what simulation comes to, as fast as its multiplier says") {
+  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
+    const SteadyState steady = settled(scene, engine);
+    REQUIRE(steady.period == 1);
+    const Orbit orbit = find_orbit(scene, engine, 1, steady.state);
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    CHECK(orbit.symmetric);
+    CHECK(orbit.stable());
+    CHECK(orbit.multipliers.size() == 6);
+    CHECK(orbit.impacts.size() == 4);
+    CHECK(distance(release_of(orbit.scene), steady.state) < 1e-9);
+    CHECK(*steady.contraction == doctest::Approx(orbit.multipliers[0].modulus()).epsilon(1e-3));
+
+    // Newton's method converges with second order.
+    SceneState guess = steady.state;
+    guess.x += 1e-3;
+    guess.dampers[1].w -= 1e-3;
+    const Orbit again = find_orbit(scene, engine, 1, guess);
+    REQUIRE(again.end == OrbitEnd::converged);
+    REQUIRE(again.residuals.size() > 3);
+    CHECK(distance(release_of(again.scene), release_of(orbit.scene)) < 1e-9);
+    const auto& r = again.residuals;
+    CHECK(r[2] < 100 * r[1] * r[1]);
+  }
+}
+
+TEST_CASE("a Neimark-Sacker point of two dampers is where simulation leaves the orbit") {
+  const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
+  const Branches found = branches_of(scene, Restitution{}, 1.1);
+  REQUIRE(found.starts[0].branch == 0);
+  const Branch& branch = found.branches[0].branch;
+  CHECK(branch.end == BranchEnd::range);
+  const BranchEvent* const at = first_of(branch, BranchEventKind::neimark_sacker);
+  REQUIRE(at);
+  double growth[2];
+  for (const int side : {0, 1}) {
+    Scene near = at->orbit.scene;
+    near.force_frequency = at->parameter + (side == 0 ? -1e-3 : 1e-3);
+    const Orbit orbit = find_orbit(near, Restitution{}, 1, release_of(near), {.symmetric = true});
+    REQUIRE(orbit.end == OrbitEnd::converged);
+    CHECK(orbit.stable() == (side == 0));
+    SceneState s = release_of(orbit.scene);
+    s.x += 1e-5;
+    const PoincareMap map(near, Restitution{}, 2);
+    double before = 0, after = 0;  // the largest departures of 40 periods, early and late
+    for (int n = 0; n < 640; ++n) {
+      s = map(s).state;
+      const double off = distance(s, release_of(orbit.scene));
+      if (n < 40) before = std::max(before, off);
+      if (n >= 600) after = std::max(after, off);
+    }
+    growth[side] = after / before;
+  }
+  CHECK(growth[0] < 0.5);
+  CHECK(growth[1] > 2);
+}
+
+TEST_CASE("a damper that is not struck leaves the branches of the other as they are") {
+  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    Scene alone = forced_scene(0.06, 0.05, 0.9, 0.05);
+    alone.x0 = 0.5;
+    alone.y0 = 0.4;
+    alone.w0 = 0.2;
+    Scene both = alone;
+    both.dampers = {{.mass_ratio = 0.06, .y0 = 0.4, .w0 = 0.2},
+                    {.mass_ratio = 0.04, .clearance = 5, .y0 = 2.2}};
+    const Branches expected = branches_of(alone, engine, 1.1), found = branches_of(both, engine, 1.1);
+    REQUIRE(found.branches.size() == expected.branches.size());
+    CHECK(found.branches.size() > 1);
+    for (std::size_t n = 0; n < found.branches.size(); ++n) {
+      const Branch &a = found.branches[n].branch, &b = expected.branches[n].branch;
+      CHECK(a.end == b.end);
+      REQUIRE(a.events.size() == b.events.size());
+      for (std::size_t i = 0; i < a.events.size(); ++i) {
+        CHECK(a.events[i].kind == b.events[i].kind);
+        CHECK(std::fabs(a.events[i].parameter - b.events[i].parameter) < 1e-8);
+      }
+      for (const Orbit& orbit : a.orbits) {
+        CHECK(orbit.idle == std::vector<std::size_t>{1});
+        CHECK(orbit.multipliers.size() == 4);
+        const SceneDamper& idle = orbit.scene.dampers[1];
+        CHECK(std::fabs(orbit.scene.x0 + idle.y0 - 2.5) < 1e-9);
+        CHECK(std::fabs(orbit.scene.v0 + idle.w0) < 1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("a branch goes on where impacts of both dampers pass phase 0") {
+  const Scene scene = two_dampers(0.06, 0.76, 0.71, 0.2);
+  const Branches found = branches_of(scene, Restitution{}, 0.96);
+  REQUIRE(found.starts[0].branch == 0);
+  const Branch& branch = found.branches[0].branch;
+  CHECK(branch.end == BranchEnd::range);
+  std::array<int, 2> passed{};
+  for (std::size_t n = 1; n < branch.orbits.size(); ++n) {
+    const Orbit &before = branch.orbits[n - 1], &after = branch.orbits[n];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const SceneDamper &a = before.scene.dampers[i], &b = after.scene.dampers[i];
+      const double gap = std::max(std::min(a.y0, a.clearance - a.y0), std::min(b.y0, b.clearance - b.y0));
+      passed[i] += a.w0 * b.w0 < 0 && gap < 0.05;
+    }
+    CHECK(before.impacts.size() == after.impacts.size());
+  }
+  CHECK(passed == std::array<int, 2>{1, 1});
+}
+
+TEST_CASE(
+    "equal dampers that move as one have no multipliers with rigid walls, and none stable with others") {
+  Scene scene = two_dampers(0.05, 0.9, 1, 0.2);
+  scene.dampers[1] = scene.dampers[0];
+  const Branches rigid = branches_of(scene, Restitution{}, 0.95);
+  REQUIRE(rigid.starts[0].orbit == OrbitEnd::no_derivative);
+  CHECK(end_of(rigid.starts[0]) == "no_derivative");
+  CHECK(rigid.branches.empty());
+  const SteadyState steady = settled(scene, Exact{});
+  REQUIRE(steady.period);
+  const Orbit orbit = find_orbit(scene, Exact{}, int(*steady.period), steady.state);
+  REQUIRE(orbit.end == OrbitEnd::converged);
+  CHECK_FALSE(orbit.stable());
+}
+
+TEST_CASE("orbits are for at most a hundred dampers") {
+  Scene scene = two_dampers(0.05, 0.9, 1, 0.2);
+  scene.dampers.resize(101);
+  CHECK_THROWS_WITH_AS(branches_of(scene, Restitution{}, 1),
+                       "dampers: must be at most 100 for orbits, got 101", InvalidArguments);
+}
