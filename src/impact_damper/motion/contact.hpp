@@ -6,6 +6,7 @@
 #pragma once
 
 #include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/fall_by_ends.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/motion/contact_modes.hpp"
 #include "impact_damper/motion/state.hpp"
@@ -39,6 +40,8 @@ class Contact {
     if (start_.y == wall_) {
       std::optional<End> end;
       if (system_.short_contact) end = system_.short_contact(start_of_map());
+      if constexpr (forced)
+        if (end) short_.end = end->time;
       if (end) SearchCounter<Real>::found(FoundBy::short_contact_map);
       if (!end) {
         end = end_of_sustained_contact();
@@ -53,9 +56,12 @@ class Contact {
   // The same where the short-contact map tells it, and the change of x.
   auto end_of_short_contact() const {
     using Result = typename Map::EndAndChange;
-    return system_.short_contact && start_.y == wall_
-               ? system_.short_contact.template operator()<Result>(start_of_map())
-               : std::nullopt;
+    const auto end = system_.short_contact && start_.y == wall_
+                         ? system_.short_contact.template operator()<Result>(start_of_map())
+                         : std::nullopt;
+    if constexpr (forced)
+      if (end) short_.end = end->time;
+    return end;
   }
   // The same, certified step by step.
   std::optional<WallEvent<Real>> search_leave(const Real& horizon, Search<Real>& search) const {
@@ -116,9 +122,17 @@ class Contact {
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
   // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below
-  // rounding (Lemma L5).
+  // rounding (Lemma L5). In a short contact under a force that of x' alone, after a turn.
   Real one_turn_within(const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
+    if constexpr (forced) {
+      if (short_.x && short_.x->turn.time == from) {
+        // While x'' keeps its sign x' has one zero at most, and |x'''| <= m proves that for a time |x''|/m.
+        const Real within = absolute(short_.x->turn.x2) / third_of_x(short_.x->end());
+        const Real rest = short_.x->end() - from;
+        return within < rest ? within : rest;
+      }
+    }
     if (c.forcing || !parts_) return 0;
     const auto& [slow, fast] = *parts_;
     const Real kept = c.slow.lower_bound_of_decay(from);
@@ -132,6 +146,9 @@ class Contact {
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
     if (const auto fall = fall_of_slow_x(order, sign, from)) return *fall < until ? fall : std::nullopt;
+    if constexpr (forced)
+      if (const auto fall = fall_in_short_contact(order, sign, from, until))
+        return fall->time && *fall->time < until ? fall->time : std::nullopt;
     return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
                               from, until, search, resolution());
   }
@@ -139,6 +156,8 @@ class Contact {
   // slow mode turns that its height there is the same.
   Real height(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
+    if constexpr (forced)
+      if (short_.x && !by_changes(t)) return absolute(short_.x->x_at(t).u);
     if (!c.forcing && parts_ && c.slow.rings()) {
       const auto& [slow, fast] = *parts_;
       const Real height = c.slow.height(slow.x, slow.v, t);
@@ -279,6 +298,55 @@ class Contact {
     const Real enough = std::numeric_limits<Real>::epsilon() / 32 * fall;
     if (!((second + ringing(2, settling)) * (shift * shift) < enough * slope)) return {};
     return fall + shift;
+  }
+
+  // The same of a contact of the short-contact map, by its series. Neither what is decided nor the time
+  // depends on `until`.
+  std::optional<FirstFall<Real>> fall_in_short_contact(std::size_t order, const Real& sign, const Real& from,
+                                                       const Real& until) const {
+    const XInShortContactTable<Real>& table = system_.x_in_short_contact;
+    if (order > 1 || !short_.end || !(*short_.end <= table.end()) || !(from < *short_.end) ||
+        *short_.end < until)
+      return {};
+    if (!short_.x) short_.x.emplace(table, start_of_map(), *short_.end);
+    XInShortContact<Real>& x = *short_.x;
+    const auto slope_at = [&](const Real& t, const SeriesAt<Real>& s) {
+      return order == 0 ? SlopeAt<Real>{t, sign * s.u, sign * s.u1}
+                        : SlopeAt<Real>{t, sign * s.u1, sign * s.u2};
+    };
+    SlopeAt<Real> begin;
+    if (from == 0) {
+      const auto leads = leads_of_x();
+      begin = {from, sign * leads[order], sign * leads[order + 1]};
+    } else if (order == 1 && x.turn.time == from) {
+      begin = {from, Real(0), sign * x.turn.x2};
+    } else {
+      SeriesAt<Real> now = x.x_at(from);
+      if (by_changes(from)) {  // with more digits
+        const ContactState<Real> changed = sum_at(from);
+        now.u = changed.x;
+        now.u1 = changed.v;
+      }
+      begin = slope_at(from, now);
+      // A search starts where the function is positive, or at a zero that it has just left.
+      if (begin.u < 0) begin.u = 0;
+    }
+    const SlopeAt<Real> end = slope_at(x.end(), x.x_at_end());
+    const auto at = [&](const Real& t) {
+      const SeriesAt<Real> s = order == 0 ? x.x_at(t) : x.v_at(t);
+      return SeriesAt<Real>{sign * s.u, sign * s.u1, sign * s.u2};
+    };
+    const Map& map = system_.short_contact;
+    const Real fourth = order == 0 ? map.fourth_of_x(start_of_map()) : map.fifth_of_x(start_of_map());
+    auto fall = fall_by_ends(at, begin, end, fourth, table.rate());
+    if (fall && fall->time && by_changes(*fall->time)) {
+      // What has hardly changed since the touch has digits that the series does not have.
+      const ContactState<Real> now = sum_at(*fall->time);
+      *fall->time -= sign * (order == 0 ? now.x : now.v) / fall->slope;
+      if (!(*fall->time > from)) return {};
+    }
+    if (order == 1 && fall && fall->time) x.turn = {*fall->time, sign * fall->slope};
+    return fall;
   }
 
   // The end of a sustained contact: the ringing decays, and the mass leaves at h, where the slow mode falls
@@ -508,6 +576,13 @@ class Contact {
     }
   };
   [[no_unique_address]] mutable std::conditional_t<forced, Last, Nothing> last_;
+  // Under a force, of a contact whose end the map has told.
+  struct Endless {};
+  struct Short {
+    std::optional<Real> end{};
+    std::optional<XInShortContact<Real>> x{};
+  };
+  [[no_unique_address]] mutable std::conditional_t<forced, Short, Endless> short_;
 };
 
 }  // namespace impact_damper

@@ -15,6 +15,7 @@
 #include "impact_damper/motion/contact_factors.hpp"
 #include "impact_damper/motion/forced_motion.hpp"
 #include "impact_damper/motion/short_contact_map.hpp"
+#include "impact_damper/motion/x_in_short_contact.hpp"
 
 namespace impact_damper {
 
@@ -60,6 +61,9 @@ class ContactModes {
           slow, fast, share_, zeta,
           {nu, zeta, system.k, zeta_m, forcing ? forcing.frequency : Real(0), share_, rate}, touch,
           [&](std::size_t column, const Real& latest) { return driven_bounds(column, latest); });
+      if constexpr (columns == 5)
+        if (!(rate > fast.rate()))
+          x_in_short_contact = {short_contact, fast, nu, zeta, stiffness, damping, forcing.frequency};
     }
   }
 
@@ -113,6 +117,9 @@ class ContactModes {
   std::optional<ContactExponential<Real>> coupled;  // instead of all that follows
   static constexpr std::size_t columns = std::is_same_v<Force, NoForcing<Real>> ? 3 : 5;
   ShortContactMap<Real, columns> short_contact;
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<columns == 5, XInShortContactTable<Real>, Nothing>
+      x_in_short_contact;
   // Both parts' motion for a time in which the fast one moves little: a quarter of its period.
   Real piece;
   Propagator<Real> slow_piece, fast_piece;
@@ -133,7 +140,7 @@ class ContactModes {
       // Such a part p begins with p = 0, p' = displacement f, and obeys
       // p'' + 2 a p' + b p = (velocity + 2 a displacement) f + displacement f'.
       const auto instant = [&](const Real& displacement, const Real& velocity) {
-        return Instant<Real, 6, Force>(mode, Real(0), displacement * (column == 3 ? 1 : 0),
+        return Instant<Real, 7, Force>(mode, Real(0), displacement * (column == 3 ? 1 : 0),
                                        velocity + 2 * mode.a() * displacement, displacement, force, phase);
       };
       const auto q = instant(drive.q, drive.w), x = instant(drive.x, drive.v);
@@ -147,6 +154,8 @@ class ContactModes {
       }
       all.second_of_x += x.bound(2, latest);
       all.third_of_x += x.bound(3, latest);
+      all.fourth_of_x += x.bound(4, latest);
+      all.fifth_of_x += x.bound(5, latest);
     };
     add(slow, drive_slow);
     add(fast, drive_fast);

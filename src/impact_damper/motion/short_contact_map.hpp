@@ -46,11 +46,11 @@ struct Touch {
   ContactState<Real> slow, fast;
 };
 
-// Bounds until `latest` on what a force of amplitude 1, from rest, adds to x'', to x''' and to
-// (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
+// Bounds until `latest` on what a force of amplitude 1, from rest, adds to x'' and the next derivatives, and
+// to (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
 template <class Real>
 struct DrivenBounds {
-  Real fourth_of_q, second_of_x, third_of_x;
+  Real fourth_of_q, second_of_x, third_of_x, fourth_of_x, fifth_of_x;
 };
 
 // columns: how many numbers a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude
@@ -94,6 +94,8 @@ class ShortContactMap {
         slow_fourth_[i] = growth_ * by_force.fourth_of_q;
         second_of_x_[i] = by_force.second_of_x;
         third_of_x_[i] = by_force.third_of_x;
+        fourth_of_x_[i] = by_force.fourth_of_x;
+        fifth_of_x_[i] = by_force.fifth_of_x;
       }
     }
   }
@@ -131,9 +133,31 @@ class ShortContactMap {
     if (!(absolute(s) < most_.s)) return {};
     return end_within<Result>(start, overlap_after<most>(start), s, most_);
   }
-  // Bounds on |x''| and |x'''| during the contact.
+  // Bounds on the derivatives of x during the contact.
   Real second_of_x(const Start& start) const { return bound(second_of_x_, start); }
   Real third_of_x(const Start& start) const { return bound(third_of_x_, start); }
+  Real fourth_of_x(const Start& start) const { return bound(fourth_of_x_, start); }
+  Real fifth_of_x(const Start& start) const { return bound(fifth_of_x_, start); }
+
+  // Whether the table's series hold at a time t after the touch that is before T, and what one unit of a
+  // column has become by then.
+  bool tells_before(const Real& t) const { return latest_ > 0 && !(most_.s < half_period_ - t); }
+  ContactState<Real> unit_at(std::size_t i, const Real& t) const {
+    const Real s = t - half_period_, v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
+    const SeriesAt<Real> q = sum<Real>(q_[i], s), centre = sum<Real>(centre_[i], s);
+    const Real kept = i == 2 ? decay_factor_ : Real(0), depth = q.u - kept * s, w = q.u1 - kept;
+    const Real x = (i == 0 ? Real(1) : Real(0)) + (v * s + centre.u);
+    return {x - share_ * depth, (v + centre.u1) - share_ * w, depth, w};
+  }
+  // How far from the time that it is about a series of so many terms is used, times the rate: the first term
+  // left out of the velocity is (rate s)^(taken - 1) / (taken - 1)! of it.
+  static Real radians_of(std::size_t pairs) {
+    const std::size_t taken = 2 * pairs;
+    Real factorial{1};
+    for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
+    const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
+    return exponential(Real(logarithm(enough) / Real(double(taken - 1))));
+  }
 
  private:
   static constexpr std::size_t few = 5, more = 7, many = 9, most = terms / 2;  // pairs of terms
@@ -167,6 +191,9 @@ class ShortContactMap {
     const Real fast_x = fast_rate * fast_rate * fast.bound(f.x, f.v);
     second_of_x_[i] = slow_x + fast_x;
     third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
+    const Real slow_square = slow_rate * slow_rate, fast_square = fast_rate * fast_rate;
+    fourth_of_x_[i] = slow_square * slow_x + fast_square * fast_x;
+    fifth_of_x_[i] = slow_square * slow_rate * slow_x + fast_square * fast_rate * fast_x;
   }
 
   // How far from T a series of so many terms is used.
@@ -176,12 +203,7 @@ class ShortContactMap {
     Real last_step{0};  // the longest last step of s
   };
   static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
-    const std::size_t taken = 2 * pairs;
-    Real factorial{1};
-    for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
-    // The first term left out of the velocity: (rate s)^(taken - 1) / (taken - 1)! of it.
-    const Real epsilon = std::numeric_limits<Real>::epsilon(), enough = factorial * epsilon / 16;
-    const Real rs = exponential(Real(logarithm(enough) / Real(double(taken - 1)))), s = rs / fast.rate();
+    const Real epsilon = std::numeric_limits<Real>::epsilon(), rs = radians_of(pairs), s = rs / fast.rate();
     // q is taken along the last step to second order: the third power of the step is then below rounding. Its
     // velocity is so, too, with q''' to second order in s: (rate step)^2 (rate s)^3 / 12 of it is left out.
     const Real of_q = exponential(Real(logarithm(epsilon) * 2 / 5)),
@@ -266,7 +288,7 @@ class ShortContactMap {
   Real latest_{0};
   Real share_{0}, zeta_{0};
   Table centre_{}, q_{};
-  Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{};
+  Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{}, fourth_of_x_{}, fifth_of_x_{};
 };
 
 }  // namespace impact_damper
