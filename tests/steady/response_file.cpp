@@ -4,10 +4,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/simulate.hpp"
 
 namespace {
 
@@ -157,6 +160,23 @@ TEST_CASE("branches of several dampers tell state and impacts of each, whose sum
   CHECK(
       complaint(altered(text, "{\"y\": 0.4, \"w\": 0.2}, ", "")).find("as many as in the scene, 2, got 1") !=
       std::string::npos);
+}
+
+TEST_CASE("the impacts of an orbit are those of a run from its state") {
+  const OrbitsResponse asked = asked_orbits();
+  const auto found = std::get<OrbitsResponse>(found_for(asked, 1));
+  int unequal = 0;
+  for (const OrbitBranch& branch : found.branches) {
+    const OrbitPoint& point = branch.points[branch.points.size() / 2];
+    Scene scene = released_from(asked.scene, point.state);
+    scene.force_amplitude = point.value;
+    scene.until_time = double(point.period) * 2 * std::numbers::pi / scene.force_frequency;
+    const Run run = simulate(scene, asked.engine, {.half_cycles = false, .impacts = true});
+    CHECK(std::ranges::count(run.impacts->wall, Wall::left) == point.impacts[0]);
+    CHECK(std::ranges::count(run.impacts->wall, Wall::right) == point.impacts[1]);
+    unequal += point.impacts[0] != point.impacts[1];
+  }
+  CHECK(unequal > 0);
 }
 
 TEST_CASE("what is swept may be a number of one of several dampers") {
