@@ -6,7 +6,6 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
-#include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {

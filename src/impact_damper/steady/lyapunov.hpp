@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "impact_damper/run.hpp"
-#include "impact_damper/steady/variation_of_dampers.hpp"
+#include "impact_damper/steady/poincare_map.hpp"
 
 namespace impact_damper {
 

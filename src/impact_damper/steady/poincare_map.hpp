@@ -52,6 +52,10 @@ struct PoincareImage {
   std::optional<double> nearest_miss;
 };
 
+// What small changes become in a period takes a time that grows with the fourth power of the number of
+// dampers: with so many, seconds.
+inline constexpr std::size_t most_dampers_with_changes = 100;
+
 class PoincareMap {
  public:
   // half_periods: n >= 1. Throws InvalidArguments: scene or options are not valid, there is no force, or the

@@ -18,9 +18,6 @@ constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
 constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
 inline std::size_t dimensions_of(const Scene& scene) { return 2 + 2 * scene.dampers.size(); }
 
-// A period takes a time that grows with the fourth power of the number of dampers: with so many, seconds.
-inline constexpr std::size_t most_dampers_with_changes = 100;
-
 // The number of pieces for a motion that contracts volumes by exp(-loss): each contracts by e at most, so
 // that orthogonalisation between them keeps the digits of all directions, unless there would be more than
 // most_pieces.
