@@ -38,10 +38,10 @@ struct Sticking {
 // Complete chattering counts with its first impact only: those behind it are as slow as one likes.
 std::optional<double> slowest(const std::vector<OrbitImpact>& impacts, const std::vector<Sticking>& all) {
   std::vector<bool> counts(impacts.size(), true);
-  for (const auto& [impacts_before, damper] : all) {
+  for (const Sticking& each : all) {
     std::optional<std::size_t> later;
-    for (std::size_t i = impacts_before; i-- > 0;) {
-      if (impacts[i].damper != damper) continue;
+    for (std::size_t i = each.impacts_before; i-- > 0;) {
+      if (impacts[i].damper != each.damper) continue;
       if (later && impacts[i].wall != impacts[*later].wall) break;
       if (later) counts[*later] = false;
       later = i;
@@ -92,8 +92,9 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
 }
 
 PoincareImage PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {
-  auto [image, rates] = several_ ? of_several(s, wanted) : of_one_damper(s, wanted);
-  if (image.stop_reason != StopReason::time) return std::move(image);
+  End end = several_ ? of_several(s, wanted) : of_one_damper(s, wanted);
+  PoincareImage image = std::move(end.image);
+  if (image.stop_reason != StopReason::time) return image;
 
   // The end of the time moves with omega_f (M13.8).
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
@@ -101,11 +102,11 @@ PoincareImage PoincareMap::operator()(const SceneState& s, Derivatives wanted) c
     for (double& entry : row) entry *= mirror;
   for (std::size_t i = 0; i < image.by_frequency.size(); ++i) {
     image.by_frequency[i] =
-        mirror * (image.by_frequency[i] - rates[i] * (duration() / scene_.force_frequency));
+        mirror * (image.by_frequency[i] - end.rates[i] * (duration() / scene_.force_frequency));
     image.by_amplitude[i] *= mirror;
   }
   if (mirror < 0) image.state = mirrored(image.state, scene_);
-  return std::move(image);
+  return image;
 }
 
 PoincareMap::End PoincareMap::of_one_damper(const SceneState& s, Derivatives wanted) const {
