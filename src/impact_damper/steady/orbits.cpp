@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
-#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/steady/across_phase_0.hpp"
 #include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
@@ -80,134 +80,24 @@ struct Plane {
   Point through, normal;
 };
 
-// A state on the other side of an event at phase 0, and its derivative.
-struct Crossing {
-  StateMatrix by_state;
-  StateVector state;
-};
-
-// What one of the dampers and its cavity are like.
-struct Cavity {
-  std::size_t damper;
-  double mass_ratio, restitution, clearance, wall_damping;
-
-  bool contains(double y) const { return y >= 0 && y <= clearance; }
-  double nearer_wall(double y) const { return y < clearance / 2 ? 0 : clearance; }
-};
-std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
-  std::vector<Cavity> all;
-  const auto add = [&](const Scene& alone, double clearance) {
-    const auto* const exact = std::get_if<Exact>(&engine);
-    const double damping = exact ? 2 * zeta_m<double>(alone, exact->calibration) *
-                                       std::sqrt(alone.wall_stiffness / alone.mass_ratio)
-                                 : 0;
-    all.push_back({all.size(), alone.mass_ratio, alone.restitution, clearance, damping});
-  };
-  if (scene.dampers.empty()) add(scene, 1);
-  for (const SceneDamper& each : scene.dampers) add(with_alone(scene, each), each.clearance);
-  return all;
-}
-
-Matrix identity_of(std::size_t n) {
-  Matrix one(n, std::vector<double>(n));
-  for (std::size_t i = 0; i < n; ++i) one[i][i] = 1;
-  return one;
-}
-
-// With rigid walls an iterate may come to lie beyond a wall. Then the impact has passed phase 0: one that was
-// to come has just been, or the other way round, and the state is taken across it (M13.13). All other masses
-// are taken to fly.
-std::optional<Crossing> across_impact(double zeta, const Cavity& cavity, const StateVector& s) {
-  const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
-  const double wall = s[y] < 0 ? 0 : cavity.clearance, away = s[y] < 0 ? 1 : -1, e = cavity.restitution;
-  const bool approaching = away * s[w] < 0;
-  if (!approaching && !(away * s[w] > 0 && e > 0)) return {};
-  // (M13.5) or, where the mass leaves the wall, its inverse.
-  StateMatrix jump = identity_of(s.size());
-  double gained = cavity.mass_ratio * (1 + e) / (1 + cavity.mass_ratio);
-  if (!approaching) gained /= e;
-  jump[1][w] = gained;
-  for (std::size_t i = 3; i < s.size(); i += 2) jump[i][w] = -gained;
-  jump[w][w] = approaching ? -e : -1 / e;
-  const auto rates = [&](const StateVector& at) {
-    const double a = -2 * zeta * at[1] - at[0];  // the force is 0 at phase 0
-    StateVector all{at[1], a};
-    for (std::size_t i = 2; i < at.size(); i += 2) all.insert(all.end(), {at[i + 1], -a});
-    return all;
-  };
-  const auto moved = [](StateVector from, const StateVector& by, double time) {
-    for (std::size_t i = 0; i < from.size(); ++i) from[i] += by[i] * time;
-    return from;
-  };
-  const double since = (s[y] - wall) / s[w];
-  const StateVector before = rates(s);
-  const StateVector at_wall = product(jump, moved(s, before, -since));
-  const StateVector after = rates(at_wall);
-  Crossing crossing{jump, moved(at_wall, after, since)};
-  for (std::size_t i = 0; i < s.size(); ++i) {  // (M13.4)
-    double kick = after[i];
-    for (std::size_t k = 0; k < s.size(); ++k) kick -= jump[i][k] * before[k];
-    crossing.by_state[i][y] += kick / s[w];
-  }
-  return crossing;
-}
-
-// The same with compliant walls, where the touch, or the end of a contact, passes phase 0 (M13.6): the branch
-// has a kink there.
-Crossing across_edge(const Cavity& cavity, bool into_contact, StateVector s) {
-  const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
-  const double force = (into_contact ? 1 : -1) * cavity.wall_damping, shared = cavity.mass_ratio * force;
-  StateMatrix edge = identity_of(s.size());
-  edge[1][y] = shared;
-  for (std::size_t i = 3; i < s.size(); i += 2) edge[i][y] = -shared;
-  edge[w][y] = -(1 + cavity.mass_ratio) * force;
-  const double q = s[y] - cavity.nearer_wall(s[y]);
-  for (std::size_t i = 1; i < s.size(); i += 2) s[i] += edge[i][y] * q;
-  return {std::move(edge), std::move(s)};
-}
-
 // Takes an iterate that came from `before` to where the equation holds that led it there, and the plane with
 // it. False: that is not possible.
-bool carry_across(const Scene& scene, const Engine& engine, const Point& before, Point& p, Plane& plane) {
-  const auto carry = [&](const Crossing& crossing) {
+bool carry_across(const Equation& equation, const Point& before, Point& p, Plane& plane) {
+  const std::optional<Crossing> crossing =
+      across_phase_0(equation.scene, equation.engine, state_at(before), state_at(p));
+  if (!crossing) return false;
+  Point apart = along(plane.through, -1, p);
+  p = point_at(crossing->state, p.back());
+  if (crossing->by_state.empty()) return true;
+  for (const StateMatrix& by_state : crossing->by_state) {
     const auto carried = [&](const Point& direction) {
-      return point_at(product(crossing.by_state, state_at(direction)), direction.back());
+      return point_at(product(by_state, state_at(direction)), direction.back());
     };
-    const Point apart = carried(along(plane.through, -1, p));
+    apart = carried(apart);
     plane.normal = normalized(carried(plane.normal));
-    p = point_at(crossing.state, p.back());
-    plane.through = along(p, 1, apart);
-  };
-  const std::vector<Cavity> cavities = cavities_of(scene, engine);
-  if (!has_rigid_walls(engine)) {
-    for (const Cavity& cavity : cavities) {
-      const std::size_t y = index_of_y(cavity.damper);
-      const bool into_contact = cavity.contains(before[y]);
-      if (into_contact != cavity.contains(p[y])) carry(across_edge(cavity, into_contact, state_at(p)));
-    }
-    return true;
   }
-  constexpr double rounding = 1e-13;
-  bool some_rest = false;
-  for (const Cavity& cavity : cavities) {
-    double &y = p[index_of_y(cavity.damper)], &w = p[index_of_w(cavity.damper)];
-    const double wall = cavity.nearer_wall(y);
-    // At rest on a wall, but for rounding errors.
-    if (!(std::fabs(y - wall) < rounding && std::fabs(w) < rounding)) continue;
-    y = wall;
-    w = 0;
-    some_rest = true;
-  }
-  for (std::size_t impacts = 0; impacts < 8 * cavities.size(); ++impacts) {
-    const auto beyond = std::ranges::find_if(
-        cavities, [&](const Cavity& cavity) { return !cavity.contains(p[index_of_y(cavity.damper)]); });
-    if (beyond == cavities.end()) return true;
-    if (some_rest) return false;
-    const std::optional<Crossing> crossing = across_impact(scene.damping_ratio, *beyond, state_at(p));
-    if (!crossing) return false;
-    carry(*crossing);
-  }
-  return false;
+  plane.through = along(p, 1, apart);
+  return true;
 }
 
 struct Solution {
@@ -283,7 +173,7 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
   for (int i = 0; i < equation.options.max_iterations; ++i) {
     if (!equation.allows(now.point)) break;
     const PoincareMap map = equation.map(now.point.back());
-    if (!carry_across(map.scene(), equation.engine, last, now.point, now.plane)) break;
+    if (!carry_across(equation, last, now.point, now.plane)) break;
     now.image =
         map(state_of(state_at(now.point), equation.scene), PoincareMap::Derivatives::by_state_and_parameters);
     if (now.image.stop_reason != StopReason::time) {
