@@ -288,9 +288,15 @@ TEST_CASE(
   CHECK_FALSE(orbit.stable());
 }
 
-TEST_CASE("orbits are for at most a hundred dampers") {
+TEST_CASE("orbits are for at most a hundred dampers, and states of as many as the scene has") {
   Scene scene = two_dampers(0.05, 0.9, 1, 0.2);
   scene.dampers.resize(101);
   CHECK_THROWS_WITH_AS(branches_of(scene, Restitution{}, 1),
                        "dampers: must be at most 100 for orbits, got 101", InvalidArguments);
+  scene.dampers.resize(2);
+  CHECK_THROWS_WITH_AS(find_orbit(scene, Restitution{}, 1, State<double>{0.1, 0, 0.5, 0}),
+                       "guess: must be of as many dampers as the scene's list, 2, got 0", InvalidArguments);
+  CHECK_THROWS_WITH_AS(find_branches(scene, Restitution{}, {Parameter::force_frequency, 0.9, 1}, {},
+                                     {State<double>{0.1, 0, 0.5, 0}}, {}, [](std::int64_t) {}),
+                       "starts: must be of as many dampers as the scene's list, 2, got 0", InvalidArguments);
 }

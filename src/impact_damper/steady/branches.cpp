@@ -188,14 +188,19 @@ std::string_view name_of(BranchOrigin origin) {
 }
 
 Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
-                       const BranchRule& rule, const std::vector<SceneState>& starts,
-                       const Threads& threads, const std::function<void(std::int64_t done)>& progress) {
+                       const BranchRule& rule, const std::vector<SceneState>& starts, const Threads& threads,
+                       const std::function<void(std::int64_t done)>& progress) {
   std::vector<Problem> problems = problems_of(rule);
   if (!(range.from > 0 && range.to > 0 && range.from != range.to))
     problems.push_back({"range", "must be two different numbers > 0"});
   if (scene.dampers.size() > most_dampers_with_changes)
     problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for orbits, got " + std::to_string(scene.dampers.size())});
+  for (const SceneState& start : starts)
+    if (start.dampers.size() != scene.dampers.size())
+      problems.push_back({"starts", "must be of as many dampers as the scene's list, " +
+                                        std::to_string(scene.dampers.size()) + ", got " +
+                                        std::to_string(start.dampers.size())});
   require_none(problems);
   const BranchSearch search(engine, range, rule);
   for (const double value : {range.from, range.to})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
@@ -757,6 +758,10 @@ std::string_view name_of(BranchEnd end) {
 
 Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const SceneState& guess,
                  const OrbitOptions& options) {
+  if (guess.dampers.size() != scene.dampers.size())
+    require_none(
+        {{"guess", "must be of as many dampers as the scene's list, " + std::to_string(scene.dampers.size()) +
+                       ", got " + std::to_string(guess.dampers.size())}});
   Scene guessed = released_from(scene, guess);
   guessed.until_time = 1;
   std::vector<Problem> problems = impact_damper::problems_of(guessed, DamperList::allowed);

@@ -26,8 +26,8 @@ std::string_view name_of(OrbitEnd end);  // the enumerator's own name
 struct OrbitOptions {
   // Only among orbits that are their own mirror image half of the periods later; `periods` must be odd. An
   // orbit without impacts needs this: its secondary mass may rest anywhere, and only y + x = 1/2, half of its
-  // clearance, is symmetric. Where other dampers are struck one that is not rests
-  // where the guess has it, and in the middle if the orbit of the others is symmetric.
+  // clearance, is symmetric. Where other dampers are struck one that is not rests where the guess has it, and
+  // in the middle if the orbit of the others is symmetric.
   bool symmetric = false;
   // Of |H^n(s) - s|, the largest number, in units of the larger of 1 and the largest of |s|. In (0, 1e-3].
   // Newton's iteration goes on beyond it for as long as each step halves the rest.
