@@ -333,8 +333,10 @@ void warn_of(const Branches& found, const BranchRule& rule) {
     ended += is_ended;
     open += !is_ended && !start.orbit;
     if (start.orbit == OrbitEnd::no_derivative)
-      warn("several masses meet walls at one instant, so their motion has no multipliers: give those that move "
-           "alike as one with the sum of their masses, or release them apart");
+      warn(
+          "several masses meet walls at one instant, so their motion has no multipliers: give those that "
+          "move "
+          "alike as one with the sum of their masses, or release them apart");
     else if (start.orbit && *start.orbit != OrbitEnd::converged)
       warn("no periodic orbit is found near a motion that repeats: " + std::string(end_of(start)));
   }
@@ -355,6 +357,9 @@ void warn_of(const Branches& found, const BranchRule& rule) {
          " points; --max-points or --largest-step raises that");
   if (const auto count = ends(BranchEnd::step_too_small); count > 0)
     warn(of_all(count, branches, "branches") + " end where no orbit is found near enough to the last");
+  if (const auto count = ends(BranchEnd::coincidence); count > 0)
+    warn(of_all(count, branches, "branches") +
+         " end where two masses meet walls at one instant: who is first decides what follows");
   if (!found.complete)
     warn("there are more than " + std::to_string(rule.max_branches) +
          " branches; --max-branches raises that");
@@ -420,9 +425,8 @@ std::string mapped(const Request& asked) {
 std::string followed(const Request& asked) {
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
-  const Branches found =
-      find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts, asked.threads,
-                    [&](std::int64_t done) { progress(done); });
+  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
+                                       asked.threads, [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(found, asked.orbits);
   return asked.format == Format::csv
              ? orbits_csv(scene, *asked.range, found, asked.units)
@@ -503,7 +507,8 @@ int respond(Arguments& arguments) {
   if (!asked.quiet) warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
   if (in_si) asked.units = si_units_of(*asked.file.scales);
 
-  const std::string text = saying_options([&] { return text_of(asked); });
+  const std::string text =
+      saying_options([&] { return text_of(asked); }, arguments.text("--scene").value_or(""));
   if (output) {
     write_file(*output, text);
   } else {
@@ -562,7 +567,8 @@ Options own_options() {
           number_text(orbits.largest_step),
       "Response");
   add("--max-multiplier", "X",
-      "orbits: a branch ends where a multiplier is larger and no grazing is\nthe cause; 1 to 1e12, default " +
+      "orbits: a branch ends where a multiplier, times the least speed of an\nimpact if that is below 1, is "
+      "larger; 1 to 1e12, default " +
           number_text(orbits.max_multiplier),
       "Response");
   add("--max-points", "N",

@@ -90,7 +90,9 @@ class BranchSearch {
   // What simulation ends in a little beyond where a branch ends by a grazing, or where none was found near
   // enough to the last orbit. Nothing where that is not in the range.
   std::optional<Orbit> beyond(const Branch& branch, bool& upwards) const {
-    if (branch.end != BranchEnd::grazing && branch.end != BranchEnd::step_too_small) return {};
+    if (branch.end != BranchEnd::grazing && branch.end != BranchEnd::coincidence &&
+        branch.end != BranchEnd::step_too_small)
+      return {};
     if (branch.orbits.size() < 2) return {};
     const Orbit& last = branch.orbits.back();
     const double end = branch.end == BranchEnd::grazing ? branch.events.back().parameter : value_of(last);

@@ -65,7 +65,10 @@ struct Equation {
   std::vector<std::size_t> resting(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
-  PoincareImage image_of(const Point& p) const { return map(p.back())(state_of(state_at(p), scene)); }
+  PoincareImage image_of(const Point& p,
+                         PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
+    return map(p.back())(state_of(state_at(p), scene), wanted);
+  }
   // Whether an iterate is one that a scene may have.
   bool allows(const Point& p) const {
     for (const SceneField& field : scene_fields)
@@ -173,10 +176,8 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
   std::vector<double> residuals;
   for (int i = 0; i < equation.options.max_iterations; ++i) {
     if (!equation.allows(now.point)) break;
-    const PoincareMap map = equation.map(now.point.back());
     if (!carry_across(equation, last, now.point, now.plane)) break;
-    now.image =
-        map(state_of(state_at(now.point), equation.scene), PoincareMap::Derivatives::by_state_and_parameters);
+    now.image = equation.image_of(now.point, PoincareMap::Derivatives::by_state_and_parameters);
     if (now.image.stop_reason != StopReason::time) {
       best.end = OrbitEnd::run_stopped;
       break;
@@ -271,6 +272,7 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.multipliers = multipliers_of(found.image);
   orbit.slowest_impact = found.image.slowest_impact;
   orbit.nearest_miss = found.image.nearest_miss;
+  orbit.least_interval = found.image.least_interval;
   if (!symmetric) return orbit;
 
   // The other half is the mirror image of this one.
@@ -524,7 +526,7 @@ class Follower {
     }
     if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image))
       return {};
-    at.image = equation_.image_of(at.point);
+    at.image = equation_.image_of(at.point, PoincareMap::Derivatives::by_state_and_parameters);
     return at;
   }
   // Whether H^n(s) - s has turned round.
@@ -615,6 +617,8 @@ class Follower {
   // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
   // parameter is a smooth function of it (M13.14), so a polynomial through a few orbits before leads there.
   void add_grazing_at_end(Branch& branch, const Solution& last) const {
+    // Beyond it the other one is first, and the state jumps.
+    if (last.image.least_interval && *last.image.least_interval < 1e-6) branch.end = BranchEnd::coincidence;
     if (!has_rigid_walls(equation_.engine)) {
       // The branch has a kink where it grazes. Where that is too sharp for the last step, all that is left of
       // it is below these, which are of the order of smallest_step and of its root.
@@ -653,6 +657,9 @@ class Follower {
       size[i] = *(at.image.*size_of);
       value[i] = at.point.back();
     }
+    // It must be on its way to zero: a first impact of chattering may be slow all along a branch.
+    const auto [least, most] = std::ranges::minmax(size);
+    if (!(4 * (most - least) > least)) return {};
     double before = 0;
     for (std::size_t order = 1; order < size.size(); ++order) {
       before = value.back();
@@ -744,6 +751,8 @@ std::string_view name_of(BranchEnd end) {
       return "closed";
     case BranchEnd::joined:
       return "joined";
+    case BranchEnd::coincidence:
+      return "coincidence";
     case BranchEnd::step_too_small:
       return "step_too_small";
     case BranchEnd::unstable:

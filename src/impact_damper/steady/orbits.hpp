@@ -51,8 +51,8 @@ struct Orbit {
   Multipliers multipliers;
   // Of half of that with the mirror, if symmetric: their squares are the multipliers.
   std::optional<Multipliers> half_multipliers;
-  // How near to grazing, as in PoincareImage.
-  std::optional<double> slowest_impact, nearest_miss;
+  // How near to grazing, and to a coincidence, as in PoincareImage.
+  std::optional<double> slowest_impact, nearest_miss, least_interval;
 
   // Without impacts two multipliers are 1: a secondary mass at rest elsewhere rests there, too.
   bool stable() const { return !impacts.empty() && multipliers[0].modulus() < 1; }
@@ -88,12 +88,14 @@ struct BranchEvent {
 };
 
 enum class BranchEnd {
-  range,    // the parameter reached an end of its range; the last orbit is there
-  grazing,  // rigid walls: beyond it the branch, if it goes on, has another number of impacts.
-            // Compliant walls: it turns there so sharply that no step leads on
-  closed,   // it came back to the first orbit
-  joined,   // it met the branch of symmetric orbits, or of half its period, from which it branches off:
-            // the last orbit. Beyond are mirror images, or the same orbits half of their period later
+  range,        // the parameter reached an end of its range; the last orbit is there
+  grazing,      // rigid walls: beyond it the branch, if it goes on, has another number of impacts.
+                // Compliant walls: it turns there so sharply that no step leads on
+  closed,       // it came back to the first orbit
+  joined,       // it met the branch of symmetric orbits, or of half its period, from which it branches off:
+                // the last orbit. Beyond are mirror images, or the same orbits half of their period later
+  coincidence,  // rigid walls: impacts of two dampers come to be at one instant, within 1e-6; beyond it the
+                // other one is first, which is another motion
   step_too_small,  // no orbit was found near enough to the last
   unstable,        // FollowOptions::max_multiplier
   points,          // FollowOptions::max_points

@@ -53,6 +53,22 @@ std::optional<double> slowest(const std::vector<OrbitImpact>& impacts, const std
   return least;
 }
 
+// Without those that stick from the beginning, which no impact of theirs precedes.
+std::int64_t comes_to_stick(const std::vector<Sticking>& all) {
+  return std::ranges::count_if(all, [](const Sticking& each) { return each.impacts_before > 0; });
+}
+
+std::optional<double> least_interval(const std::vector<OrbitImpact>& impacts, double duration) {
+  std::optional<double> least;
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    const bool is_last = i + 1 == impacts.size();
+    const OrbitImpact& next = impacts[is_last ? 0 : i + 1];
+    const double interval = next.time - impacts[i].time + (is_last ? duration : 0);
+    if (next.damper != impacts[i].damper && !(least && *least <= interval)) least = interval;
+  }
+  return least;
+}
+
 }  // namespace
 
 StateVector vector_of(const SceneState& s) {
@@ -123,7 +139,7 @@ PoincareMap::End PoincareMap::of_one_damper(const SceneState& s, Derivatives wan
   }
   std::vector<Sticking> sticking;
   for (const std::size_t impacts : run.impacts_before_sticking) sticking.push_back({impacts, 0});
-  image.sticking = std::ssize(sticking);
+  image.sticking = comes_to_stick(sticking);
   image.slowest_impact = slowest(run.impacts, sticking);
   image.nearest_miss = run.nearest_miss;
   image.impacts = std::move(run.impacts);
@@ -167,8 +183,9 @@ PoincareMap::End PoincareMap::of_several(const SceneState& s, Derivatives wanted
   }
   for (std::size_t i = 0; i < idle.size(); ++i)
     if (idle[i]) image.idle.push_back(i);
-  image.sticking = std::ssize(sticking);
+  image.sticking = comes_to_stick(sticking);
   image.slowest_impact = slowest(image.impacts, sticking);
+  if (has_rigid_walls(engine_)) image.least_interval = least_interval(image.impacts, duration());
   return {std::move(image), std::move(along.rates_at_end)};
 }
 

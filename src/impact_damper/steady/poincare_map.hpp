@@ -38,7 +38,8 @@ struct PoincareImage {
   // By omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked for.
   StateVector by_frequency, by_amplitude;
   std::vector<OrbitImpact> impacts;  // in these n half periods, not mirrored
-  std::int64_t sticking = 0;         // rigid walls: times in which a secondary mass sticks
+  // Rigid walls: how often a secondary mass comes to stick; not again where one sticks from the beginning.
+  std::int64_t sticking = 0;
   // Of several dampers, by number, those that meet no wall while others do, and are held by none.
   std::vector<std::size_t> idle;
   // Of several dampers: whether some met rigid walls at one instant. The derivative is then that of changes
@@ -50,6 +51,9 @@ struct PoincareImage {
   // Least distance from a wall at which y turns back in flight; not of several dampers with compliant walls,
   // nor without Derivatives::by_state_and_parameters of several.
   std::optional<double> nearest_miss;
+  // Of several dampers with rigid walls: the least time between impacts of two different ones, which the map
+  // would jump by if they changed their order. As if the motion went on as it began.
+  std::optional<double> least_interval;
 };
 
 // What small changes become in a period takes a time that grows with the fourth power of the number of

@@ -12,6 +12,7 @@ constexpr UnitInSi ratio{"", [](const SiUnits&) { return 1.0; }};
 constexpr UnitInSi length{"_m", [](const SiUnits& u) { return u.length; }};
 constexpr UnitInSi velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
 constexpr UnitInSi force{"_N", [](const SiUnits& u) { return u.force; }};
+constexpr UnitInSi time{"_s", [](const SiUnits& u) { return u.time; }};
 constexpr UnitInSi power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
 constexpr UnitInSi frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
 
@@ -215,7 +216,13 @@ std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several) {
       of_state<P, &State<double>::y>("y", length),
       of_state<P, &State<double>::w>("w", velocity),
   };
-  return std::span(table).first(table.size() - (several ? 2 : 0));
+  static const std::vector<RowColumn<P>> table_of_several = [] {
+    std::vector<RowColumn<P>> columns(table.begin(), table.end() - 2);
+    columns.insert(columns.end() - 2, distance_of<&P::least_interval>("least_interval", time));
+    return columns;
+  }();
+  if (several) return table_of_several;
+  return table;
 }
 
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {

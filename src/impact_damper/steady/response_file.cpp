@@ -26,6 +26,7 @@ OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
                    .multipliers = orbit.multipliers,
                    .slowest_impact = orbit.slowest_impact,
                    .nearest_miss = orbit.nearest_miss,
+                   .least_interval = orbit.least_interval,
                    .state = release_of(orbit.scene),
                    .impacts_by_damper = std::vector<ImpactCounts>(orbit.scene.dampers.size())};
   point.multipliers.resize(4);

@@ -47,11 +47,11 @@ struct OrbitPoint {
   double value = 0;         // of the number that varies
   std::int64_t period = 1;  // in periods of the force
   bool symmetric = false, stable = false;
-  ImpactCounts impacts{};     // in one period of its own
-  std::int64_t sticking = 0;  // in one period of its own
-  double amplitude = 0;       // largest |x|
+  ImpactCounts impacts{};                    // in one period of its own
+  std::int64_t sticking = 0;                 // in one period of its own
+  double amplitude = 0;                      // largest |x|
   Multipliers multipliers = Multipliers(4);  // of several dampers those four that are largest
-  std::optional<double> slowest_impact, nearest_miss;
+  std::optional<double> slowest_impact, nearest_miss, least_interval;
   SceneState state;                             // at phase 0 of the force
   std::vector<ImpactCounts> impacts_by_damper;  // the same of each of several
 };

@@ -250,9 +250,10 @@ OrbitBranch read_branch(ObjectReader& item, std::size_t dampers) {
   item.required("origin", branch.origin, {BranchOrigin::start, BranchOrigin::event, BranchOrigin::beyond});
   item.required("from", branch.from, counts);
   branch.event = read_index(item, "event");
-  item.required("end", branch.end,
-                {BranchEnd::range, BranchEnd::grazing, BranchEnd::closed, BranchEnd::joined,
-                 BranchEnd::step_too_small, BranchEnd::unstable, BranchEnd::points, BranchEnd::not_an_orbit});
+  item.required(
+      "end", branch.end,
+      {BranchEnd::range, BranchEnd::grazing, BranchEnd::closed, BranchEnd::joined, BranchEnd::coincidence,
+       BranchEnd::step_too_small, BranchEnd::unstable, BranchEnd::points, BranchEnd::not_an_orbit});
   std::vector<double> values;
   item.required("values", values);
   for (const double value : values) {
