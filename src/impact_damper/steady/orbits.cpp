@@ -127,7 +127,7 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
   }
   for (const std::size_t damper : equation.resting(image)) {
     std::vector<double>& row = a[index_of_w(damper)];
-    std::ranges::fill(row, 0.0);
+    std::fill(row.begin(), row.end(), 0.0);
     row[0] = row[index_of_y(damper)] = 1;
   }
   a.push_back(last);

@@ -456,7 +456,7 @@ class CompliantWalls {
       matrix_.assign(n, std::vector<double>(n));
       std::vector<double> term(n), next(n);
       for (std::size_t j = 0; j < n; ++j) {
-        std::ranges::fill(term, 0.0);
+        std::fill(term.begin(), term.end(), 0.0);
         term[j] = 1;
         for (int order = 0; order < terms; ++order) {
           for (std::size_t i = 0; i < n; ++i) matrix_[i][j] += term[i];
@@ -488,7 +488,7 @@ class CompliantWalls {
         from[2 + 2 * k] = s[index_of_y(pushed_[k])];
         from[3 + 2 * k] = s[index_of_w(pushed_[k])];
       }
-      if (from.size() > n) std::ranges::copy(force, from.begin() + std::ptrdiff_t(n));
+      if (from.size() > n) std::copy(force.begin(), force.end(), from.begin() + std::ptrdiff_t(n));
       s[0] = product(matrix_[0], from);
       s[1] = product(matrix_[1], from);
       for (std::size_t k = 0; k < pushed_.size(); ++k) {
