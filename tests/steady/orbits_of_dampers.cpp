@@ -288,6 +288,64 @@ TEST_CASE(
   CHECK_FALSE(orbit.stable());
 }
 
+TEST_CASE("a branch ends where impacts of two dampers come to be at one instant") {
+  Scene scene = forced_scene(0.02, 0.2, 1.325, 0.2237);
+  scene.x0 = -0.68;
+  scene.dampers = {{.mass_ratio = 0.02, .restitution = 0.34, .clearance = 1.0, .y0 = 0.917},
+                   {.mass_ratio = 0.012, .restitution = 0.25, .clearance = 0.55, .y0 = 0.164}};
+  const Branches found = branches_of(scene, Restitution{}, 1.025);
+  const auto ended = std::ranges::find(found.branches, BranchEnd::coincidence,
+                                       [](const FollowedBranch& each) { return each.branch.end; });
+  REQUIRE(ended != found.branches.end());
+  const Orbit& last = ended->branch.orbits.back();
+  CHECK(*last.least_interval < 1e-6);
+  CHECK(*last.slowest_impact > 0.05);
+  double least = std::numeric_limits<double>::infinity();
+  for (const OrbitImpact& one : last.impacts)
+    for (const OrbitImpact& other : last.impacts)
+      if (one.damper < other.damper) least = std::min(least, std::fabs(one.time - other.time));
+  CHECK(*last.least_interval == doctest::Approx(least));
+}
+
+TEST_CASE("no grazing is told where an impact is slow all along a branch") {
+  // Its masses chatter, and the first impact of one chattering has a speed of 5e-5.
+  Scene scene = forced_scene(0.02, 0.02, 0.767, 0.3562);
+  scene.x0 = 0.53;
+  scene.dampers = {{.mass_ratio = 0.057, .restitution = 0.26, .clearance = 1.0, .y0 = 0.664},
+                   {.mass_ratio = 0.038, .restitution = 0.22, .clearance = 0.67, .y0 = 0.6}};
+  BranchRule rule;
+  rule.steady.max_periods = 1500;
+  rule.max_points = 60;
+  rule.max_branches = 8;
+  const Branches found = find_branches(scene, Restitution{}, {Parameter::force_amplitude, 0.3562, 0.7125},
+                                       rule, {release_of(scene)}, {}, [](std::int64_t) {});
+  int grazing = 0, slow = 0;
+  for (const FollowedBranch& each : found.branches) {
+    const Orbit& last = each.branch.orbits.back();
+    slow += last.slowest_impact.value_or(1) < 1e-4 && each.branch.end != BranchEnd::grazing;
+    for (const BranchEvent& event : each.branch.events) {
+      if (event.kind != BranchEventKind::grazing) continue;
+      ++grazing;
+      CHECK(std::fabs(event.parameter - last.scene.force_amplitude) < 1e-6);
+    }
+  }
+  CHECK(grazing > 0);
+  CHECK(slow > 0);
+}
+
+TEST_CASE("a mass that sticks while phase 0 passes comes to stick once") {
+  Scene scene = forced_scene(0.06, 0.3, 0.3, 3);
+  scene.restitution = 0.2;
+  scene.x0 = 0.5;
+  scene.y0 = 0.4;
+  const SteadyState steady = settled(scene, Restitution{});
+  REQUIRE(steady.period == 1);
+  const Orbit orbit = find_orbit(scene, Restitution{}, 1, steady.state);
+  REQUIRE(orbit.end == OrbitEnd::converged);
+  CHECK(orbit.scene.y0 * (1 - orbit.scene.y0) == 0);
+  CHECK(orbit.sticking == 2);
+}
+
 TEST_CASE("orbits are for at most a hundred dampers, and states of as many as the scene has") {
   Scene scene = two_dampers(0.05, 0.9, 1, 0.2);
   scene.dampers.resize(101);
