@@ -2,8 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "forced_scene.hpp"
 #include "impact_damper/simulate.hpp"
@@ -42,6 +45,12 @@ Scene two_dampers(double amplitude, double frequency, double second_clearance, d
 Branches branches_of(const Scene& scene, const Engine& engine, double to) {
   return find_branches(scene, engine, {Parameter::force_frequency, scene.force_frequency, to}, {},
                        {release_of(scene)}, {}, [](std::int64_t) {});
+}
+Branch branch_to_end_of_range(const Scene& scene, double to) {
+  const Branches found = branches_of(scene, Restitution{}, to);
+  REQUIRE(found.starts[0].branch == 0);
+  CHECK(found.branches[0].branch.end == BranchEnd::range);
+  return found.branches[0].branch;
 }
 SteadyState settled(const Scene& scene, const Engine& engine) {
   return ForcedScene(scene, engine).settle(release_of(scene), {.max_periods = 20'000});
@@ -194,10 +203,7 @@ TEST_CASE("a stable orbit of two dampers is what simulation comes to, as fast as
 
 TEST_CASE("a Neimark-Sacker point of two dampers is where simulation leaves the orbit") {
   const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
-  const Branches found = branches_of(scene, Restitution{}, 1.1);
-  REQUIRE(found.starts[0].branch == 0);
-  const Branch& branch = found.branches[0].branch;
-  CHECK(branch.end == BranchEnd::range);
+  const Branch branch = branch_to_end_of_range(scene, 1.1);
   const BranchEvent* const at = first_of(branch, BranchEventKind::neimark_sacker);
   REQUIRE(at);
   double growth[2];
@@ -256,10 +262,7 @@ TEST_CASE("a damper that is not struck leaves the branches of the other as they 
 
 TEST_CASE("a branch goes on where impacts of both dampers pass phase 0") {
   const Scene scene = two_dampers(0.06, 0.76, 0.71, 0.2);
-  const Branches found = branches_of(scene, Restitution{}, 0.96);
-  REQUIRE(found.starts[0].branch == 0);
-  const Branch& branch = found.branches[0].branch;
-  CHECK(branch.end == BranchEnd::range);
+  const Branch branch = branch_to_end_of_range(scene, 0.96);
   std::array<int, 2> passed{};
   for (std::size_t n = 1; n < branch.orbits.size(); ++n) {
     const Orbit &before = branch.orbits[n - 1], &after = branch.orbits[n];
