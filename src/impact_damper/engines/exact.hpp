@@ -60,7 +60,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
 
   while (!tracker.stopped()) {
     if (!in_contact) {
-      const Flight<Real, Force> flight(system, tracker.now(), state);
+      Flight<Real, Force> flight(system, tracker.now(), state);
       const auto met = pass_flight(system, tracker, flight, state, at_rest_on_wall);
       at_rest_on_wall = false;
       if (!met) break;

@@ -79,7 +79,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
 
   bool on_wall = (state.y == 0 || state.y == 1) && state.w == 0, released = false;
   while (!tracker.stopped()) {
-    const Flight<Real, Force> flight(system, tracker.now(), state);
+    Flight<Real, Force> flight(system, tracker.now(), state);
     if (on_wall && !released && sticks(flight)) {
       const Real joined = nu * state.w / (1 + nu);
       if (observer.wants_energy() && state.w != 0) {

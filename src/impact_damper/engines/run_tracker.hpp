@@ -5,6 +5,7 @@
 // the ends of its pieces, only.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "impact_damper/engines/half_cycle_tracker.hpp"
@@ -188,12 +189,13 @@ class RunTracker {
 };
 
 // Lets a flight that begins now in `state` pass, in pieces (Flight::length()), until it meets a wall: which
-// one, and `state` then. Nothing where the run has stopped before. `released`: from rest on a wall.
+// one, and `state` then. Nothing where the run has stopped before. `released`: from rest on a wall. The
+// flight becomes each of its pieces in turn.
 template <class Real, class Force, class Observer>
 [[gnu::always_inline]] inline std::optional<Wall> pass_flight(const System<Real, Force>& system,
                                                               RunTracker<Real, Force, Observer>& tracker,
-                                                              const Flight<Real, Force>& flight,
-                                                              State<Real>& state, bool released) {
+                                                              Flight<Real, Force>& flight, State<Real>& state,
+                                                              bool released) {
   if constexpr (!ForcedMotion<Real, Force>::forced) {  // one piece: without the loop a decay takes 2 % less
     const auto met = released ? flight.released_meets_wall(tracker.remaining(), tracker.search())
                               : flight.next_wall(tracker.remaining(), tracker.search());
@@ -201,23 +203,23 @@ template <class Real, class Force, class Observer>
     tracker.pass(flight, met ? met->time : tracker.remaining(), state, Real(0));
     return tracker.stopped() ? std::nullopt : std::optional(met->wall);
   }
-  std::optional<Flight<Real, Force>> next;
   FlightStart<Real> rest(state);
-  for (const Flight<Real, Force>* piece = &flight;; piece = &*next) {
-    const Real remaining = tracker.remaining(), length = piece->length();
+  while (true) {
+    const Real remaining = tracker.remaining(), length = flight.length();
     const Real until = length < remaining ? length : remaining;
-    const auto met = released ? piece->released_meets_wall(until, tracker.search())
-                              : piece->next_wall(until, tracker.search());
+    const auto met = released ? flight.released_meets_wall(until, tracker.search())
+                              : flight.next_wall(until, tracker.search());
     if (met) {
       state = copied(met->state);
     } else if (until < remaining) {
-      rest = piece->start_of_rest(until);
+      rest = flight.start_of_rest(until);
       state = copied(rest.state);
     }
-    tracker.pass(*piece, met ? met->time : until, state, Real(0));
+    tracker.pass(flight, met ? met->time : until, state, Real(0));
     if (tracker.stopped()) return {};
     if (met) return met->wall;
-    next.emplace(system, tracker.now(), rest);
+    // In its place: an optional flight beside it would be cleared, 600 bytes, before each flight.
+    std::construct_at(&flight, system, tracker.now(), rest);
     released = false;
   }
 }
