@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "impact_damper/motion/driven_series.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;
@@ -142,6 +143,47 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
       }
     }
   }
+}
+
+TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long as it holds", Real, double,
+                   long double) {
+  const double epsilon = double(std::numeric_limits<Real>::epsilon());
+  reference::Random random(41);
+  double most = 0;
+  for (double a : {0.0, 1e-12, 1e-3, 0.01, 0.3, 0.99, 1.0, 1.01, 2.0}) {
+    for (double b : {1.0, 0.98, 1e-4}) {
+      for (double omega : {1e-6, 0.2, 0.5, 0.988, 1.0, 1.4, 5.0, 60.0, 1e6}) {
+        const Oscillator<Real> oscillator(a, b);
+        const DrivenSeriesTable<Real> table(oscillator, Real(omega));
+        const double reach = double(table.reach()), rate = driven_radians<Real> / reach;
+        for (int n = 0; n < 6; ++n) {
+          const double x = random.uniform(-1, 1), v = rate * random.uniform(-1, 1);
+          const double f = rate * rate * random.uniform(-1, 1), g = rate * rate * random.uniform(-1, 1);
+          const DrivenSeries<Real> series(table, Real(x), Real(v), Real(f), Real(g));
+          for (double share : {0.01, 0.2, 0.5, 0.8, 1.0}) {
+            const Real t = Real(share) * table.reach();
+            const Quad w = omega;
+            const auto e = reference::exponential<4>(
+                {{{0, 1, 0, 0}, {-Quad(b), -2 * Quad(a), 1, 0}, {0, 0, 0, w}, {0, 0, -w, 0}}}, Quad(t));
+            const auto u = reference::applied<4>(e, {x, v, f, g});
+            const Quad u2 = u[2] - 2 * Quad(a) * u[1] - Quad(b) * u[0];
+            const SeriesAt<Real> found = series.departure().at(t);
+            CAPTURE(a);
+            CAPTURE(b);
+            CAPTURE(omega);
+            CAPTURE(share);
+            // The terms of a damped motion alternate, and add up to more than itself.
+            const double noise = (a < 0.5 ? 12 : 40) * epsilon;
+            CHECK(magnitude(Quad(x) + Quad(v) * Quad(t) + Quad(found.u) - u[0]) <= noise);
+            CHECK(magnitude(Quad(v) + Quad(found.u1) - u[1]) <= noise * rate);
+            CHECK(magnitude(Quad(found.u2) - u2) <= noise * rate * rate);
+            most = std::max(most, magnitude(Quad(found.u2) - u2) / (epsilon * rate * rate));
+          }
+        }
+      }
+    }
+  }
+  MESSAGE("largest error of x'' ", most, " roundings");
 }
 
 TEST_CASE("at resonance without damping the amplitude grows by f0/2 per time") {

@@ -108,12 +108,13 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
                                                             const Departure& departure, const Real& most,
                                                             Enough&& enough, GoOn&& go_on,
                                                             const Real& gap = Real(1)) {
+  constexpr std::size_t first_pairs = Departure::all < 6 ? Departure::all : 6;
   const bool across = start.across;
   Real t = start.time;
   const Real ahead = (across ? gap : Real(0)) - u[0];  // to go, with its sign
   for (int i = 0;; ++i) {
-    // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more than five pairs
-    const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<5>(t);
+    // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more pairs than these
+    const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<first_pairs>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
     const Real newton = (ahead - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const bool bends_little = absolute(bend) < Real(0.0625);
@@ -129,7 +130,7 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
     }
     if (i == 4 || !(size < t / 2)) break;
     t += step;
-    near = near || size * 1024 < t;
+    near = near || size * 256 < t;
     if (!go_on(t, size)) break;
   }
   return {t < most ? t : most, across, false, {}};
@@ -148,7 +149,7 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
   const Real slope = u[1] + rough.u1, off = ahead - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);
   if (absolute(nearer) < t / 2) t += nearer;
-  return predict_from(start, Departure::all <= 5, u, departure, most, enough, go_on, gap);
+  return predict_from(start, Departure::all <= 6, u, departure, most, enough, go_on, gap);
 }
 
 }  // namespace impact_damper

@@ -17,6 +17,7 @@ struct SimdPairOf {
     friend Type operator-(const Type& a, const Type& b) { return {a[0] - b[0], a[1] - b[1]}; }
     friend Type operator*(const Type& a, const Type& b) { return {a[0] * b[0], a[1] * b[1]}; }
     friend Type operator*(const Type& a, const Real& b) { return {a[0] * b, a[1] * b}; }
+    friend Type operator/(const Type& a, const Real& b) { return {a[0] / b, a[1] / b}; }
 
    private:
     std::array<Real, 2> both_{};

@@ -1,33 +1,117 @@
-// The Taylor series of x about the beginning of a motion under a force (M4.4). It holds as long as what it
-// leaves out is below rounding. Its sum needs no sine, and nothing cancels near resonance.
+// The series of x about the beginning of a motion under a force (M4.4): a Taylor series, shortened (M4.5). It
+// holds as long as its error is below rounding. Its sum needs no sine, and nothing cancels near resonance.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <limits>
 
-#include "impact_damper/math/power_series.hpp"
+#include "impact_damper/math/shortened_series.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 
 namespace impact_damper {
 
-inline constexpr std::size_t driven_terms = 24;
-// The first term left out of x'' is driven_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or
-// near critical damping and in resonance up to `terms` times that, which is still below rounding.
+// In pairs of an even power and the odd one behind it. As many powers of the Taylor series have a share in
+// them.
+inline constexpr std::size_t driven_pairs = 9, taylor_terms = 28;
+// The series errs in x'' by 2 (driven_radians / 4)^16 / 16! of the motion: epsilon / 1024, or near critical
+// damping and in resonance up to 17 times that, which is still below rounding. What its Taylor series leaves
+// out is less.
 template <class Real>
-inline constexpr double driven_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
-                                         : std::numeric_limits<Real>::digits10 < 20 ? 1.029
-                                                                                    : 0.22;
+inline constexpr double driven_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.775
+                                         : std::numeric_limits<Real>::digits10 < 20 ? 1.102
+                                                                                    : 0.1319;
 template <class Real>
-using DrivenTerms = PairedSeries<Real, driven_terms / 2>;
+using DrivenTerms = PairedSeries<Real, driven_pairs>;
+
+// A series, of whose first three pairs a small part, 1e-12 of them at most, is kept apart: in a table the
+// rounding of the sum would be the same in every flight, and add up.
+template <class Real>
+struct ShortenedSeries {
+  DrivenTerms<Real> terms;
+  PairedSeries<Real, 3> small;
+};
+
+// Of an oscillator under a force of one frequency.
+template <class Real>
+class DrivenSeriesMaker {
+ public:
+  DrivenSeriesMaker(const Oscillator<Real>& oscillator, const Real& frequency)
+      : a2_(2 * oscillator.a()),
+        b_(oscillator.b()),
+        frequency_(frequency),
+        reach_(Real(driven_radians<Real>) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
+    while (unit_ > reach_) unit_ /= 2;
+    while (2 * unit_ <= reach_) unit_ *= 2;
+  }
+
+  // How long the series and its first two derivatives hold.
+  const Real& reach() const { return reach_; }
+
+  // The Taylor coefficients of x, time in the unit: from x and x', f and f' at the beginning. Number: Real,
+  // or a pair of them, of two motions.
+  template <class Number>
+  std::array<Number, taylor_terms> taylor(const Number& x, const Number& x1, const Number& f,
+                                          const Number& f1) const {
+    const Real square = unit_ * unit_, b = b_ * square, a2 = a2_ * unit_, turn = frequency_ * unit_;
+    std::array<Number, taylor_terms> c{x, x1 * unit_};
+    Number f_now = f * square, f_next = f1 * (square * unit_);
+    for (std::size_t n = 2; n < taylor_terms; ++n) {
+      const Real next = Real(double(n)), both = Real(double(n * (n - 1)));
+      c[n] = (f_now - c[n - 2] * b) / both - c[n - 1] * a2 / next;
+      const Number f_after = f_now * -(turn * turn) / both;
+      f_now = f_next;
+      f_next = f_after;
+    }
+    return c;
+  }
+  // The series with these coefficients, shortened over the reach (M4.5).
+  ShortenedSeries<Real> shortened(const std::array<Real, taylor_terms>& c) const {
+    constexpr std::size_t kept = 2 * driven_pairs - 2;
+    const Real reach = reach_ / unit_;
+    std::array<Real, taylor_terms - 2 - kept> higher;
+    Real power{1};
+    for (std::size_t n = 0; n < kept; ++n) power *= reach;
+    for (std::size_t i = 0; i < higher.size(); ++i) {
+      const double n = double(kept + i);
+      higher[i] = c[kept + i + 2] * (power * Real((n + 1) * (n + 2)));
+      power *= reach;
+    }
+    const PairedSeries<Real, kept / 2> share = share_of<kept>(higher);
+    const Real over_reach = 1 / reach, over_unit = 1 / unit_, square = over_reach * over_reach;
+    const auto& over = reciprocals<Real>;
+    ShortenedSeries<Real> all;
+    all.terms[0] = SimdPair<Real>{c[0], c[1] * over_unit};
+    all.small[0] = SimdPair<Real>{Real(0), Real(0)};
+    SimdPair<Real> powers{Real(1), over_reach},
+        units{over_unit * over_unit, over_unit * over_unit * over_unit};
+    for (std::size_t k = 1; k < driven_pairs; ++k) {
+      const std::size_t n = 2 * k;
+      const SimdPair<Real> integrated{over[n] * over[n - 1], over[n + 1] * over[n]}, taylor{c[n], c[n + 1]};
+      const SimdPair<Real> change = share[k - 1] * (powers * integrated);
+      if (k < all.small.size()) {
+        all.terms[k] = taylor * units;
+        all.small[k] = change * units;
+      } else {
+        all.terms[k] = (taylor + change) * units;
+      }
+      powers = powers * square;
+      units = units * (over_unit * over_unit);
+    }
+    return all;
+  }
+
+ private:
+  Real a2_, b_, frequency_, reach_;
+  Real unit_{1};  // a power of two
+};
 
 // The series is linear in x, v and the force f0 sin(phi) and f0 cos(phi) at the beginning: the coefficients
 // of each, made once for an oscillator and a frequency of the force.
 template <class Real>
 class DrivenSeriesTable {
  public:
-  DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency)
-      : reach_(Real(driven_radians<Real>) / (frequency > oscillator.rate() ? frequency : oscillator.rate())) {
+  DrivenSeriesTable(const Oscillator<Real>& oscillator, const Real& frequency) {
     Real power = 1 / oscillator.root_b();
     for (Real& each : growth_) {
       each = power;
@@ -37,15 +121,16 @@ class DrivenSeriesTable {
     const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
     const Real h2 = re * re + im * im;
     steady_ = {re / h2, im / h2, 1 / square_root(h2)};
-    columns_[0] = column(oscillator, frequency, {1, 0}, {0, 0});
-    columns_[1] = column(oscillator, frequency, {0, 1}, {0, 0});
-    columns_[2] = column(oscillator, frequency, {0, 0}, {1, 0});
-    columns_[3] = column(oscillator, frequency, {0, 0}, {0, frequency});
-    undamped_ = oscillator.a() == 0;
-    if (!undamped_) return;
-    for (std::size_t n = 0; n < driven_terms / 2; ++n) {
-      columns_[0][n] = columns_[0][n] + columns_[1][n];
-      columns_[2][n] = columns_[2][n] + columns_[3][n];
+    const DrivenSeriesMaker<Real> maker(oscillator, frequency);
+    reach_ = maker.reach();
+    using Two = SimdPair<Real>;
+    const Two none{Real(0), Real(0)}, first{Real(1), Real(0)}, last{Real(0), Real(1)};
+    const auto free = maker.taylor(first, last, none, none),
+               driven = maker.taylor(none, none, first, Two{Real(0), frequency});
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<Real, taylor_terms> column;
+      for (std::size_t n = 0; n < taylor_terms; ++n) column[n] = (i < 2 ? free : driven)[n][i % 2];
+      columns_[i] = maker.shortened(column);
     }
   }
 
@@ -63,45 +148,23 @@ class DrivenSeriesTable {
   };
   const Steady& steady() const { return steady_; }
   DrivenTerms<Real> terms_of(const Real& x, const Real& v, const Real& in_phase, const Real& across) const {
+    const auto sum = [&](const auto part, std::size_t n) {
+      const auto column = [&](std::size_t i) { return (columns_[i].*part)[n]; };
+      return (column(0) * x + column(1) * v) + (column(2) * in_phase + column(3) * across);
+    };
     DrivenTerms<Real> c;
-    if (undamped_) {
-      const SimdPair<Real> motion{x, v}, force{in_phase, across};
-      for (std::size_t n = 0; n < c.size(); ++n) c[n] = columns_[0][n] * motion + columns_[2][n] * force;
-      return c;
-    }
-    for (std::size_t n = 0; n < c.size(); ++n)
-      c[n] =
-          (columns_[0][n] * x + columns_[1][n] * v) + (columns_[2][n] * in_phase + columns_[3][n] * across);
+    for (std::size_t n = 0; n < c.size(); ++n) c[n] = sum(&ShortenedSeries<Real>::terms, n);
+    for (std::size_t n = 1; n < columns_[0].small.size(); ++n)
+      c[n] = c[n] + sum(&ShortenedSeries<Real>::small, n);
     return c;
   }
 
  private:
-  // x and x', f and f' at the beginning.
-  static DrivenTerms<Real> column(const Oscillator<Real>& oscillator, const Real& frequency,
-                                  const std::array<Real, 2>& start, const std::array<Real, 2>& force) {
-    // c_n = x^(n)/n!, and likewise of the force.
-    std::array<Real, driven_terms> c{start[0], start[1]};
-    Real f_now = force[0], f_next = force[1];
-    for (std::size_t n = 2; n < driven_terms; ++n) {
-      const Real next = Real(double(n)), both = next * Real(double(n - 1));
-      c[n] = (f_now - oscillator.b() * c[n - 2]) / both - 2 * oscillator.a() * c[n - 1] / next;
-      const Real f_after = -frequency * frequency * f_now / both;
-      f_now = f_next;
-      f_next = f_after;
-    }
-    DrivenTerms<Real> pairs;
-    for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = SimdPair<Real>{c[2 * n], c[2 * n + 1]};
-    return pairs;
-  }
-
   Real reach_;
   bool fast_;
   Steady steady_;
   std::array<Real, 8> growth_;
-  // Without damping x and the force's sine have even powers only, v and its cosine odd ones: then the first
-  // and the third column have these of the second and the fourth beside them.
-  bool undamped_;
-  std::array<DrivenTerms<Real>, 4> columns_;
+  std::array<ShortenedSeries<Real>, 4> columns_;
 };
 
 template <class Real>
@@ -113,8 +176,8 @@ class DrivenSeries {
       : c_(table.terms_of(x, v, in_phase, across)) {}
 
   // By how much x and v differ from x0 + v0 t and v0, and x''; the first multiplied by `times`.
-  Departure<Real, driven_terms / 2> departure(const Real& times = Real(1)) const { return {c_, times}; }
-  // The n-th derivative of x at the beginning, n < 8.
+  Departure<Real, driven_pairs> departure(const Real& times = Real(1)) const { return {c_, times}; }
+  // The n-th derivative of x at the beginning, n < 8, but for 1e-9 of the motion's (M4.5).
   Real derivative(std::size_t n) const {
     constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
     return c_[n / 2][n % 2] * Real(factorial[n]);

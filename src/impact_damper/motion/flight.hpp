@@ -234,9 +234,10 @@ class Flight {
     if (halvings == 0) return false;
     const Real half = h / 2;
     const Place middle = from_wall(begin + half);
+    // Its last two derivatives are asked for next to a wall only, and may tell nothing: -1.
     return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
-           stays_between_walls(derivatives_of_u<4>(middle, begin + half), Real(begin + half), to, half,
-                               fourth, halvings - 1);
+           stays_between_walls(Derivatives<Real, 4>{middle.u, middle.u1, Real(0), Real(-1)},
+                               Real(begin + half), to, half, fourth, halvings - 1);
   }
   // By the series of a motion under a force (M4.4), which is as good as the closed form while it holds: the
   // wall that is met first, or, `wall` empty, that none is met meanwhile. Nothing where Lemma L2 proves
@@ -250,7 +251,7 @@ class Flight {
     const Derivatives<Real, 4> u{u_, away_ * start_.w, -away_ * x.derivative(2), -away_ * x.derivative(3)};
     // On a wall and into it: an impact now. A speed of one denormal number is lost in Lemma L2's products.
     if (u[0] == 0 && u[1] < 0) return {};
-    const Real fourth = primary_.bound(4, reach);
+    const Real& fourth = primary_.fourth_until_reach();
     // Whether Lemma L2 proves the wall that is predicted to be the first.
     const auto first = [&](const Prediction<Real>& predicted) -> std::optional<PredictedWall> {
       const Real& h = predicted.time;
@@ -266,7 +267,7 @@ class Flight {
     };
     const auto enough = [](const Real&, const Real&) { return true; };
     const auto go_on = enough;
-    const Departure<Real, driven_terms / 2> departure = x.departure(-away_);
+    const Departure<Real, driven_pairs> departure = x.departure(-away_);
     std::optional<Place> end;
     const auto none = [&] {
       if (!end) end = from_wall(reach);

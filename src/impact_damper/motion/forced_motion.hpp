@@ -9,6 +9,7 @@
 #include "impact_damper/events/exclusion.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/events/root_isolation.hpp"
+#include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/system.hpp"
 
@@ -89,10 +90,12 @@ class ForcedMotion {
     if constexpr (forced) {
       // Under a fast force the steady state may give the smaller of the two bounds (M3.4). Else only the
       // bound that grows with `span` is computed, from the series, which is there already.
+      // Its coefficients differ from derivatives by less than `above` tells (M4.5).
       const DrivenSeriesTable<Real>& table = oscillator_.series;
       const Real& f0 = forcing_.amplitude;
+      constexpr double above = 1 + 1.0 / 1048576;
       const Real d = series().derivative(n), next = series().derivative(n + 1);
-      const Real growing = oscillator_.bound(d, next) + absolute(f0) * table.growth(n) * span;
+      const Real growing = above * (oscillator_.bound(d, next) + absolute(f0) * table.growth(n) * span);
       if (!table.fast()) return growing;
       const auto& [in_phase, behind, amplitude] = table.steady();
       const Real minus_square = -forcing_.frequency * forcing_.frequency;
@@ -103,7 +106,7 @@ class ForcedMotion {
       const bool is_even = n % 2 == 0;
       const Real s = is_even ? even : odd, s_next = is_even ? odd : Real(minus_square * even);
       const Real size = absolute(power) * amplitude * (is_even ? Real(1) : forcing_.frequency);
-      const Real steady = size + oscillator_.bound(d - s, next - s_next);
+      const Real steady = above * (size + oscillator_.bound(d - s, next - s_next));
       return steady < growing ? steady : growing;
     } else {
       return beginning().bound(n, span);
@@ -130,8 +133,12 @@ class ForcedMotion {
   // Whether x, or x', is proved to keep its sign in [0, t], by its ends, x and v at the last.
   bool keeps_side(const Real& side, const Real& x, const Real& v, const Real& t) const {
     if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
-    if (!forcing_) return t < oscillator_.half_period();
-    return stays_open(Real(side * x0_), Real(side * v0_), Real(side * x), Real(side * v), t, bound(4, t));
+    if constexpr (forced) {
+      const Real fourth = t <= reach() ? fourth_until_reach() : bound(4, t);
+      return stays_open(Real(side * x0_), Real(side * v0_), Real(side * x), Real(side * v), t, fourth);
+    } else {
+      return t < oscillator_.half_period();
+    }
   }
   bool keeps_course(const Real& v, const Real& t) const {
     if (!(v0_ * v > 0)) return false;
@@ -223,6 +230,11 @@ class ForcedMotion {
     return cached_.then = series().departure().at(t);
   }
   const Real& reach() const { return oscillator_.series.reach(); }
+  // A bound on |x''''| while it holds.
+  const Real& fourth_until_reach() const {
+    if (cached_.fourth < 0) cached_.fourth = bound(4, reach());
+    return cached_.fourth;
+  }
   // How long the motion is followed as one: under a force as long as the series holds. But a fast force or
   // strong damping would make that many pieces of a slow motion: then the closed form is cheaper.
   Real length() const {
@@ -251,7 +263,7 @@ class ForcedMotion {
   std::optional<PredictedFall> predicted_fall(std::size_t order, const Real& sign, const Real& from,
                                               const Real& until) const {
     if (!(from < reach())) return {};
-    const Real fourth = bound(order + 4, reach());
+    const Real fourth = order == 0 ? fourth_until_reach() : bound(order + 4, reach());
     const bool whole = until <= reach();
     // The ends alone tell most often that x or x' does not fall.
     if (whole && order < 2) {
@@ -270,7 +282,7 @@ class ForcedMotion {
     // left: if g is negative there, then by rounding.
     if (begin.u < 0 && from > 0) begin.u = 0;
     if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
-    if (const auto root = root_of_series(g, begin, from)) {
+    if (const auto root = root_of_series(g, begin, from, reach())) {
       if (root->slope < 0 &&
           stays_open(begin.u, begin.u1, Real(0), root->slope, Real(root->time - from), fourth)) {
         cached_.zero = {order, root->time, sign * root->slope};
@@ -282,41 +294,6 @@ class ForcedMotion {
     if (stays_open(begin.u, begin.u1, end.u, end.u1, Real(until - from), fourth)) return PredictedFall{};
     return {};
   }
-  // A root of the series g after `from`, and the slope there: by Halley's method, which starts at the root of
-  // the parabola through `begin`, first with few terms. Nothing where it does not converge.
-  struct SeriesRoot {
-    Real time, slope;
-  };
-  std::optional<SeriesRoot> root_of_series(const DrivenTerms<Real>& g, const SeriesAt<Real>& begin,
-                                           const Real& from) const {
-    const Real slope_2 = begin.u1 * begin.u1 - 2 * begin.u2 * begin.u;
-    if (!(slope_2 > 0) || (begin.u2 >= 0 && begin.u1 >= 0)) return {};
-    const Real available = reach() - from, root = square_root(slope_2);
-    Real t = begin.u1 > 0 ? Real((begin.u1 + root) / -begin.u2) : Real(2 * begin.u / (root - begin.u1));
-    if (!(t < available)) t = available;
-    if (from == 0) {  // on to the root of the cubic, by Newton's method
-      const Real third = g[1][1] * t * t * t, slope = begin.u1 + t * (begin.u2 + 3 * g[1][1] * t);
-      if (slope < 0 && absolute(third) < -slope * t / 4) t -= third / slope;
-    }
-    bool near = false;
-    for (int i = 0; i < 8; ++i) {
-      const SeriesAt<Real> at =
-          near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
-      const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
-      const bool bends_little = absolute(bend) < Real(0.0625);
-      const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
-      t += step;
-      if (!(t > 0 && t < available)) return {};
-      // Halley's method is of third order: the next step would be below rounding. The step alone vanishes at
-      // a turn, too, where the function is not zero.
-      constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
-      if (near && absolute(step) * two_to_the_18 < t && absolute(bend) * two_to_the_26 < 1)
-        return SeriesRoot{from + t, at.u1 + step * at.u2};
-      near = near || absolute(step) * 32 < t;
-    }
-    return {};
-  }
-
   const Driven<Real, Force>& oscillator_;
   Force forcing_;
   Real begin_;
@@ -332,7 +309,8 @@ class ForcedMotion {
                  motion.forcing_.amplitude * motion.phase_.sin,
                  motion.forcing_.amplitude * motion.phase_.cos) {}
     DrivenSeries<Real> series;
-    Real time{-1};  // what was asked for last
+    Real fourth{-1};  // none yet
+    Real time{-1};    // what was asked for last
     SeriesAt<Real> then{};
     std::optional<SeriesAt<Real>> at_reach{};
     struct Zero {

@@ -28,9 +28,16 @@ struct PushedWall {
 template <class Real, class Force>
 class JointContact {
  public:
+  static constexpr std::size_t joint_terms = 24;
+  // The first term left out of x'' is joint_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64,
+  // or near critical damping and in resonance up to `terms` times that, which is still below rounding.
+  static constexpr double joint_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
+                                          : std::numeric_limits<Real>::digits10 < 20 ? 1.029
+                                                                                     : 0.22;
+  using Terms = PairedSeries<Real, joint_terms / 2>;
   // A series in s, and a bound on the third derivative, by t, of its function in the piece.
   struct Function {
-    DrivenTerms<Real> terms;
+    Terms terms;
     Real third;
   };
 
@@ -39,7 +46,7 @@ class JointContact {
     zeta_ = zeta;
     forcing_ = forcing;
     const Real rate = rate_for(zeta, forcing, walls);
-    length_ = Real(driven_radians<Real>) / rate;
+    length_ = Real(joint_radians) / rate;
     h_ = 1;
     while (h_ * rate > 2) h_ /= 2;
     over_h_ = 1 / h_;
@@ -52,10 +59,10 @@ class JointContact {
       damping_.push_back(h_ * damping);
     }
     for (std::vector<Real>* each : {&force_, &end_q_, &end_w_, &fourth_}) each->resize(walls.size());
-    q_.resize(driven_terms * walls.size());
+    q_.resize(joint_terms * walls.size());
     const Real end = length_ * over_h_;
     Real power = over_h_ * over_h_ * over_h_ * over_h_;
-    for (std::size_t n = 4; n < driven_terms; ++n) {
+    for (std::size_t n = 4; n < joint_terms; ++n) {
       fourth_weight_[n] = power * double(n * (n - 1) * (n - 2) * (n - 3));
       power *= end;
     }
@@ -63,7 +70,7 @@ class JointContact {
   // Begins a piece: the walls are those of set_walls(), with their q and q' now.
   void begin(const Real& time, const Real& x0, const Real& v0, const std::vector<PushedWall<Real>>& walls) {
     const std::size_t count = walls.size();
-    std::array<Real, driven_terms> x{x0, h_ * v0};
+    std::array<Real, joint_terms> x{x0, h_ * v0};
     for (std::size_t i = 0; i < count; ++i) {
       q_[i] = walls[i].q;
       q_[count + i] = h_ * walls[i].w;
@@ -72,7 +79,7 @@ class JointContact {
     const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
     Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
     const auto& over = reciprocals<Real>;
-    for (std::size_t n = 0; n + 2 < driven_terms; ++n) {
+    for (std::size_t n = 0; n + 2 < joint_terms; ++n) {
       const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
       const Real *now = q_.data() + n * count, *rate = now + count;
       Real* const after = q_.data() + (n + 2) * count;
@@ -96,7 +103,7 @@ class JointContact {
     Real x, v, dx, dv;
   };
   Change change(const Real& t) const {
-    const SeriesAt<Real> by = Departure<Real, driven_terms / 2>{x_}.at(t * over_h_);
+    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
     const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
     return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
   }
@@ -112,7 +119,7 @@ class JointContact {
   }
   // Integral of nu c q'^2 over [0, t].
   Real wall_work(std::size_t i, const Real& t) const {
-    const DrivenTerms<Real> q = terms_of(i);
+    const Terms q = terms_of(i);
     const Real half = t / 2;
     Real sum_ww{0};
     for (const auto& [abscissa, weight] : gauss_16) {
@@ -128,13 +135,13 @@ class JointContact {
   void look_until(const Real& t) {
     const std::size_t count = nu_.size();
     const Real s = t * over_h_;
-    const Real* last = q_.data() + (driven_terms - 1) * count;
+    const Real* last = q_.data() + (joint_terms - 1) * count;
     for (std::size_t i = 0; i < count; ++i) {
       end_q_[i] = last[i];
       end_w_[i] = 0;
-      fourth_[i] = fourth_weight_[driven_terms - 1] * absolute(last[i]);
+      fourth_[i] = fourth_weight_[joint_terms - 1] * absolute(last[i]);
     }
-    for (std::size_t n = driven_terms - 1; n-- > 0;) {
+    for (std::size_t n = joint_terms - 1; n-- > 0;) {
       const Real *now = q_.data() + n * count, weight = fourth_weight_[n];
       for (std::size_t i = 0; i < count; ++i) {
         end_w_[i] = end_w_[i] * s + end_q_[i];
@@ -226,16 +233,16 @@ class JointContact {
       size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
     return 8 * std::numeric_limits<Real>::epsilon() * size;
   }
-  static Real get(const DrivenTerms<Real>& terms, std::size_t n) { return terms[n / 2][n % 2]; }
-  static void set(DrivenTerms<Real>& terms, std::size_t n, const Real& value) {
+  static Real get(const Terms& terms, std::size_t n) { return terms[n / 2][n % 2]; }
+  static void set(Terms& terms, std::size_t n, const Real& value) {
     terms[n / 2] =
         n % 2 == 0 ? SimdPair<Real>{value, terms[n / 2][1]} : SimdPair<Real>{terms[n / 2][0], value};
   }
   // A bound on a derivative by t in the piece: the sum of its terms' sizes at the end.
-  Real bound(const DrivenTerms<Real>& terms, std::size_t order) const {
+  Real bound(const Terms& terms, std::size_t order) const {
     const Real end = length_ * over_h_;
     Real all{0};
-    for (std::size_t n = driven_terms; n-- > order;) {
+    for (std::size_t n = joint_terms; n-- > order;) {
       Real factor{1};
       for (std::size_t k = 0; k < order; ++k) factor *= Real(double(n - k));
       all = all * end + factor * absolute(get(terms, n));
@@ -243,17 +250,17 @@ class JointContact {
     for (std::size_t k = 0; k < order; ++k) all *= over_h_;
     return all;
   }
-  DrivenTerms<Real> terms_of(std::size_t i) const {
+  Terms terms_of(std::size_t i) const {
     const std::size_t count = nu_.size();
-    DrivenTerms<Real> q;
+    Terms q;
     for (std::size_t n = 0; n < q.size(); ++n)
       q[n] = SimdPair<Real>{q_[2 * n * count + i], q_[(2 * n + 1) * count + i]};
     return q;
   }
   // Sign times the `order`-th derivative by t, 0 or 1.
-  Function function(const DrivenTerms<Real>& terms, const Real& sign, std::size_t order) const {
+  Function function(const Terms& terms, const Real& sign, std::size_t order) const {
     Function g{};
-    for (std::size_t n = 0; n + order < driven_terms; ++n)
+    for (std::size_t n = 0; n + order < joint_terms; ++n)
       set(g.terms, n,
           order == 0 ? Real(sign * get(terms, n))
                      : Real(sign * over_h_ * (Real(double(n + 1)) * get(terms, n + 1))));
@@ -286,8 +293,8 @@ class JointContact {
   std::vector<Real> nu_, spring_, damping_;  // of each wall; h^2 K and h c
   std::vector<Real> q_;                      // the terms of order 0 of all walls, then those of order 1 ...
   std::vector<Real> force_;
-  DrivenTerms<Real> x_{};
-  std::array<Real, driven_terms>
+  Terms x_{};
+  std::array<Real, joint_terms>
       fourth_weight_{};  // the fourth derivative of a q is at most the sum of these times its terms' sizes
   Real end_{-1};         // where these are known:
   std::vector<Real> end_q_, end_w_, fourth_;

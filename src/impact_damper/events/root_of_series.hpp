@@ -1,0 +1,50 @@
+// A root of a power series by Halley's method. Whether it is the first is proved elsewhere (exclusion.hpp).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/power_series.hpp"
+
+namespace impact_damper {
+
+// A root of the series g after `from`, and the slope there: by Halley's method, which starts at the root of
+// the parabola through `begin`, first with few terms. Nothing where it does not converge.
+template <class Real>
+struct SeriesRoot {
+  Real time, slope;
+};
+template <class Real, std::size_t pairs>
+std::optional<SeriesRoot<Real>> root_of_series(const PairedSeries<Real, pairs>& g,
+                                               const SeriesAt<Real>& begin, const Real& from,
+                                               const Real& reach) {
+  const Real slope_2 = begin.u1 * begin.u1 - 2 * begin.u2 * begin.u;
+  if (!(slope_2 > 0) || (begin.u2 >= 0 && begin.u1 >= 0)) return {};
+  const Real available = reach - from, root = square_root(slope_2);
+  Real t = begin.u1 > 0 ? Real((begin.u1 + root) / -begin.u2) : Real(2 * begin.u / (root - begin.u1));
+  if (!(t < available)) t = available;
+  if (from == 0) {  // on to the root of the cubic, by Newton's method
+    const Real third = g[1][1] * t * t * t, slope = begin.u1 + t * (begin.u2 + 3 * g[1][1] * t);
+    if (slope < 0 && absolute(third) < -slope * t / 4) t -= third / slope;
+  }
+  bool near = false;
+  for (int i = 0; i < 8; ++i) {
+    const SeriesAt<Real> at = near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
+    const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
+    const bool bends_little = absolute(bend) < Real(0.0625);
+    const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    t += step;
+    if (!(t > 0 && t < available)) return {};
+    // Halley's method is of third order: the next step would be below rounding. The step alone vanishes at
+    // a turn, too, where the function is not zero.
+    constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
+    if (near && absolute(step) * two_to_the_18 < t && absolute(bend) * two_to_the_26 < 1)
+      return SeriesRoot<Real>{from + t, at.u1 + step * at.u2};
+    near = near || absolute(step) * 32 < t;
+  }
+  return {};
+}
+
+}  // namespace impact_damper
