@@ -286,6 +286,55 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
   CHECK(forced > 5000);
 }
 
+TEST_CASE_TEMPLATE("a contact that lasts ends when the certified search says, whatever it is told by", Force,
+                   Forcing<double>, NoForcing<double>) {
+  constexpr bool forced = std::is_same_v<Force, Forcing<double>>;
+  reference::Random random(43);
+  int told = 0, while_it_rings = 0, lasting = 0;
+  for (int n = 0; n < 40000; ++n) {
+    Scene scene = scene_of(random, forced);
+    // The mass comes slowly to a wall that it is mostly pushed to.
+    scene.mass_ratio = random.log_uniform(1e-3, 1);
+    scene.damping_ratio = random.chance(0.5) ? 0 : random.log_uniform(1e-4, 0.3);
+    if (forced && random.chance(0.1)) scene.force_frequency = random.log_uniform(1e-3, 100);
+    const System<double, Force> system(scene);
+    Search<double> search{bounded_span(system)};
+    const ContactModes<double, Force> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
+    const double inward = wall == Wall::left ? -1 : 1;
+    const State<double> start{inward * random.uniform(-0.5, 6), random.uniform(-3, 3),
+                              wall == Wall::left ? 0.0 : 1.0, inward * random.log_uniform(1e-5, 3)};
+    const Contact<double, Force> contact(walls, forced ? random.uniform(0, 100) : 0.0, start, wall);
+    if (walls.coupled) continue;
+    const auto end = SustainedContact<double, Force>(contact).end();
+    if (!end) continue;
+    ++told;
+    const auto expected = contact.search_leave(100, search);
+    CAPTURE(n);
+    CHECK(expected.has_value());
+    if (!expected) continue;
+    const double time = expected->time, swing = walls.fast.half_period();
+    while_it_rings += time < 3 * swing;
+    lasting += time > 10 * swing;
+    const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
+    const double size = std::abs(slow.q) + std::abs(fast.q) +
+                        (std::abs(start.x) + std::abs(start.v) + scene.force_amplitude) / walls.stiffness +
+                        std::abs(start.w) / std::sqrt(walls.stiffness);
+    const double off = std::abs(end->time - time);
+    CHECK(off <= 16 * epsilon * time + 64 * epsilon * size / std::abs(expected->state.w));
+    const double speed = std::abs(start.x) + std::abs(start.v) + std::abs(start.w) +
+                         scene.force_amplitude * std::min(time, 1.0);
+    CHECK(std::abs(end->x - expected->state.x) <= 128 * epsilon * speed + speed * off);
+    CHECK(std::abs(end->v - expected->state.v) <= 128 * epsilon * speed + 2 * speed * off);
+    CHECK(std::abs(end->w - expected->state.w) <=
+          128 * epsilon * speed * (1 + scene.mass_ratio) + 2 * (speed + size * walls.stiffness) * off);
+  }
+  MESSAGE(told, " told, ", while_it_rings, " while it rings, ", lasting, " lasting");
+  CHECK(told > 5000);
+  CHECK(lasting > 2000);
+  if (forced) CHECK(while_it_rings > 500);
+}
+
 TEST_CASE("under a force x falls through zero, and turns, when the certified search says") {
   reference::Random random(23);
   int found_both = 0;

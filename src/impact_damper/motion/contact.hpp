@@ -10,6 +10,7 @@
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/motion/contact_modes.hpp"
 #include "impact_damper/motion/state.hpp"
+#include "impact_damper/motion/sustained_contact.hpp"
 
 namespace impact_damper {
 
@@ -27,7 +28,12 @@ class Contact {
         phase_(system.forcing.phase(begin)),
         start_(copied(start)),
         wall_(origin),
-        inward_(wall == Wall::left ? -1 : 1) {}
+        inward_(wall == Wall::left ? -1 : 1) {
+    if constexpr (forced) {
+      const Real& f0 = system.forcing.amplitude;
+      touch_ = {start_.x, start_.v, start_.w, f0 * phase_.sin, f0 * phase_.cos};
+    }
+  }
 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
@@ -44,7 +50,7 @@ class Contact {
         if (end) short_.end = end->time;
       if (end) SearchCounter<Real>::found(FoundBy::short_contact_map);
       if (!end) {
-        end = end_of_sustained_contact();
+        end = SustainedContact<Real, Force>(*this).end();
         if (end) SearchCounter<Real>::found(FoundBy::slow_mode);
       }
       if (end && !(end->time < horizon)) return {};
@@ -208,6 +214,7 @@ class Contact {
   Real second_of_x(const Real& t) const { return bound_of_x(2, t, &Map::second_of_x); }
 
  private:
+  friend class SustainedContact<Real, Force>;
   SinCos<Real> phase_at(const Real& t) const {
     if (t == 0) return phase_;
     if constexpr (!forced) {
@@ -249,13 +256,11 @@ class Contact {
   }
   using Map = ShortContactMap<Real, ContactModes<Real, Force>::columns>;
   using End = typename Map::End;
-  [[gnu::always_inline]] typename Map::Start start_of_map() const {
-    if constexpr (ContactModes<Real, Force>::columns == 3)
-      return {start_.x, start_.v, start_.w};
-    else {
-      const Real& f0 = system_.forcing.amplitude;
-      return {start_.x, start_.v, start_.w, f0 * phase_.sin, f0 * phase_.cos};
-    }
+  [[gnu::always_inline]] decltype(auto) start_of_map() const {
+    if constexpr (forced)
+      return static_cast<const typename Map::Start&>(touch_);
+    else
+      return typename Map::Start{start_.x, start_.v, start_.w};
   }
 
   // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, if it is near
@@ -347,109 +352,6 @@ class Contact {
     }
     if (order == 1 && fall && fall->time) x.turn = {*fall->time, sign * fall->slope};
     return fall;
-  }
-
-  // The end of a sustained contact: the ringing decays, and the mass leaves at h, where the slow mode falls
-  // through zero. The three steps are those of docs/mathematics.md, 7.7: (1) Lemma L2 in pieces, until the
-  // ringing that is left can never reach the chord of Lemma L4; (2) if it is below rounding by then, h is the
-  // end; (3) else h is corrected (M7.7), and the last quarter proved by L2.
-  std::optional<End> end_of_sustained_contact() const {
-    const ContactModes<Real, Force>& c = system_;
-    if (c.forcing || !(c.slow.half_period() < std::numeric_limits<Real>::infinity())) return {};
-    const ContactState<Real>& slow = parts().slow;
-    const Real depth = inward_ * slow.q;
-    if (!(depth > 0)) return {};
-    const Real h = c.slow.fall(depth, Real(inward_ * slow.w)), early = h / 4, late = h * Real(0.75);
-    const Real chord = c.slow.lower_bound_of_decay(h) * depth;
-    const Real slow_fourth = fourth_of(c.slow, slow.q, slow.w);
-    const auto ringing = ringing_left(late, early, chord, slow_fourth);
-    if (!ringing) return {};
-    const Real tiny = std::numeric_limits<Real>::epsilon() / 8;
-    if (*ringing * c.fast.rate() <= tiny * chord * h * c.slow.b()) {
-      const ContactState<Real> end = slow_at(h);
-      return End{h, end.x, end.v, end.w};
-    }
-    return corrected_end(late, h, slow_fourth);
-  }
-  // Step (1): a bound on the ringing from `late` on; nothing where the proof fails before.
-  std::optional<Real> ringing_left(const Real& late, const Real& early, const Real& chord,
-                                   const Real& slow_fourth) const {
-    const ContactModes<Real, Force>& c = system_;
-    const auto& [slow, fast] = parts();
-    const bool oscillates = c.fast.half_period() < std::numeric_limits<Real>::infinity();
-    Overlap slow_now{inward_ * slow.q, inward_ * slow.w}, fast_now{inward_ * fast.q, inward_ * fast.w};
-    Moment now{0, {0, inward_ * start_.w}, fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth};
-    for (int n = 1;; ++n) {
-      const Moment before = now;
-      now.time = Real(n) * c.piece;
-      if (n > 24 || !(now.time < late)) return {};
-      slow_now = moved_by_piece(c.slow, c.slow_piece, slow_now);
-      fast_now = moved_by_piece(c.fast, c.fast_piece, fast_now);
-      now.depth = {slow_now.q + fast_now.q, slow_now.w + fast_now.w};
-      now.fourth = fourth_of(c.fast, fast_now.q, fast_now.w) + slow_fourth;
-      if (!stays_in_wall(before, now, slow_fourth, 4)) return {};
-      const Real left = c.fast.bound_after(fast_now.q, fast_now.w, Real(late - now.time));
-      // What does not oscillate, and was negative at touch, has its one zero behind it.
-      if (!oscillates && fast_now.q >= 0) return left;
-      const Real wait = now.time < early ? Real(early - now.time) : Real(0);
-      if (c.fast.bound_after(fast_now.q, fast_now.w, Real(0)) < chord * Real(0.75) &&
-          c.fast.bound_after(fast_now.q, fast_now.w, wait) < chord / 4)
-        return left;
-    }
-  }
-  std::optional<End> corrected_end(const Real& late, Real h, const Real& slow_fourth) const {
-    const ContactModes<Real, Force>& c = system_;
-    const Moment begin = moment(late, slow_fourth);
-    const Real last = h;
-    for (int correction = 0; correction < 4; ++correction) {
-      Derivatives<Real, 6> x, q;
-      const ContactState<Real> slow_end = slow_at(h), fast_end = fast_at(h);
-      c.derive({slow_end.x + fast_end.x, slow_end.v + fast_end.v, slow_end.q + fast_end.q,
-                slow_end.w + fast_end.w},
-               x, q);
-      const auto [shift, newton, close] = time_to_level(Real(0), q, h, begin.fourth);
-      h += shift;
-      if (!(absolute(h - last) < late / 4)) return {};
-      if (!close) continue;
-      const auto [end_x, end_v] = shifted(x[0], x[1], x, shift);
-      const Real end_w = shifted(q[0], q[1], q, shift).u1;
-      if (!stays_in_wall(begin, {h, {0, inward_ * end_w}, 0}, slow_fourth, 4)) return {};
-      return End{h, end_x, end_v, end_w};
-    }
-    return {};
-  }
-  // Inwards: q and q' of a part or of both; at a time, with a bound on their fourth derivative from then on.
-  struct Overlap {
-    Real q, w;
-  };
-  struct Moment {
-    Real time;
-    Overlap depth;
-    Real fourth;
-  };
-  Moment moment(const Real& t, const Real& slow_fourth) const {
-    const ContactState<Real> slow = slow_at(t), fast = fast_at(t);
-    return {t,
-            {inward_ * (slow.q + fast.q), inward_ * (slow.w + fast.w)},
-            fourth_of(system_.fast, fast.q, fast.w) + slow_fourth};
-  }
-  // Whether the mass is proved to stay in the wall, by two moments, or by them and one halfway, and so on.
-  bool stays_in_wall(const Moment& from, const Moment& to, const Real& slow_fourth, int halvings) const {
-    const Real h = to.time - from.time;
-    if (stays_open(from.depth.q, from.depth.w, to.depth.q, to.depth.w, h, from.fourth)) return true;
-    if (halvings == 0 || !(to.depth.q >= 0)) return false;
-    const Moment halfway = moment(Real(from.time + h / 2), slow_fourth);
-    return stays_in_wall(from, halfway, slow_fourth, halvings - 1) &&
-           stays_in_wall(halfway, to, slow_fourth, halvings - 1);
-  }
-  static Overlap moved_by_piece(const Oscillator<Real>& oscillator, const Propagator<Real>& p,
-                                const Overlap& now) {
-    return {p.c * now.q + p.s * now.w, p.v * now.w - oscillator.b() * p.s * now.q};
-  }
-  // A bound on |u''''| from here on.
-  static Real fourth_of(const Oscillator<Real>& oscillator, const Real& u, const Real& u1) {
-    const auto d = derivatives<6>(oscillator, u, u1);
-    return oscillator.bound(d[4], d[5]);
   }
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
@@ -576,6 +478,8 @@ class Contact {
     }
   };
   [[no_unique_address]] mutable std::conditional_t<forced, Last, Nothing> last_;
+  struct Unforced {};
+  [[no_unique_address]] std::conditional_t<forced, typename Map::Start, Unforced> touch_;
   // Under a force, of a contact whose end the map has told.
   struct Endless {};
   struct Short {

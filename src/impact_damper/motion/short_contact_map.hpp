@@ -90,12 +90,9 @@ class ShortContactMap {
     if constexpr (columns == 5) {
       for (std::size_t i = 3; i < 5; ++i) {
         const DrivenBounds<Real> by_force = driven(i, latest_);
-        fast_fourth_[i] = 0;
-        slow_fourth_[i] = growth_ * by_force.fourth_of_q;
-        second_of_x_[i] = by_force.second_of_x;
-        third_of_x_[i] = by_force.third_of_x;
-        fourth_of_x_[i] = by_force.fourth_of_x;
-        fifth_of_x_[i] = by_force.fifth_of_x;
+        fourth_of_q_[i] = Both{Real(0), growth_ * by_force.fourth_of_q};
+        second_and_third_of_x_[i] = Both{by_force.second_of_x, by_force.third_of_x};
+        fourth_and_fifth_of_x_[i] = Both{by_force.fourth_of_x, by_force.fifth_of_x};
       }
     }
   }
@@ -134,10 +131,10 @@ class ShortContactMap {
     return end_within<Result>(start, overlap_after<most>(start), s, most_);
   }
   // Bounds on the derivatives of x during the contact.
-  Real second_of_x(const Start& start) const { return bound(second_of_x_, start); }
-  Real third_of_x(const Start& start) const { return bound(third_of_x_, start); }
-  Real fourth_of_x(const Start& start) const { return bound(fourth_of_x_, start); }
-  Real fifth_of_x(const Start& start) const { return bound(fifth_of_x_, start); }
+  Real second_of_x(const Start& start) const { return bounds(second_and_third_of_x_, start)[0]; }
+  Real third_of_x(const Start& start) const { return bounds(second_and_third_of_x_, start)[1]; }
+  Real fourth_of_x(const Start& start) const { return bounds(fourth_and_fifth_of_x_, start)[0]; }
+  Real fifth_of_x(const Start& start) const { return bounds(fourth_and_fifth_of_x_, start)[1]; }
 
   // Whether the table's series hold at a time t after the touch that is before T, and what one unit of a
   // column has become by then.
@@ -162,6 +159,8 @@ class ShortContactMap {
  private:
   static constexpr std::size_t few = 5, more = 7, many = 9, most = terms / 2;  // pairs of terms
   using Table = std::array<PairedSeries<Real, most>, columns>;
+  using Both = SimdPair<Real>;
+  using Bounds = std::array<Both, columns>;
   template <std::size_t pairs>
   static PairedSeries<Real, pairs> combine(const Table& by, const Start& start) {
     PairedSeries<Real, pairs> all;
@@ -185,15 +184,14 @@ class ShortContactMap {
     };
     const Real slow_rate = fastest(slow), fast_rate = fastest(fast), weighted = slow_rate + fast.a();
     const Real along = (f.w + fast.a() * f.q) / omega;
-    fast_fourth_[i] = omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along));
-    slow_fourth_[i] = growth_ * weighted * weighted * weighted * weighted * slow.bound(s.q, s.w);
+    fourth_of_q_[i] = Both{omega * omega * omega * omega * square_root(Real(f.q * f.q + along * along)),
+                           growth_ * weighted * weighted * weighted * weighted * slow.bound(s.q, s.w)};
     const Real slow_x = slow_rate * slow_rate * slow.bound(s.x, s.v);
     const Real fast_x = fast_rate * fast_rate * fast.bound(f.x, f.v);
-    second_of_x_[i] = slow_x + fast_x;
-    third_of_x_[i] = slow_rate * slow_x + fast_rate * fast_x;
+    second_and_third_of_x_[i] = Both{slow_x + fast_x, slow_rate * slow_x + fast_rate * fast_x};
     const Real slow_square = slow_rate * slow_rate, fast_square = fast_rate * fast_rate;
-    fourth_of_x_[i] = slow_square * slow_x + fast_square * fast_x;
-    fifth_of_x_[i] = slow_square * slow_rate * slow_x + fast_square * fast_rate * fast_x;
+    fourth_and_fifth_of_x_[i] = Both{slow_square * slow_x + fast_square * fast_x,
+                                     slow_square * slow_rate * slow_x + fast_square * fast_rate * fast_x};
   }
 
   // How far from T a series of so many terms is used.
@@ -248,7 +246,8 @@ class ShortContactMap {
     const Real end_w = step.w + rest * (step.w1 + rest * half_w2);
     if (!(end_w * w < 0)) return {};
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(end_w);
-    const Real fast_fourth = bound(fast_fourth_, start), slow_fourth = bound(slow_fourth_, start);
+    const Both fourth = bounds(fourth_of_q_, start);
+    const Real fast_fourth = fourth[0], slow_fourth = fourth[1];
     // The slope at the end is at least as steep as is taken here: exp(a s) >= 1 + a s.
     bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * whole) * out), time,
                              Real(fast_fourth + reach.growth * slow_fourth));
@@ -275,9 +274,9 @@ class ShortContactMap {
       return Result{time, end_x, v_before + by_rest, end_w};
     }
   }
-  static Real bound(const Start& row, const Start& start) {
-    Real sum = row[0] * absolute(start[0]) + row[1] * absolute(start[1]) + row[2] * absolute(start[2]);
-    for (std::size_t i = 3; i < columns; ++i) sum += row[i] * absolute(start[i]);
+  [[gnu::always_inline]] static Both bounds(const Bounds& rows, const Start& start) {
+    Both sum = rows[0] * absolute(start[0]) + rows[1] * absolute(start[1]) + rows[2] * absolute(start[2]);
+    for (std::size_t i = 3; i < columns; ++i) sum = sum + rows[i] * absolute(start[i]);
     return sum;
   }
 
@@ -288,7 +287,8 @@ class ShortContactMap {
   Real latest_{0};
   Real share_{0}, zeta_{0};
   Table centre_{}, q_{};
-  Start fast_fourth_{}, slow_fourth_{}, second_of_x_{}, third_of_x_{}, fourth_of_x_{}, fifth_of_x_{};
+  Bounds fourth_of_q_{}, second_and_third_of_x_{},
+      fourth_and_fifth_of_x_{};  // of q: the fast and the slow part
 };
 
 }  // namespace impact_damper
