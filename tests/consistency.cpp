@@ -371,7 +371,7 @@ TEST_CASE("a run that ends by an amplitude or a budget agrees with itself") {
   Record record;
   record.impacts = record.contacts = record.energy = true;
   for (Engine engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{})}) {
-    std::visit([](auto& options) { options.max_steps = 100; }, engine);
+    std::visit([](auto& options) { options.max_steps = 40; }, engine);
     Scene forced = scene;
     forced.force_amplitude = 0.05;
     const Run run = simulate(forced, engine, record);

@@ -79,6 +79,7 @@ TEST_CASE("on a stable orbit they are the logarithms of the multipliers divided 
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
     const PoincareMap map(scene, engine, 2);
     State<double> s = two_impact_orbits(scene).at(0).state;
+    s.x += 1e-6;  // it is unstable, and rounding alone leads away from it late or early
     for (int i = 0; i < 500; ++i) s = map(s).state;
     const Orbit orbit = find_orbit(scene, engine, 1, s);
     REQUIRE(orbit.end == OrbitEnd::converged);
@@ -152,6 +153,7 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
   // Of what is the same in each period there is none; of nine periods it is not told.
   const Scene light = forced(0.02, 0.05, 0.9, 0.1);
   State<double> s = two_impact_orbits(light).at(0).state;
+  s.x += 1e-6;
   for (int i = 0; i < 500; ++i) s = PoincareMap(light, Restitution{}, 2)(s).state;
   const Orbit orbit = find_orbit(light, Restitution{}, 1, s);
   const LyapunovExponents regular = lyapunov_exponents(orbit.scene, Restitution{}, 100, 400);
