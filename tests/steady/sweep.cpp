@@ -237,16 +237,16 @@ TEST_CASE("a chaotic motion is not taken for a periodic one, and its means are t
   CHECK(distance(state_at(one, 1), state_at(other, 1)) < 1e-8);
   CHECK(distance(state_at(one, 400), state_at(other, 400)) > 1e-3);
   for (std::size_t m = 1; m <= 16; ++m) CHECK(distance(state_at(one, 400), state_at(one, 400 - m)) > 1e-6);
-  // Means over 4000 further periods, by the energy that one long run records.
+  // Means over 20 000 further periods, which scatter far less, by the energy that one long run records.
   Scene further = released_from(scene, steady.state);
-  further.until_time = 4000 * period_of(scene);
+  further.until_time = 20000 * period_of(scene);
   Record record;
   record.energy = true;
   const Run run = simulate(further, rigid, record);
   const double power = run.energy->forcing_work / *further.until_time;
-  // Of a mean of blocks the scatter is that of one, divided by the square root of their number; three of
-  // them.
-  CHECK(std::abs(power - steady.means->power) < 3 * steady.power_scatter / std::sqrt(10.0));
+  // Of a mean of blocks the scatter is that of one, divided by the square root of their number. Four of them,
+  // as ten blocks tell the scatter of one to a quarter only.
+  CHECK(std::abs(power - steady.means->power) < 4 * steady.power_scatter / std::sqrt(10.0));
   CHECK(steady.power_scatter > 0);
   CHECK(steady.power_scatter < 0.1 * steady.means->power);
   CHECK(steady.amplitude_scatter > 0);
