@@ -68,7 +68,7 @@ class SustainedContact {
     const auto& [slow_part, fast_part] = contact_.parts();
     Parts now{{inward_ * slow_part.q, inward_ * slow_part.w}, {inward_ * fast_part.q, inward_ * fast_part.w}};
     if (!(now.main.q > 0)) return {};
-    MainPart main;
+    MainPart main{};
     main.leaves = slow.fall(now.main.q, now.main.w);
     main.chord = slow.lower_bound_of_decay(main.leaves) * now.main.q;  // Lemma L4
     main.fourth = fourth_of(slow, now.main);
