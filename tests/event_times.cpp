@@ -101,6 +101,31 @@ TEST_CASE(
   CHECK(close > 10000);
 }
 
+TEST_CASE(
+    "a function that falls to zero stays above the chord that is proved, which is rarely far below it") {
+  reference::Random random(47);
+  int proved = 0, close = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const double h = random.uniform(0.1, 2), w = random.uniform(-2, 2), a = random.uniform(-6, 3),
+                 j = random.uniform(-10, 10), f = random.uniform(-40, 40);
+    const auto change = [&](double t) { return t * (w + t * (a / 2 + t * (j / 6 + t * f / 24))); };
+    const double u0 = -change(h), slope = w + h * (a + h * (j / 2 + h * f / 6));
+    if (!(u0 > 0)) continue;
+    const double chord = chord_below(u0, w, slope, h, std::abs(f));
+    if (!(chord > 0)) continue;
+    ++proved;
+    double highest = infinite;
+    for (int i = 0; i < 200; ++i) {
+      const double t = h * i / 200;
+      highest = std::min(highest, (u0 + change(t)) / (1 - t / h));
+    }
+    CHECK(chord <= highest * (1 + 1e-12) + 1e-12);
+    close += chord > highest / 2;
+  }
+  CHECK(proved > 10000);
+  CHECK(close > 0.8 * proved);
+}
+
 TEST_CASE("a function keeps its sign between two ends as long as the deepest parabola through them does") {
   reference::Random random(17);
   for (int n = 0; n < 1000; ++n) {

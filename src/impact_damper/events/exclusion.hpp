@@ -37,6 +37,19 @@ template <class Real>
          (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;
 }
 
+// The largest c for which Lemma L2 proves that a function from u0 > 0 to zero, a time h later, is at least
+// c (1 - t/h) in between (M7.11).
+template <class Real>
+Real chord_below(const Real& u0, const Real& slope0, const Real& slope1, const Real& h, const Real& fourth) {
+  const Real& third = reciprocals<Real>[3];
+  const Real off = fourth * (h * h) * (h * h) * (Real(1) / 72);
+  Real chord = u0;
+  for (const Real& other : {Real((4 * u0 + h * slope0) * third), Real(-h * slope1),
+                            Real(u0 + h * (slope0 - slope1) * third - off)})
+    if (other < chord) chord = other;
+  return chord;
+}
+
 // Whether a function with the ends u0, u1 of one sign is proved to have no zero between them (Lemma L3).
 // `second`: a bound on |its second derivative|.
 template <class Real>

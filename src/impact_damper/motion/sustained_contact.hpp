@@ -111,7 +111,7 @@ class SustainedContact {
     main.fourth = slow_now.bound(4, main.until) + fast_now.steady_bound(4);
     if (const auto root = root_of_series(series, begin, Real(0), main.until)) {
       main.leaves = root->time;
-      main.chord = chord_of(begin.u, begin.u1, root->slope, main.leaves, main.fourth);
+      main.chord = chord_below(begin.u, begin.u1, root->slope, main.leaves, main.fourth);
     }
     Depth ringing{inward_ * (fast_now[0] - fast_now.steady(0)), inward_ * (fast_now[1] - fast_now.steady(1))};
     const Depth first = ringing;
@@ -138,17 +138,6 @@ class SustainedContact {
     const auto zero = zero_between(by_series, SlopeAt<Real>{before.time, before.depth.q, before.depth.w},
                                    SlopeAt<Real>{now.time, now.depth.q, now.depth.w}, fast.rate());
     return zero ? corrected_end(at, before, zero->time) : std::nullopt;
-  }
-  // The largest c for which Lemma L2 proves that a function from u > 0 to zero at h is at least c (1 - t/h)
-  // (M7.11).
-  static Real chord_of(const Real& u, const Real& u1, const Real& end_u1, const Real& h, const Real& fourth) {
-    const Real& third = reciprocals<Real>[3];
-    const Real off = fourth * (h * h) * (h * h) * (Real(1) / 72);
-    Real chord = u;
-    for (const Real& other :
-         {Real((4 * u + h * u1) * third), Real(-h * end_u1), Real(u + h * (u1 - end_u1) * third - off)})
-      if (other < chord) chord = other;
-    return chord;
   }
 
   // Piece by piece until the ringing can never reach the chord of the main part until `late`: `left` then
