@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "impact_damper/events/exclusion.hpp"
 #include "impact_damper/events/fall_by_ends.hpp"
@@ -115,15 +116,16 @@ class SustainedContact {
     }
     Depth ringing{inward_ * (fast_now[0] - fast_now.steady(0)), inward_ * (fast_now[1] - fast_now.steady(1))};
     const Depth first = ringing;
+    const auto rings_at = [&](const Real& t) { return moved(fast, fast.propagate(t), first); };
     const auto by_series = [&](const Real& t) {
       const SeriesAt<Real> part = sum<Real>(series, t);
-      const Depth rings = moved(fast, fast.propagate(t), first);
+      const Depth rings = rings_at(t);
       return SeriesAt<Real>{part.u + rings.q, part.u1 + rings.w,
                             part.u2 - 2 * fast.a() * rings.w - fast.b() * rings.q};
     };
     const auto at = [&](const Real& t) {
       const SeriesAt<Real> part = sum<Real>(series, t);
-      const Depth rings = moved(fast, fast.propagate(t), first);
+      const Depth rings = rings_at(t);
       return Moment{t, {part.u + rings.q, part.u1 + rings.w}, fourth_of(fast, rings) + main.fourth};
     };
     const auto followed = follow(main, ringing, at, [&](const Real& t) {
@@ -162,7 +164,7 @@ class SustainedContact {
       const Depth& rings = parts.ringing;
       now = {t, {parts.main.q + rings.q, parts.main.w + rings.w}, fourth_of(fast, rings) + main.fourth};
       if (!stays_in_wall(at, before, now, 4)) return Followed{before, now, {}};
-      if (!(t < late)) continue;
+      if (!(t < late && main.chord > 0)) continue;
       const Real left = fast.bound_after(rings.q, rings.w, Real(late - t));
       // What does not oscillate, and was negative at touch, has its one zero behind it.
       if (!oscillates && rings.q >= 0) return Followed{before, now, left};
@@ -175,7 +177,7 @@ class SustainedContact {
   // The end near h by the equations, and that there is none from `begin` until then.
   template <class At>
   std::optional<End> corrected_end(const At& at, const Moment& begin, Real h) const {
-    const Real first = h, most = (h - begin.time);
+    const Real first = h, most = h - begin.time;
     for (int correction = 0; correction < 4; ++correction) {
       const ContactState<Real> s = contact_.slow_at(h), f = contact_.fast_at(h);
       Derivatives<Real, 6> x, q;
