@@ -1,5 +1,5 @@
 // x of one oscillator, with or without a force: in flight (flight.hpp), and where both masses move as one
-// (sticking.hpp). From its beginning it follows in closed form (M3.2), and under a force by its Taylor series
+// (sticking.hpp). From its beginning it follows in closed form (M3.2), and under a force by its series
 // (M4.4) while that holds.
 //
 // Every motion answers, for a time t since its beginning: the state, which wall it meets and when, and where
