@@ -15,6 +15,6 @@ set key top left Left reverse width 2
 band = !has("band") ? "" : 'table index "band" using 1:2 with filledcurves closed lc rgb sky title columnheader(2), '
 beyond = !has("beyond") ? "" : ', table index "beyond" using 1:2 with lines lc rgb blue lw 1.4 dt (3,3) title columnheader(2)'
 eval 'plot '.band.'table index "prediction" using 1:2 with lines lc rgb blue lw 1.8 title columnheader(2)'.beyond.\
-  ', table index "rising" using 1:2 with points pt 9 ps 0.8 lc rgb black title columnheader(2)'.\
-  ', table index "falling" using 1:2 with points pt 11 ps 0.8 lc rgb orange title columnheader(2)'
+  ', table index "rising" using 1:2 with points pt 9 ps 0.6 lc rgb black title columnheader(2)'.\
+  ', table index "falling" using 1:2 with points pt 11 ps 0.6 lc rgb orange title columnheader(2)'
 eval axes("f₀/ν", "A", "y")

@@ -940,13 +940,16 @@ TEST_CASE(
   FigureRun decay{"decay.json", exponential_decay(0.01, 60)};
   decay.run.scene.damping_ratio = 0;
   decay.others.push_back(exponential_decay(0.012, 60));
+  // From two starts, each of which has a largest.
+  SweepResponse a = sweep(axis, 1, 2, 3, 4), b = sweep(axis, 2, 1, 2, 5);
+  a.sweeps.push_back(sweep(axis, 7, 6, 9, 1).sweeps[0]);
+  b.sweeps.push_back(sweep(axis, 1, 8, 1, 2).sweeps[0]);
   const Table table = figure_table(figure, {{"decay", decay}},
-                                   {{"a", {"a.json", sweep(axis, 1, 2, 3, 4)}},
-                                    {"b", {"b.json", sweep(axis, 2, 1, 2, 5)}},
-                                    {"c", {"c.json", ended}}});
-  const double nu = decay.run.scene.mass_ratio;
-  check_block(table, "rising", {{0.002 / nu, 0.004 / nu, 0.006 / nu}, {2, 2, 5}});
-  check_block(table, "falling", {{0.002 / nu, 0.004 / nu, 0.006 / nu, 0.008 / nu}, {3, 5, 7, 8}});
+                                   {{"a", {"a.json", a}}, {"b", {"b.json", b}}, {"c", {"c.json", ended}}});
+  const double nu = decay.run.scene.mass_ratio, f1 = 0.002 / nu, f2 = 0.004 / nu, f3 = 0.006 / nu,
+               f4 = 0.008 / nu;
+  check_block(table, "rising", {{f1, f2, f1, f2, f3}, {2, 2, 7, 8, 5}});
+  check_block(table, "falling", {{f1, f2, f1, f2, f3, f4}, {3, 5, 9, 2, 7, 8}});
   // The loss factor of an exponential decay is 2 zeta, so the force falls with the amplitude: the largest is
   // the first.
   const auto prediction = std::ranges::find(table.blocks, "prediction", &TableBlock::name);

@@ -11,17 +11,16 @@ namespace impact_damper {
 
 using SweepWay = std::vector<SteadyState> Sweep::*;
 
-// The largest amplitude that the motions of one way have at the axis's value of index `i`, in sweeps along
-// the same values. NaN if one of them has none: a smaller one does not stand for it.
-inline double largest_amplitude(const std::vector<const SweepResponse*>& responses, SweepWay way,
-                                std::size_t i) {
+// The largest amplitude that the motions of one way have at the axis's value of index `i`, in the `n`-th
+// sweep of each response, along the same values. NaN if one of them has none: a smaller one does not stand
+// for it.
+inline double largest_amplitude(const std::vector<const SweepResponse*>& responses, std::size_t n,
+                                SweepWay way, std::size_t i) {
   double largest = 0;
   for (const SweepResponse* response : responses) {
-    for (const Sweep& sweep : response->sweeps) {
-      const SteadyState& steady = (sweep.*way).at(i);
-      if (!steady.means) return std::numeric_limits<double>::quiet_NaN();
-      largest = std::max(largest, steady.means->amplitude);
-    }
+    const SteadyState& steady = (response->sweeps.at(n).*way).at(i);
+    if (!steady.means) return std::numeric_limits<double>::quiet_NaN();
+    largest = std::max(largest, steady.means->amplitude);
   }
   return largest;
 }

@@ -33,21 +33,43 @@ double amplitude_of(const SteadyState& steady) { return steady.means ? steady.me
 
 constexpr SweepWay rising = &Sweep::up, falling = &Sweep::down;
 
-// The largest amplitude at each force that the sweeps have. Throws std::invalid_argument if they are not over
-// the same forces.
-Curve largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
-  Curve curve;
+// The sweeps of a call. Throws std::invalid_argument if not all have as many, each from its own start.
+std::vector<const SweepResponse*> sweeps_of(Runs& runs, const MeasureCall& call) {
   std::vector<const SweepResponse*> responses;
   for (const std::string& name : call.responses) {
-    const auto& response = response_of<SweepResponse>(runs, name);
-    const std::vector<double> forces = response.axis.values();
-    if (!response.axis.number.is(&Scene::force_amplitude) || (!curve.x.empty() && curve.x != forces))
-      throw std::invalid_argument(name + ": must be over the same forces as all responses of the measure");
-    curve.x = forces;
-    responses.push_back(&response);
+    responses.push_back(&response_of<SweepResponse>(runs, name));
+    if (responses.back()->sweeps.size() != responses.front()->sweeps.size())
+      throw std::invalid_argument(name + ": must have as many starts as all responses of the measure");
   }
-  for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y.push_back(largest_amplitude(responses, way, i));
-  return curve;
+  return responses;
+}
+
+// The largest amplitude at each force that the sweeps have, for each start. Throws std::invalid_argument if
+// they are not over the same forces.
+std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
+  const std::vector<const SweepResponse*> responses = sweeps_of(runs, call);
+  const std::vector<double> forces = responses.front()->axis.values();
+  for (std::size_t i = 0; i < responses.size(); ++i)
+    if (!responses[i]->axis.number.is(&Scene::force_amplitude) || responses[i]->axis.values() != forces)
+      throw std::invalid_argument(call.responses[i] +
+                                  ": must be over the same forces as all responses of the measure");
+  std::vector<Curve> curves;
+  for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
+    Curve& curve = curves.emplace_back();
+    curve.x = forces;
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      curve.y.push_back(largest_amplitude(responses, n, way, i));
+  }
+  return curves;
+}
+
+// A number for each start of the sweeps, by each member of the decay's ensemble. find(amplitudes, decay).
+template <class Find>
+Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find) {
+  std::vector<double> values;
+  for (const Curve& found : largest_amplitudes(runs, call, way))
+    for (const Run& decay : runs.ensemble(call.scenes.front())) values.push_back(find(found, decay));
+  return spread_of(values);
 }
 
 // F over A (M14.7) from the amplitude of the largest F on down, in the order of time; A in [from, to].
@@ -78,8 +100,7 @@ double most(const std::vector<double>& values) {
 
 template <SweepWay way, double (*of_all)(const std::vector<double>&)>
 Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
-  const Curve found = largest_amplitudes(runs, call, way);
-  return over_members(runs, call, [&](const Run& run) {
+  return over_starts(runs, call, way, [&](const Curve& found, const Run& run) {
     const Curve needed = needed_force(runs, run, call);
     std::vector<double> errors;
     for (std::size_t i = 0; i < found.x.size(); ++i) {
@@ -91,8 +112,7 @@ Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
 }
 
 Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
-  const Curve found = largest_amplitudes(runs, call, rising);
-  return over_members(runs, call, [&](const Run& run) {
+  return over_starts(runs, call, rising, [&](const Curve& found, const Run& run) {
     const Curve needed = needed_force(runs, run, call);
     if (needed.x.empty()) return no_number;
     for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
@@ -106,35 +126,37 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
 
 Spread jump_ratio(Runs& runs, const MeasureCall& call) {
   constexpr double half_of_the_clearance = 0.5;
-  const Curve found = largest_amplitudes(runs, call, falling);
-  std::size_t least = found.x.size();  // the least force that holds such an amplitude from there on
-  while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
-  return over_members(runs, call, [&](const Run& run) {
+  return over_starts(runs, call, falling, [&](const Curve& found, const Run& run) {
+    std::size_t least = found.x.size();  // the least force that holds such an amplitude from there on
+    while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
     const Curve needed = needed_force(runs, run, call);
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
     return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
   });
 }
 
-// For each value of each sweep of a response, with what the rising and the falling way have there.
+// For each value of a sweep, with what the rising and the falling way have there.
 template <class Visit>
-void for_each_value(const SweepResponse& response, Visit visit) {
-  for (const Sweep& sweep : response.sweeps)
-    for (std::size_t i = 0; i < sweep.up.size(); ++i)
-      visit(static_cast<std::int64_t>(i), sweep.up[i], sweep.down[i]);
+void for_each_value(const Sweep& sweep, Visit visit) {
+  for (std::size_t i = 0; i < sweep.up.size(); ++i)
+    visit(static_cast<std::int64_t>(i), sweep.up[i], sweep.down[i]);
 }
 
 Spread one_motion_share(Runs& runs, const MeasureCall& call) {
-  std::vector<double> same;
-  for (const std::string& name : call.responses) {
-    for_each_value(response_of<SweepResponse>(runs, name), [&](std::int64_t, const SteadyState& up,
-                                                               const SteadyState& down) {
-      const double a = amplitude_of(up), b = amplitude_of(down);
-      const bool differ = amplitudes_differ(a, up.amplitude_scatter, b, down.amplitude_scatter);
-      same.push_back(a == a && b == b ? double(!differ) : no_number);
-    });
+  const std::vector<const SweepResponse*> responses = sweeps_of(runs, call);
+  std::vector<double> shares;
+  for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
+    std::vector<double> same;
+    for (const SweepResponse* response : responses) {
+      for_each_value(response->sweeps[n], [&](std::int64_t, const SteadyState& up, const SteadyState& down) {
+        const double a = amplitude_of(up), b = amplitude_of(down);
+        const bool differ = amplitudes_differ(a, up.amplitude_scatter, b, down.amplitude_scatter);
+        same.push_back(a == a && b == b ? double(!differ) : no_number);
+      });
+    }
+    shares.push_back(mean(same));
   }
-  return spread_of({mean(same)});
+  return spread_of(shares);
 }
 
 // Of the points of a map, those that end in a motion with one impact on each wall in a period of the force.
@@ -181,14 +203,15 @@ Spread two_impact_error(Runs& runs, const MeasureCall& call) {
   std::vector<double> errors;
   for (const std::string& name : call.responses) {
     const auto& response = response_of<SweepResponse>(runs, name);
-    for_each_value(response, [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
+    const auto add = [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
       const Scene scene = response.axis.at(response.scene, i);
       // Undamped at resonance there is no linear response, which the closed form is made of.
       if (scene.force_frequency == 1 && scene.damping_ratio == 0) return;
       for (const SteadyState* each : {&up, &down})
         if (each->period == 1 && each->symmetric && each->impacts == ImpactCounts{1, 1})
           errors.push_back(power_error(scene, each->means->impact_power));
-    });
+    };
+    for (const Sweep& sweep : response.sweeps) for_each_value(sweep, add);
   }
   return spread_of({most(errors)});
 }
@@ -204,7 +227,7 @@ std::vector<Measure> steady_measures() {
        amplitude_error_percent<falling, mean>,
        "relative deviation of the largest steady amplitude, reached with the force falling, from that "
        "predicted by the decay (M14.9), mean over the forces that have a prediction in [from, to], in "
-       "percent",
+       "percent; for each start of the sweeps, by each decay",
        1,
        8},
       {"steady_amplitude_falling_worst_percent",

@@ -173,18 +173,21 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
   for (const FigureResponse* source : sources) {
     const SweepResponse& response = as<SweepResponse>(figure, *source);
     const auto same = std::ranges::find_if(along_the_same_forces, [&](const auto& each) {
-      return each.front()->axis.values() == response.axis.values();
+      return each.front()->axis.values() == response.axis.values() &&
+             each.front()->sweeps.size() == response.sweeps.size();
     });
     (same == along_the_same_forces.end() ? along_the_same_forces.emplace_back() : *same).push_back(&response);
   }
   Points rising, falling;
   for (const auto& responses : along_the_same_forces) {
     const std::vector<double> forces = responses.front()->axis.values();
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-      const double up = largest_amplitude(responses, &Sweep::up, i),
-                   down = largest_amplitude(responses, &Sweep::down, i);
-      if (up > 0) rising.add(forces[i] / nu, up);
-      if (down > 0) falling.add(forces[i] / nu, down);
+    for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
+      for (std::size_t i = 0; i < forces.size(); ++i) {
+        const double up = largest_amplitude(responses, n, &Sweep::up, i),
+                     down = largest_amplitude(responses, n, &Sweep::down, i);
+        if (up > 0) rising.add(forces[i] / nu, up);
+        if (down > 0) falling.add(forces[i] / nu, down);
+      }
     }
   }
 
@@ -222,9 +225,9 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
             {"sqrt(1 + nu) A eta(A) / nu of scene " + figure.curves[0].scene + ", below its largest"});
   add_block(table, "beyond", of_force, "beyond the largest force", of_amplitude, beyond);
   add_block(table, "rising", of_force, "largest found, force rising", of_amplitude, rising,
-            {"the largest of all frequencies"});
+            {"the largest of all frequencies, for each start"});
   add_block(table, "falling", of_force, "largest found, force falling", of_amplitude, falling,
-            {"the largest of all frequencies"});
+            {"the largest of all frequencies, for each start"});
 }
 
 void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& table) {
