@@ -186,6 +186,28 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
   MESSAGE("largest error of x'' ", most, " roundings");
 }
 
+TEST_CASE("the phase of a force after a short time is turned, after a longer one that of the time") {
+  const double epsilon = std::numeric_limits<double>::epsilon();
+  for (const double frequency : {0.01, 1.0, 33.0})
+    for (const double angle : {0.0, 0.4, 1.5707, 3.2, 12.9, 700.1})
+      for (const double by : {0.0, 1e-9, 0.01, 0.03, 0.06, 0.0624}) {
+        CAPTURE(frequency);
+        CAPTURE(angle);
+        CAPTURE(by);
+        const Forcing<double> force{1, frequency};
+        const double begin = angle / frequency, since = by / frequency;
+        const SinCos<double> before = force.phase(begin), then = force.phase(-1e9, before, since);
+        const Quad turn = Quad(frequency) * since;
+        const auto exact = reference::exponential<2>({{{0, turn}, {-turn, 0}}}, 1);
+        CHECK(magnitude(then.sin - (exact[0][0] * before.sin + exact[0][1] * before.cos)) < 0.8 * epsilon);
+        CHECK(magnitude(then.cos - (exact[0][0] * before.cos - exact[0][1] * before.sin)) < 0.8 * epsilon);
+        const double longer = 0.0626 / frequency;
+        CHECK(force.phase(begin + longer, {0, 0}, longer).sin == force.phase(begin + longer).sin);
+      }
+  const Forcing<long double> fine{1, 1};
+  CHECK(fine.phase(1.01L, {0, 0}, 0.01L).cos == fine.phase(1.01L).cos);
+}
+
 TEST_CASE("at resonance without damping the amplitude grows by f0/2 per time") {
   const Oscillator<double> oscillator(0, 1);
   const Forcing<double> forcing{0.3, 1};

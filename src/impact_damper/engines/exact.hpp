@@ -58,17 +58,20 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
   Real depth{0};  // at the end
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
 
+  SinCos<Real> phase = system.forcing.phase(tracker.now());  // of the force, now
+
   while (!tracker.stopped()) {
     if (!in_contact) {
-      Flight<Real, Force> flight(system, tracker.now(), state);
+      Flight<Real, Force> flight(system, tracker.now(), phase, FlightStart<Real>(state));
       const auto met = pass_flight(system, tracker, flight, state, at_rest_on_wall);
       at_rest_on_wall = false;
       if (!met) break;
+      phase = system.forcing.phase(tracker.now());
       wall = *met;
       if (!tracker.impact(wall, state)) break;
       in_contact = by_impact = true;
     } else {
-      const InContact contact(walls, tracker.now(), state, wall);
+      const InContact contact(walls, tracker.now(), phase, state, wall, Real(wall == Wall::left ? 0 : 1));
       const auto end = contact.leave(tracker.remaining(), tracker.search());
       const Real begin = tracker.now();
       if (end) state = copied(end->state);
@@ -88,6 +91,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
         depth = contact.overlap(tracker.passed());
         break;
       }
+      phase = system.forcing.phase(tracker.now(), phase, tracker.passed());
       in_contact = by_impact = at_rest_on_wall = false;
     }
   }

@@ -185,14 +185,15 @@ class ExactOfDampers {
       return take_events();
     }
     const Real q = masses_.away[i] * masses_.u[i], remaining = tracker_.remaining();
-    const InContact contact(modes, tracker_.now(), {x_, v_, q, masses_.w(i)}, masses_.wall(i), Real(0));
+    const InContact contact(modes, tracker_.now(), modes.forcing.phase(tracker_.now()),
+                            {x_, v_, q, masses_.w(i)}, masses_.wall(i), Real(0));
     if constexpr (std::is_same_v<InContact, Contact<Real, Force>>) {
       // Where all others stay so far from their walls that a rounding of x' h is none of a distance (M17.15).
       const auto end = contact.end_of_short_contact();
       if (end && end->time < remaining &&
           all_stay_off_walls(contact.second_of_x(end->time), end->time, Real(absolute(v_) * end->time))) {
         events_.push_back({i, end->time, {}});
-        return pass_contact(contact, end->time, {end->x, end->v, Real(0), end->w}, end->change);
+        return pass_contact(contact, end->time, {end->x, end->v, Real(0), end->w}, &end->change);
       }
     }
     const auto leaves = contact.leave(remaining, tracker_.search());
@@ -202,12 +203,13 @@ class ExactOfDampers {
     for (std::size_t j = 0; j < masses_.size(); ++j)
       if (!masses_.held[j] && !masses_.stays_off_walls(j, most, until, Real(0)))
         if (const auto met = meets_beside(contact, j, until)) consider(*met, until);
-    pass_contact(contact, until, leaves && until == leaves->time ? leaves->state : contact.at(until), {});
+    pass_contact(contact, until, leaves && until == leaves->time ? leaves->state : contact.at(until),
+                 nullptr);
   }
   // Until the contact is in the state `end`. change: of x by then, where it is known.
   template <class InContact>
   void pass_contact(const InContact& contact, const Real& until, State<Real> end,
-                    const std::optional<ChangeOfX<Real>>& change) {
+                    const ChangeOfX<Real>* change) {
     const std::size_t i = in_contact_.front();
     const auto state = [&](const Real& t) { return t == until ? end : contact.at(t); };
     const Work<Real> works = pass(

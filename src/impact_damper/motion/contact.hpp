@@ -18,14 +18,14 @@ template <class Real, class Force = Forcing<Real>>
 class Contact {
  public:
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
-      : Contact(system, begin, start, wall, Real(wall == Wall::left ? 0 : 1)) {}
-  // The same with y counted from elsewhere: the wall is at `origin`. From the wall itself, 0, y has all the
-  // digits of q.
-  Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall,
-          const Real& origin)
+      : Contact(system, begin, system.forcing.phase(begin), start, wall, Real(wall == Wall::left ? 0 : 1)) {}
+  // phase: of the force at the beginning. With y counted from elsewhere: the wall is at `origin`. From the
+  // wall itself, 0, y has all the digits of q.
+  Contact(const ContactModes<Real, Force>& system, const Real& begin, const SinCos<Real>& phase,
+          const State<Real>& start, Wall wall, const Real& origin)
       : system_(system),
         begin_(begin),
-        phase_(system.forcing.phase(begin)),
+        phase_(phase),
         start_(copied(start)),
         wall_(origin),
         inward_(wall == Wall::left ? -1 : 1) {

@@ -13,17 +13,22 @@ class ContactWithoutModes {
   // `system` must have its `coupled`.
   ContactWithoutModes(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start,
                       Wall wall)
-      : ContactWithoutModes(system, begin, start, wall, Real(wall == Wall::left ? 0 : 1)) {}
-  ContactWithoutModes(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start,
-                      Wall wall, const Real& origin)  // as in contact.hpp
+      : ContactWithoutModes(system, begin, system.forcing.phase(begin), start, wall,
+                            Real(wall == Wall::left ? 0 : 1)) {}
+  ContactWithoutModes(const ContactModes<Real, Force>& system, const Real&, const SinCos<Real>& phase,
+                      const State<Real>& start, Wall wall, const Real& origin)  // as in contact.hpp
       : system_(system),
         exponential_(*system.coupled),
         start_(copied(start)),
         wall_(origin),
         inward_(wall == Wall::left ? -1 : 1),
         size_of_force_(absolute(forcing().amplitude)) {
-    const auto [sin, cos] = sin_cos(Real(forcing().frequency * begin));
-    s_ = {start.x, start.v, start.y - wall_, start.w, forcing().amplitude * sin, forcing().amplitude * cos};
+    s_ = {start.x,
+          start.v,
+          start.y - wall_,
+          start.w,
+          forcing().amplitude * phase.sin,
+          forcing().amplitude * phase.cos};
   }
 
   [[gnu::noinline]] State<Real> at(const Real& t) const {

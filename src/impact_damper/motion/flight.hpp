@@ -45,7 +45,11 @@ class Flight {
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : Flight(system, begin, FlightStart<Real>(start)) {}
   Flight(const System<Real, Force>& system, const Real& begin, const FlightStart<Real>& start)
-      : primary_(system.free, system.forcing, begin, start.state.x, start.state.v),
+      : Flight(system, begin, system.forcing.phase(begin), start) {}
+  // phase: of the force at the beginning.
+  Flight(const System<Real, Force>& system, const Real& begin, const SinCos<Real>& phase,
+         const FlightStart<Real>& start)
+      : primary_(system.free, system.forcing, begin, phase, start.state.x, start.state.v),
         start_(start.state),
         wall_(start.wall),
         away_(start.away),

@@ -27,10 +27,14 @@ class ForcedMotion {
  public:
   ForcedMotion(const Driven<Real, Force>& oscillator, const Force& forcing, const Real& begin, const Real& x0,
                const Real& v0)
+      : ForcedMotion(oscillator, forcing, begin, forcing.phase(begin), x0, v0) {}
+  // phase: of the force at the beginning.
+  ForcedMotion(const Driven<Real, Force>& oscillator, const Force& forcing, const Real& begin,
+               const SinCos<Real>& phase, const Real& x0, const Real& v0)
       : oscillator_(oscillator),
         forcing_(forcing),
         begin_(begin),
-        phase_(forcing.phase(begin)),
+        phase_(phase),
         x0_(x0),
         v0_(v0),
         cached_(*this) {}

@@ -4,10 +4,24 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
+
+// At an angle that is larger by 0 to 1/16, in double precision: the next terms of both series are below
+// 2^-61 (docs/mathematics.md, chapter 4).
+template <class Real>
+SinCos<Real> turned(const SinCos<Real>& at, const Real& by) {
+  const Real z = by * by;
+  const Real sin =
+      by +
+      by * (z * (Real(-1.0 / 6) + z * (Real(1.0 / 120) + z * (Real(-1.0 / 5040) + z * Real(1.0 / 362880)))));
+  const Real less =
+      z * (Real(-0.5) + z * (Real(1.0 / 24) + z * (Real(-1.0 / 720) + z * Real(1.0 / 40320))));  // cos - 1
+  return {at.sin + (at.cos * sin + at.sin * less), at.cos + (at.cos * less - at.sin * sin)};
+}
 
 // f(t) = amplitude sin(frequency t) and its derivatives at one instant.
 template <class Real>
@@ -17,6 +31,14 @@ struct Forcing {
 
   // Where in its cycle the force is.
   SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
+  // The same where it has been `before` a time `since` ago: turned by as much, where that is little.
+  SinCos<Real> phase(const Real& time, const SinCos<Real>& before, const Real& since) const {
+    if constexpr (std::numeric_limits<Real>::digits10 < 17) {
+      const Real by = frequency * since;
+      if (by < Real(0.0625)) return turned(before, by);
+    }
+    return phase(time);
+  }
 
   // At a phase.
   template <std::size_t N>
@@ -38,6 +60,7 @@ struct NoForcing {
   explicit constexpr operator bool() const { return false; }
 
   SinCos<Real> phase(const Real&) const { return {Real(0), Real(1)}; }
+  SinCos<Real> phase(const Real&, const SinCos<Real>& before, const Real&) const { return before; }
 
   template <std::size_t N>
   std::array<Real, N> derivatives(const SinCos<Real>&) const {
@@ -53,6 +76,7 @@ concept ForceOf = requires(const T force, const Real& time, const SinCos<Real>& 
   { force.amplitude } -> std::convertible_to<Real>;
   { force.frequency } -> std::convertible_to<Real>;
   { force.phase(time) } -> std::same_as<SinCos<Real>>;
+  { force.phase(time, phase, time) } -> std::same_as<SinCos<Real>>;
   { force.template derivatives<2>(phase) } -> std::same_as<std::array<Real, 2>>;
 };
 
