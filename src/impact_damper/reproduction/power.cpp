@@ -229,6 +229,14 @@ bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& i
          });
 }
 
+// Sweeps from further starts would be made anew for each change, and take most of the time.
+void keep_first_starts(PowerInput& input) {
+  for (CatalogueResponse& each : input.asked)
+    if (auto* const sweeps = std::get_if<SweepResponse>(&each.asked)) sweeps->sweeps.clear();
+  for (auto& [name, response] : input.responses)
+    if (auto* const sweeps = std::get_if<SweepResponse>(&response)) sweeps->sweeps.resize(1);
+}
+
 }  // namespace
 
 std::optional<Trial> smallest_turn(const Trials& trials, const std::function<bool(double)>& turns) {
@@ -281,6 +289,7 @@ Power::Power(PowerInput input)
     : input_(std::move(input)), threads_(input_.ensemble.threads), unchanged_(std::nullopt) {
   // The searches share the processors; no ensemble by itself does.
   input_.ensemble.threads = 1;
+  keep_first_starts(input_);
   const Settings settings{input_.ensemble, {}};
   unchanged_ = runs_with(input_, settings);
   std::erase_if(input_.claims, [&](const Claim& claim) {

@@ -3,7 +3,7 @@
 //
 // Changed are the numbers of each scene (in its file: simulation and analysis both get the changed number),
 // those of the analysis (AnalysisOptions, EnsembleOptions), and the columns that runs record, each multiplied
-// by a factor. A number becomes value (1 + change), value / (1 + change) or, where it is 0, the change
+// by a factor. Sweeps under a force are made from their first start only. A number becomes value (1 + change), value / (1 + change) or, where it is 0, the change
 // itself.
 //
 // Medians of chaotic decays do not depend on a number monotonically. So changes of 1, 2, 5, 10 ...
