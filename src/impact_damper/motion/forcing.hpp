@@ -10,8 +10,8 @@
 
 namespace impact_damper {
 
-// At an angle that is larger by 0 to 1/16, in double precision: the next terms of both series are below
-// 2^-61 (docs/mathematics.md, chapter 4).
+// Sine and cosine of an angle that is larger than the one `at` belongs to by `by`, 0 to 1/16: in double
+// precision, as the next terms of both Taylor series are below 2^-61 (docs/mathematics.md, chapter 4).
 template <class Real>
 SinCos<Real> turned(const SinCos<Real>& at, const Real& by) {
   const Real z = by * by;
@@ -31,7 +31,8 @@ struct Forcing {
 
   // Where in its cycle the force is.
   SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
-  // The same where it has been `before` a time `since` ago: turned by as much, where that is little.
+  // The same where the phase is known, `before`, that the force had a time `since` before `time`: turned on
+  // from there where the force has turned by less than 1/16 since, else computed from `time`.
   SinCos<Real> phase(const Real& time, const SinCos<Real>& before, const Real& since) const {
     if constexpr (std::numeric_limits<Real>::digits10 < 17) {
       const Real by = frequency * since;

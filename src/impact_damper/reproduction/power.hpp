@@ -3,8 +3,8 @@
 //
 // Changed are the numbers of each scene (in its file: simulation and analysis both get the changed number),
 // those of the analysis (AnalysisOptions, EnsembleOptions), and the columns that runs record, each multiplied
-// by a factor. Sweeps under a force are made from their first start only. A number becomes value (1 + change), value / (1 + change) or, where it is 0, the change
-// itself.
+// by a factor. A number becomes value (1 + change), value / (1 + change) or, where it is 0, the change
+// itself. Sweeps under a force are made from their first start only.
 //
 // Medians of chaotic decays do not depend on a number monotonically. So changes of 1, 2, 5, 10 ...
 // thousandths are tried upwards until a verdict turns; then bisection, over changes of two digits, narrows
