@@ -33,6 +33,7 @@ struct Forcing {
   SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
   // The same where the phase is known, `before`, that the force had a time `since` before `time`: turned on
   // from there where the force has turned by less than 1/16 since, else computed from `time`.
+  // since >= 0. A phase that was turned is not turned again: the errors would add up.
   SinCos<Real> phase(const Real& time, const SinCos<Real>& before, const Real& since) const {
     if constexpr (std::numeric_limits<Real>::digits10 < 17) {
       const Real by = frequency * since;
