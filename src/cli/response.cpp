@@ -41,6 +41,7 @@ const std::map<std::string, std::vector<Kind>>& kinds_of_options() {
   static const std::map<std::string, std::vector<Kind>> all{
       {"--vary", {Kind::sweep, Kind::basin, Kind::orbits}},
       {"--start", {Kind::sweep, Kind::orbits}},
+      {"--nudge", {Kind::sweep}},
       {"--tolerance", {Kind::sweep, Kind::basin, Kind::orbits}},
       {"--longest-period", {Kind::sweep, Kind::basin, Kind::orbits}},
       {"--max-periods", {Kind::sweep, Kind::basin, Kind::orbits}},
@@ -244,6 +245,14 @@ std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
   return starts;
 }
 
+// Of x, dimensionless.
+double nudge_of(Arguments& arguments, const SceneFile& file) {
+  const auto nudge = arguments.number("--nudge", nudges);
+  if (nudge && !arguments.given("--start"))
+    arguments.reject("--nudge", "parts the sweeps of several starts: needs --start");
+  return nudge.value_or(0) / (file.scales ? file.scales->length : 1);
+}
+
 SteadyRule rule_of(Arguments& arguments, SteadyRule rule) {
   rule.tolerance = arguments.number("--tolerance", {0, 1e-2, false}).value_or(rule.tolerance);
   rule.longest_period =
@@ -386,6 +395,7 @@ struct Request {
   std::vector<Axis> axes;               // sweep: one, basin: two
   std::optional<ParameterRange> range;  // orbits
   std::vector<SceneState> starts;
+  double nudge = 0;  // sweep
   SteadyRule sweep;
   BasinRule basin;
   BranchRule orbits;
@@ -400,8 +410,8 @@ std::string swept(const Request& asked) {
   const Scene& scene = asked.file.scene;
   const Axis& axis = asked.axes[0];
   Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
-  const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, asked.starts, asked.threads,
-                            [&](std::int64_t done) { progress(done); });
+  const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, nudged(asked.starts, asked.nudge),
+                            asked.threads, [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(sweeps, asked.sweep);
   return asked.format == Format::csv
              ? sweep_csv(scene, axis, sweeps, asked.units)
@@ -474,6 +484,7 @@ int respond(Arguments& arguments) {
   asked.file = scene_of(arguments, Stops::ignored, DamperList::allowed);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
+  asked.nudge = nudge_of(arguments, asked.file);
   asked.sweep = rule_of(arguments, SteadyRule{});
   asked.basin.steady = rule_of(arguments, asked.basin.steady);
   asked.basin.capture_radius =
@@ -538,6 +549,11 @@ Options own_options() {
       "sweep, orbits: one more that begins there beside the scene's\nrelease, in mm and mm/s beside a "
       "scene in units; may be repeated. Of several\ndampers X0:V0",
       "Response", Option::Takes::repeated_value);
+  add("--nudge", "X",
+      "sweep: n times this is added to x of the sweep from the n-th --start at\neach value but its first, so "
+      "that sweeps which a strongly stable\nmotion has brought together part again where the motion is "
+      "irregular; in\nmm beside a scene in units",
+      "Response");
   add("--tolerance", "X",
       "a motion is periodic when the estimated distance to what it repeats\nis below this; > 0 and <= 0.01, "
       "default " +

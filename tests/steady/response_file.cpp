@@ -31,7 +31,7 @@ SweepResponse asked_sweep() {
           Restitution{},
           {.tolerance = 1e-8, .max_periods = 300, .mean_periods = 40},
           {&Scene::force_frequency, 0.85, 1.15, 4},
-          {{{1, 0, 0.5, 0}, {}, {}}, {{-0.5, 0.1, 0.2, 0}, {}, {}}}};
+          {{SceneState{1, 0, 0.5, 0}, {}, {}}, {{{-0.5, 0.1, 0.2, 0}, 1e-3}, {}, {}}}};
 }
 SweepResponse several_sweep() {
   SweepResponse several = asked_sweep();
@@ -295,8 +295,11 @@ TEST_CASE("what is asked for differs in each part that is another") {
   other.sweeps[1].start.w = 1;
   CHECK(differences(other) == "/sweeps/1/start ");
   other = asked;
+  other.sweeps[1].start.nudge = 2e-3;
+  CHECK(differences(other) == "/sweeps/1/nudge ");
+  other = asked;
   other.sweeps.pop_back();
-  CHECK(differences(other) == "/sweeps/1/start ");
+  CHECK(differences(other) == "/sweeps/1/start /sweeps/1/nudge ");
   OrbitsResponse orbits = asked_orbits();
   orbits.range.to = 0.13;
   const auto a = asked_of(asked_orbits()), b = asked_of(orbits);

@@ -392,16 +392,43 @@ TEST_CASE("up and down differ where the mass may lie idle") {
 TEST_CASE("the way down begins where the way up ended") {
   const Scene scene = active_scene(1);
   const Axis axis{&Scene::force_frequency, 0.95, 0.97, 2};
+  const SceneState from = release_of(scene);
   const auto sweeps =
-      sweep(scene, rigid, axis, {.max_periods = 50}, {release_of(scene)}, 1, [](std::int64_t) {});
-  const auto again = [&](std::int64_t i, const State<double>& from) {
-    return ForcedScene(axis.at(scene, i), rigid).settle(from, {.max_periods = 50}).state;
+      sweep(scene, rigid, axis, {.max_periods = 50}, {from, {from, 1e-3}}, 1, [](std::int64_t) {});
+  const auto again = [&](std::int64_t i, State<double> state, double nudge) {
+    state.x += nudge;
+    return ForcedScene(axis.at(scene, i), rigid).settle(state, {.max_periods = 50}).state;
   };
-  const auto& [start, up, down] = sweeps[0];
-  CHECK(distance(again(0, start), up[0].state) == 0);
-  CHECK(distance(again(1, up[0].state), up[1].state) == 0);
-  CHECK(distance(again(1, up[1].state), down[1].state) == 0);
-  CHECK(distance(again(0, down[1].state), down[0].state) == 0);
+  for (const auto& [start, up, down] : sweeps) {
+    CHECK(distance(again(0, start, 0), up[0].state) == 0);
+    CHECK(distance(again(1, up[0].state, start.nudge), up[1].state) == 0);
+    CHECK(distance(again(1, up[1].state, 0), down[1].state) == 0);
+    CHECK(distance(again(0, down[1].state, start.nudge), down[0].state) == 0);
+  }
+}
+
+TEST_CASE("a nudge parts sweeps that a stable motion has brought to one state") {
+  Scene scene = active_scene(1);
+  scene.mass_ratio = 0.02;
+  scene.damping_ratio = 0;
+  scene.force_amplitude = 0.008;
+  // Periodic and strongly stable down to the last, where the motion is irregular.
+  const std::vector<double> frequencies{1.002, 1.001, 1.0005, 1, 0.9995, 0.999, 0.998, 0.99};
+  const SteadyRule rule{.tolerance = 1e-12, .max_periods = 800, .mean_periods = 200};
+  const auto along = [&](double x, double nudge) {
+    return steady_states_along(scene, rigid, &Scene::force_frequency, frequencies, rule,
+                               {{x, 0, 0.5, 0}, nudge}, [] {});
+  };
+  const auto one = along(1, 0), other = along(1.001, 0), nudged = along(1, 1e-6);
+  for (std::size_t i = 0; i + 1 < frequencies.size(); ++i) {
+    CAPTURE(frequencies[i]);
+    CHECK(one[i].period);
+    CHECK(distance(one[i].state, nudged[i].state) < 1e-10);
+  }
+  CHECK_FALSE(one.back().period);
+  CHECK(distance(one[0].state, other[0].state) > 0);
+  CHECK(distance(one.back().state, other.back().state) == 0);
+  CHECK(distance(one.back().state, nudged.back().state) > 1e-3);
 }
 
 TEST_CASE("a sweep varies a number of one of several dampers, whose mass keeps its place in its cavity") {
@@ -488,7 +515,7 @@ TEST_CASE("the largest steady amplitude is where the free decay loses what the f
     const Axis axis{&Scene::force_frequency, 0.98725, 0.98975, 11};
     double largest = 0;
     for (const Sweep& each : sweep(scene, rigid, axis, {.max_periods = 2000, .mean_periods = 100},
-                                   {{3, 0, 0, 0}}, 1, [](std::int64_t) {})) {
+                                   {SceneState{3, 0, 0, 0}}, 1, [](std::int64_t) {})) {
       for (const SteadyState& steady : each.up) largest = std::max(largest, steady.means->fundamental);
       for (const SteadyState& steady : each.down) largest = std::max(largest, steady.means->fundamental);
     }
@@ -585,7 +612,7 @@ TEST_CASE("no result depends on the number of threads") {
   for (int i = 0; i < 12; ++i) starts.push_back({0.4 * i - 2, 0.1 * i, 0.08 * i, 0.2});
   std::string first;
   for (const std::int64_t threads : {1, 2, 5}) {
-    const auto sweeps = sweep(scene, compliant, axis, rule, starts, threads, [](std::int64_t) {});
+    const auto sweeps = sweep(scene, compliant, axis, rule, nudged(starts, 0), threads, [](std::int64_t) {});
     const std::string text = response_text(SweepResponse{scene, compliant, rule, axis, sweeps});
     if (first.empty()) first = text;
     CHECK(text == first);

@@ -290,15 +290,22 @@ std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
 }
 
 // What is asked for, but the scene.
-void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 SweepResponse& asked) {
-  if (rule) read_rule(*rule, true, asked.rule);
+  double nudge = 0;
+  if (rule) {
+    read_rule(*rule, true, asked.rule);
+    if (rule->optional("nudge", nudge, nudges) && nudge > 0 && starts.empty())
+      rule->reject("nudge", "must come with further starts");
+  }
   asked.axis = read_axes(item, 1)[0];
   if (is_initial_value(asked.axis.number))
     item.reject("vary", "must be no initial value in a sweep, which carries the motion along");
-  for (const State<double>& start : starts) asked.sweeps.push_back({start, {}, {}});
+  std::vector<SceneState> all{{}};  // first the scene's release, which is not known here
+  all.insert(all.end(), starts.begin(), starts.end());
+  for (const SweepStart& start : nudged(all, nudge)) asked.sweeps.push_back({start, {}, {}});
 }
-void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 BasinResponse& asked) {
   if (rule) read_rule(*rule, true, asked.rule);
   const std::vector<Axis> axes = read_axes(item, 2);
@@ -310,7 +317,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<
                             std::to_string(asked.first.count * asked.second.count));
   if (!starts.empty()) item.reject("start", "must not be given for a basin");
 }
-void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<double>>& starts,
+void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 OrbitsResponse& asked) {
   if (rule) read_rule(*rule, true, asked.rule);
   std::vector<ObjectReader> entries = item.required_objects("vary", 2);
@@ -318,7 +325,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<State<
     item.reject("vary", "must be one number, got " + std::to_string(entries.size()));
   for (ObjectReader& entry : entries)
     if (const auto range = read_range(entry)) asked.range = *range;
-  for (const State<double>& start : starts) asked.starts.push_back({{}, 0, {}, start});
+  for (const SceneState& start : starts) asked.starts.push_back({{}, 0, {}, start});
 }
 
 CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catalogue) {
@@ -337,7 +344,7 @@ CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catal
   }
   response.asked = kinds[*kind];
   std::optional<ObjectReader> rule = item.optional_object("rule"), engine = item.optional_object("engine");
-  std::vector<State<double>> starts;
+  std::vector<SceneState> starts;
   for (const ObjectReader& start : item.optional_objects("start", 100)) starts.push_back(read_state(start));
   std::visit(
       [&](auto& asked) {
@@ -507,7 +514,7 @@ Response asked_for(const CatalogueResponse& response, const Scene& scene) {
   Response asked = response.asked;
   std::visit([&](auto& each) { each.scene = changed(response.set, scene); }, asked);
   if (auto* const sweeps = std::get_if<SweepResponse>(&asked))
-    sweeps->sweeps.insert(sweeps->sweeps.begin(), {release_of(sweeps->scene), {}, {}});
+    sweeps->sweeps.front().start = release_of(sweeps->scene);
   if (auto* const orbits = std::get_if<OrbitsResponse>(&asked))
     orbits->starts.insert(orbits->starts.begin(), {{}, 0, {}, release_of(orbits->scene)});
   return asked;

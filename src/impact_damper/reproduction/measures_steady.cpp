@@ -63,15 +63,6 @@ std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, Sweep
   return curves;
 }
 
-// A number for each start of the sweeps, by each member of the decay's ensemble. find(amplitudes, decay).
-template <class Find>
-Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find) {
-  std::vector<double> values;
-  for (const Curve& found : largest_amplitudes(runs, call, way))
-    for (const Run& decay : runs.ensemble(call.scenes.front())) values.push_back(find(found, decay));
-  return spread_of(values);
-}
-
 // F over A (M14.7) from the amplitude of the largest F on down, in the order of time; A in [from, to].
 Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
   Curve curve =
@@ -82,6 +73,18 @@ Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
   curve.x.erase(curve.x.begin(), curve.x.begin() + top);
   curve.y.erase(curve.y.begin(), curve.y.begin() + top);
   return curve;
+}
+
+// A number for each start of the sweeps, by each member of the decay's ensemble. find(amplitudes, needed).
+template <class Find>
+Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find) {
+  std::vector<Curve> needed;
+  for (const Run& decay : runs.ensemble(call.scenes.front()))
+    needed.push_back(needed_force(runs, decay, call));
+  std::vector<double> values;
+  for (const Curve& found : largest_amplitudes(runs, call, way))
+    for (const Curve& by_decay : needed) values.push_back(find(found, by_decay));
+  return spread_of(values);
 }
 
 // (M14.9), linear between the curve's points; NaN for a force above all of it or below all of it.
@@ -100,8 +103,7 @@ double most(const std::vector<double>& values) {
 
 template <SweepWay way, double (*of_all)(const std::vector<double>&)>
 Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
-  return over_starts(runs, call, way, [&](const Curve& found, const Run& run) {
-    const Curve needed = needed_force(runs, run, call);
+  return over_starts(runs, call, way, [](const Curve& found, const Curve& needed) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < found.x.size(); ++i) {
       const double predicted = predicted_amplitude(needed, found.x[i]);
@@ -112,8 +114,7 @@ Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
 }
 
 Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
-  return over_starts(runs, call, rising, [&](const Curve& found, const Run& run) {
-    const Curve needed = needed_force(runs, run, call);
+  return over_starts(runs, call, rising, [](const Curve& found, const Curve& needed) {
     if (needed.x.empty()) return no_number;
     for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
       if (!(found.y[i] <= needed.x[0] && found.y[i + 1] > needed.x[0])) continue;
@@ -126,10 +127,9 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
 
 Spread jump_ratio(Runs& runs, const MeasureCall& call) {
   constexpr double half_of_the_clearance = 0.5;
-  return over_starts(runs, call, falling, [&](const Curve& found, const Run& run) {
+  return over_starts(runs, call, falling, [](const Curve& found, const Curve& needed) {
     std::size_t least = found.x.size();  // the least force that holds such an amplitude from there on
     while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
-    const Curve needed = needed_force(runs, run, call);
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
     return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
   });

@@ -232,7 +232,7 @@ bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& i
 // Sweeps from further starts would be made anew for each change, and take most of the time.
 void keep_first_starts(PowerInput& input) {
   for (CatalogueResponse& each : input.asked)
-    if (auto* const sweeps = std::get_if<SweepResponse>(&each.asked)) sweeps->sweeps.clear();
+    if (auto* const sweeps = std::get_if<SweepResponse>(&each.asked)) sweeps->sweeps.resize(1);
   for (auto& [name, response] : input.responses)
     if (auto* const sweeps = std::get_if<SweepResponse>(&response)) sweeps->sweeps.resize(1);
 }

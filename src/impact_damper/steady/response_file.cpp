@@ -195,6 +195,7 @@ void write_rest(JsonWriter& out, const SweepResponse& response) {
   for (const Sweep& sweep : response.sweeps) {
     out.open_object(Layout::lines);
     write_state(out, "start", sweep.start);
+    if (sweep.start.nudge != 0) out.field("nudge", sweep.start.nudge);
     write_way(out, "up", sweep.up, response.scene.dampers.size());
     write_way(out, "down", sweep.down, response.scene.dampers.size());
     out.close();
@@ -327,7 +328,7 @@ std::string_view kind_of(const Response& response) {
 Response found_for(Response asked, const Threads& threads) {
   const auto ignored = [](std::int64_t) {};
   if (auto* const sweeps = std::get_if<SweepResponse>(&asked)) {
-    std::vector<SceneState> starts;
+    std::vector<SweepStart> starts;
     for (const Sweep& each : sweeps->sweeps) starts.push_back(each.start);
     sweeps->sweeps =
         sweep(sweeps->scene, sweeps->engine, sweeps->axis, sweeps->rule, starts, threads, ignored);
@@ -405,8 +406,12 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
       response);
   if (const auto* const sweeps = std::get_if<SweepResponse>(&response)) {
     add_axis("/axis", sweeps->axis);
-    for (std::size_t i = 0; i < sweeps->sweeps.size(); ++i)
-      add_start("/sweeps/" + std::to_string(i) + "/start", sweeps->sweeps[i].start);
+    for (std::size_t i = 0; i < sweeps->sweeps.size(); ++i) {
+      const std::string sweep = "/sweeps/" + std::to_string(i);
+      const double nudge = sweeps->sweeps[i].start.nudge;
+      add_start(sweep + "/start", sweeps->sweeps[i].start);
+      if (nudge != 0) add(sweep + "/nudge", [&](JsonWriter& out) { out.field("nudge", nudge); });
+    }
   } else if (const auto* const basin = std::get_if<BasinResponse>(&response)) {
     add_axis("/axes/0", basin->first);
     add_axis("/axes/1", basin->second);

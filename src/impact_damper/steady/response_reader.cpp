@@ -170,6 +170,7 @@ void read_rest(ObjectReader& root, SweepResponse& response) {
     Sweep& sweep = response.sweeps.emplace_back();
     const std::size_t dampers = response.scene.dampers.size();
     sweep.start = read_state(item.required_object("start"), dampers);
+    item.optional("nudge", sweep.start.nudge, nudges);
     sweep.up = read_way(item.required_object("up"), dampers);
     sweep.down = read_way(item.required_object("down"), dampers);
     if (!read) continue;

@@ -21,8 +21,13 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
     throw InvalidArguments(
         {{axis.number.name(), scene.dampers.empty() ? "is for several dampers: the scene has no list"
                                                     : "must be of one of the scene's several dampers"}});
-  for (std::int64_t i = 0; i < axis.count; ++i)
-    require_none(problems_of(axis.at(scene, i), engine));
+  for (std::int64_t i = 0; i < axis.count; ++i) require_none(problems_of(axis.at(scene, i), engine));
+}
+
+std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nudge) {
+  std::vector<SweepStart> all;
+  for (std::size_t n = 0; n < starts.size(); ++n) all.emplace_back(starts[n], double(n) * nudge);
+  return all;
 }
 
 Scene Axis::at(Scene scene, std::int64_t i) const {
@@ -32,14 +37,17 @@ Scene Axis::at(Scene scene, std::int64_t i) const {
 
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
                                              const SceneNumber& number, const std::vector<double>& values,
-                                             const SteadyRule& rule, SceneState state,
+                                             const SteadyRule& rule, const SweepStart& start,
                                              const std::function<void()>& after_each) {
   std::vector<SteadyState> all;
   Scene there = scene;
+  SceneState state = start;
   for (const double value : values) {
     double& now = number.in(there);
-    if (!all.empty() && number.of_damper == &SceneDamper::clearance)
-      state.dampers[number.damper].y *= value / now;
+    if (!all.empty()) {
+      state.x += start.nudge;
+      if (number.of_damper == &SceneDamper::clearance) state.dampers[number.damper].y *= value / now;
+    }
     now = value;
     all.push_back(ForcedScene(there, engine).settle(state, rule));
     state = all.back().state;
@@ -49,11 +57,11 @@ std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& e
 }
 
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
-                         const std::vector<SceneState>& starts, const Threads& threads,
+                         const std::vector<SweepStart>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress) {
   require_none(problems_of(rule));
   // What is not valid throws here, before anything is simulated.
-  for (const SceneState& start : starts) require_valid(released_from(scene, start), engine, axis);
+  for (const SweepStart& start : starts) require_valid(released_from(scene, start), engine, axis);
 
   progress(0);
   const std::vector<double> upwards = axis.values(), downwards(upwards.rbegin(), upwards.rend());
@@ -63,8 +71,8 @@ std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& a
     Sweep& all = sweeps[static_cast<std::size_t>(n)];
     all.start = starts[static_cast<std::size_t>(n)];
     const auto along = [&](const std::vector<double>& values, const SceneState& from) {
-      return steady_states_along(released_from(scene, all.start), engine, axis.number, values, rule, from,
-                                 [&] { progress(++done); });
+      return steady_states_along(released_from(scene, all.start), engine, axis.number, values, rule,
+                                 {from, all.start.nudge}, [&] { progress(++done); });
     };
     all.up = along(upwards, all.start);
     all.down = along(downwards, all.up.back().state);

@@ -26,18 +26,32 @@ struct Axis {
 // (numbers_of).
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
+// Where a way along the axis begins, and what is added to x of the state at each further value before the
+// motion there is approached: finite, not negative. Two ways that meet in a strongly stable motion leave it
+// in the same state, to the last bit; with other nudges they part again where the motion is sensitive.
+struct SweepStart : SceneState {
+  // A state alone is a start without a nudge.
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  SweepStart(const SceneState& state = {}, double of_nudge = 0)  // cppcheck-suppress noExplicitConstructor
+      : SceneState(state), nudge(of_nudge) {}
+  double nudge = 0;
+};
+inline constexpr NumberRange nudges = above(0);  // that command line and files allow
+// The starts, the n-th from 0 with n nudges.
+std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nudge);
+
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
-// `state`, each other one from the one before; if the number is a clearance, the secondary mass is then at
+// `start`, each other one from the one before; if the number is a clearance, the secondary mass is then at
 // the same fraction of it. `after_each` is called after each of them. The rule must be valid. Throws
 // InvalidArguments if the scene is not valid at a value.
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
                                              const SceneNumber& number, const std::vector<double>& values,
-                                             const SteadyRule& rule, SceneState state,
+                                             const SteadyRule& rule, const SweepStart& start,
                                              const std::function<void()>& after_each);
 
 // The values of the axis and what the scene does there.
 struct Sweep {
-  SceneState start{};                 // where the way up begins, at the axis's first value
+  SweepStart start;                   // where the way up begins, at the axis's first value
   std::vector<SteadyState> up, down;  // both in the order of the axis; down begins in the last state of up
 };
 
@@ -45,7 +59,7 @@ struct Sweep {
 // with the number of steady states that are done. Throws InvalidArguments if the rule is not valid, or the
 // scene at one of the values.
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
-                         const std::vector<SceneState>& starts, const Threads& threads,
+                         const std::vector<SweepStart>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress);
 
 }  // namespace impact_damper
