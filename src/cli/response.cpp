@@ -550,9 +550,9 @@ Options own_options() {
       "scene in units; may be repeated. Of several\ndampers X0:V0",
       "Response", Option::Takes::repeated_value);
   add("--nudge", "X",
-      "sweep: n times this is added to x of the sweep from the n-th --start\nat each value but its first; "
-      "parts "
-      "sweeps that a stable motion has\nbrought together. In mm beside a scene in units",
+      "sweep: n times this is added to x of the sweep from the n-th --start\nat each value but its "
+      "first; parts sweeps that a stable motion has\nbrought together. > 0 and <= 1, in mm beside a scene in "
+      "units",
       "Response");
   add("--tolerance", "X",
       "a motion is periodic when the estimated distance to what it repeats\nis below this; > 0 and <= 0.01, "

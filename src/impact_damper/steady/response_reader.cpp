@@ -170,7 +170,7 @@ void read_rest(ObjectReader& root, SweepResponse& response) {
     Sweep& sweep = response.sweeps.emplace_back();
     const std::size_t dampers = response.scene.dampers.size();
     sweep.start = read_state(item.required_object("start"), dampers);
-    item.optional("nudge", sweep.start.nudge, nudges);
+    item.optional("nudge", sweep.start.nudge, above(0));
     sweep.up = read_way(item.required_object("up"), dampers);
     sweep.down = read_way(item.required_object("down"), dampers);
     if (!read) continue;

@@ -36,7 +36,7 @@ struct SweepStart : SceneState {
       : SceneState(state), nudge(of_nudge) {}
   double nudge = 0;
 };
-inline constexpr NumberRange nudges = above(0);  // that command line and files allow
+inline constexpr NumberRange nudges{0, 1, false};  // that command line and catalogue allow
 // The starts, the n-th from 0 with n nudges.
 std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nudge);
 
