@@ -66,7 +66,7 @@ class ShortContactMap {
   // the touch. driven(column, latest) bounds the last two columns.
   template <class Driven>
   ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
-                  const Real& zeta, const ShortContactTable<Real, columns == 5>& table,
+                  const Real& zeta, const ShortContactTable<Real>& table,
                   const std::array<Touch<Real>, 3>& start, Driven&& driven)
       : share_(share), zeta_(zeta) {
     half_period_ = fast.half_period();
@@ -79,13 +79,13 @@ class ShortContactMap {
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
     latest_ = half_period_ + most_.s;
-    for (std::size_t i = 0; i < columns; ++i) {
-      const auto [q, centre] = table.template column<terms>(i, half_period_, decay_factor_);
-      for (std::size_t n = 0; n < most; ++n) {
-        q_[i][n] = SimdPair<Real>{q[2 * n], q[2 * n + 1]};
-        centre_[i][n] = SimdPair<Real>{centre[2 * n], centre[2 * n + 1]};
-      }
+    tabulate(0, table.template columns_of_x_and_v<terms>(half_period_));
+    const auto [q, centre] = table.template column_of_w<terms>(half_period_, decay_factor_);
+    for (std::size_t n = 0; n < most; ++n) {
+      q_[2][n] = Both{q[2 * n], q[2 * n + 1]};
+      centre_[2][n] = Both{centre[2 * n], centre[2 * n + 1]};
     }
+    if constexpr (columns == 5) tabulate(3, table.template columns_of_force<terms>(half_period_));
     for (std::size_t i = 0; i < 3; ++i) tabulate_bounds(i, slow, fast, start[i]);
     if constexpr (columns == 5) {
       for (std::size_t i = 3; i < 5; ++i) {
@@ -169,6 +169,16 @@ class ShortContactMap {
     for (std::size_t i = 3; i < columns; ++i)
       for (std::size_t n = 0; n < pairs; ++n) all[n] = all[n] + by[i][n] * start[i];
     return all;
+  }
+
+  // The columns `first` and the next.
+  void tabulate(std::size_t first, const ShortContactColumn<Both, terms>& two) {
+    for (const std::size_t i : {0, 1}) {
+      for (std::size_t n = 0; n < most; ++n) {
+        q_[first + i][n] = Both{two.q[2 * n][i], two.q[2 * n + 1][i]};
+        centre_[first + i][n] = Both{two.centre[2 * n][i], two.centre[2 * n + 1][i]};
+      }
+    }
   }
 
   // What a column contributes to the bounds on the fourth derivative of exp(a t) q, on x'' and on x'''.

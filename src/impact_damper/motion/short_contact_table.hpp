@@ -15,8 +15,23 @@
 
 #include "impact_damper/math/double_double.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/math/simd_pair.hpp"
 
 namespace impact_damper {
+
+// Coefficients of one power of time, of one column or of two: of the centre, its velocity, q and q', and of
+// the force, f' = omega_f g.
+template <class Value, class Overlap>
+struct CentreAndOverlapTerm {
+  Value x{}, v{};
+  Overlap q{}, w{};
+  Value f{}, g{};
+
+  friend CentreAndOverlapTerm operator+(const CentreAndOverlapTerm& a, const CentreAndOverlapTerm& b) {
+    return {a.x + b.x, a.v + b.v, a.q + b.q, a.w + b.w, a.f + b.f, a.g + b.g};
+  }
+  CentreAndOverlapTerm<Value, Value> rounded() const { return {x, v, Value(q), Value(w), f, g}; }
+};
 
 // The equations (M7.9) of the centre x + theta q and of q, time in units of h. Overlap: of q and q'.
 template <class Real, class Overlap>
@@ -27,18 +42,6 @@ struct CentreAndOverlap {
   Real spring, friction;       // h^2, 2 zeta h
   Real frequency;              // omega_f h
 
-  // Coefficients of one power of time: of the centre, its velocity, q and q', and of the force, f' = omega_f
-  // g.
-  struct Term {
-    Real x{0}, v{0};
-    Overlap q{0}, w{0};
-    Real f{0}, g{0};
-
-    friend Term operator+(const Term& a, const Term& b) {
-      return {a.x + b.x, a.v + b.v, a.q + b.q, a.w + b.w, a.f + b.f, a.g + b.g};
-    }
-  };
-
   CentreAndOverlap<Real, Real> rounded() const {
     return {Real(stiffness), Real(damping), share, rest_of_share, remainder, spring, friction, frequency};
   }
@@ -48,29 +51,30 @@ struct CentreAndOverlap {
             remainder,           spring * square, friction * by, frequency * by};
   }
   // The term of the next power, which is 1/part.
-  template <bool forced>
-  Term next(const Term& t, const Overlap& part) const {
-    const Overlap wall = damping * t.w + stiffness * t.q;
-    Real push = friction * (share * Real(t.w) - t.v) + spring * (share * Real(t.q) - t.x);
-    if constexpr (forced) push = push + spring * t.f;
+  template <bool forced, class Value, class Q>
+  CentreAndOverlapTerm<Value, Q> next(const CentreAndOverlapTerm<Value, Q>& t, const Overlap& part) const {
+    const Q wall = t.w * damping + t.q * stiffness;
+    Value push = (Value(t.w) * share - t.v) * friction + (Value(t.q) * share - t.x) * spring;
+    if constexpr (forced) push = push + t.f * spring;
     const Real by(part);
-    Term to{by * t.v, by * (remainder * Real(wall) + rest_of_share * push), part * t.w,
-            part * -(wall + Overlap(push))};
+    CentreAndOverlapTerm<Value, Q> to{t.v * by, (Value(wall) * remainder + push * rest_of_share) * by,
+                                      t.w * part, (wall + Q(push)) * -part};
     if constexpr (forced) {
-      to.f = by * (frequency * t.g);
-      to.g = by * -(frequency * t.f);
+      to.f = t.g * frequency * by;
+      to.g = t.f * frequency * -by;
     }
     return to;
   }
 };
 
-// The series of one column in the time since T; of the centre: what it has changed by since the touch.
-template <class Real, std::size_t terms>
+// The series of one column, or of two, in the time since T; of the centre: what it has changed by since the
+// touch.
+template <class Value, std::size_t terms>
 struct ShortContactColumn {
-  std::array<Real, terms> q, centre;
+  std::array<Value, terms> q, centre;
 };
 
-template <class Real, bool forced>
+template <class Real>
 class ShortContactTable {
  public:
   // `share`: nu/(1+nu). `rate`: no mode and no force is faster.
@@ -93,68 +97,74 @@ class ShortContactTable {
     return half_period * rate_ <= Real(most_steps * longest_step);
   }
 
-  // The column of x, v or w, or of a force that is cos(omega_f t) or sin(omega_f t), from rest. In the column
-  // of w, `decay_factor` is added to q'.
+  // The column of w. `decay_factor` is added to its q'.
   template <std::size_t terms>
-  ShortContactColumn<Real, terms> column(std::size_t i, const Real& half_period,
-                                         const Real& decay_factor) const {
-    if (i == 2) return column<Number, terms, false>(motion_, i, half_period, decay_factor);
-    if constexpr (forced)
-      if (i >= 3) return column<Real, terms, true>(motion_.rounded(), i, half_period, decay_factor);
-    return column<Real, terms, false>(motion_.rounded(), i, half_period, decay_factor);
+  ShortContactColumn<Real, terms> column_of_w(const Real& half_period, const Real& decay_factor) const {
+    // One unit of w gives the centre the velocity theta.
+    return series<terms, false>(motion_, half_period, Number(decay_factor), [&](const Number& h) {
+      return CentreAndOverlapTerm<Real, Number>{Real(0), Real(Real(h) * motion_.share), Number(0), h};
+    });
+  }
+  // The columns of x and v.
+  template <std::size_t terms>
+  ShortContactColumn<SimdPair<Real>, terms> columns_of_x_and_v(const Real& half_period) const {
+    return series<terms, false>(motion_.rounded(), half_period, Both{}, [](const Real& h) {
+      return CentreAndOverlapTerm<Both, Both>{Both{Real(1), Real(0)}, Both{Real(0), h}};
+    });
+  }
+  // The columns of a force that is cos(omega_f t) or sin(omega_f t), from rest.
+  template <std::size_t terms>
+  ShortContactColumn<SimdPair<Real>, terms> columns_of_force(const Real& half_period) const {
+    return series<terms, true>(motion_.rounded(), half_period, Both{}, [](const Real&) {
+      return CentreAndOverlapTerm<Both, Both>{{}, {}, {}, {}, Both{Real(1), Real(0)}, Both{Real(0), Real(1)}};
+    });
   }
 
  private:
   using Number = typename Extended<Real>::Type;
+  using Both = SimdPair<Real>;
   static constexpr double longest_step = 4, most_steps = 16;  // the first in units of 1/rate
 
-  template <class Overlap, std::size_t terms, bool by_force>
-  ShortContactColumn<Real, terms> column(const CentreAndOverlap<Real, Overlap>& motion, std::size_t i,
-                                         const Real& half_period, const Real& decay_factor) const {
-    using Term = typename CentreAndOverlap<Real, Overlap>::Term;
+  // begin(h): the term of the power 0 at the touch, time in units of h. `kept` is added to q' at T.
+  template <std::size_t terms, bool by_force, class Overlap, class Q, class Begin>
+  auto series(const CentreAndOverlap<Real, Overlap>& motion, const Real& half_period, const Q& kept,
+              Begin begin) const {
     double steps = 1;
     while (half_period * rate_ > Real(steps * longest_step)) ++steps;
-    const Overlap h = Overlap(half_period) / Overlap(steps), zero(0);
+    const Overlap h = Overlap(half_period) / Overlap(steps);
     const Real rate = rate_ * half_period / Real(steps), by(h);
     const CentreAndOverlap<Real, Overlap> in_steps = motion.in_units_of(h);
     const CentreAndOverlap<Real, Real> rounded = in_steps.rounded();
-    // One unit of w gives the centre the velocity theta.
-    const Term begin{Real(i == 0 ? 1 : 0),
-                     i == 1   ? by
-                     : i == 2 ? Real(by * motion.share)
-                              : Real(0),
-                     zero,
-                     i == 2 ? h : zero,
-                     Real(i == 3 ? 1 : 0),
-                     Real(i == 4 ? 1 : 0)};
+    const auto touch = begin(h);
+    using Term = std::remove_const_t<decltype(touch)>;
+    using Value = decltype(Term::x);
     Term change{};
     for (int step = 0; step < steps; ++step) {
-      Term term = begin + change;
+      Term term = touch + change;
       std::size_t n = 1;
       Real size{1};
       if constexpr (!std::is_same_v<Overlap, Real>)
         change = change + sum<by_force>(in_steps, term, n, size, rate, small_);
-      auto rest = round(term);
-      change = change + widen<Term>(sum<by_force>(rounded, rest, n, size, rate, negligible_));
+      auto rest = term.rounded();
+      change = change + widen<Q>(sum<by_force>(rounded, rest, n, size, rate, negligible_));
     }
-    const Term at{begin.x + change.x,       (begin.v + change.v) / by, change.q,
-                  (begin.w + change.w) / h, begin.f + change.f,        begin.g + change.g};
-    ShortContactColumn<Real, terms> all;
-    all.q[0] = Real(at.q);
-    all.q[1] = Real(i == 2 ? at.w + Overlap(decay_factor) : at.w);
+    Term term{touch.x + change.x,       (touch.v + change.v) / by, change.q,
+              (touch.w + change.w) / h, touch.f + change.f,        touch.g + change.g};
+    ShortContactColumn<Value, terms> all;
+    all.q[0] = Value(term.q);
+    all.q[1] = Value(term.w + kept);
     all.centre[0] = change.x;
     all.centre[1] = change.v / by;
     constexpr std::size_t extended_terms = std::is_same_v<Overlap, Real> ? 2 : 6;
     static_assert(extended_terms < terms);
-    Term term = at;
     for (std::size_t n = 1; n < extended_terms; ++n) {
       term = motion.template next<by_force>(term, reciprocal<Overlap>(n));
       if (n == 1) continue;
-      all.q[n] = Real(term.q);
+      all.q[n] = Value(term.q);
       all.centre[n] = term.x;
     }
     const CentreAndOverlap<Real, Real> late = motion.rounded();
-    auto late_term = round(term);
+    auto late_term = term.rounded();
     for (std::size_t n = extended_terms; n < terms; ++n) {
       late_term = late.template next<by_force>(late_term, reciprocal<Real>(n));
       all.q[n] = late_term.q;
@@ -163,11 +173,10 @@ class ShortContactTable {
     return all;
   }
   // The sum of the terms of the power n and higher, while (rate h)^n / n!, their size, is above `until`.
-  template <bool by_force, class Overlap>
-  static auto sum(const CentreAndOverlap<Real, Overlap>& motion,
-                  typename CentreAndOverlap<Real, Overlap>::Term& term, std::size_t& n, Real& size,
+  template <bool by_force, class Overlap, class Term>
+  static Term sum(const CentreAndOverlap<Real, Overlap>& motion, Term& term, std::size_t& n, Real& size,
                   const Real& rate, const Real& until) {
-    typename CentreAndOverlap<Real, Overlap>::Term all{};
+    Term all{};
     for (; size > until && n < most_terms; ++n) {
       term = motion.template next<by_force>(term, reciprocal<Overlap>(n));
       all = all + term;
@@ -175,13 +184,9 @@ class ShortContactTable {
     }
     return all;
   }
-  template <class Term>
-  static typename CentreAndOverlap<Real, Real>::Term round(const Term& t) {
-    return {t.x, t.v, Real(t.q), Real(t.w), t.f, t.g};
-  }
-  template <class Term>
-  static Term widen(const typename CentreAndOverlap<Real, Real>::Term& t) {
-    return {t.x, t.v, decltype(Term::q)(t.q), decltype(Term::w)(t.w), t.f, t.g};
+  template <class Q, class Value>
+  static CentreAndOverlapTerm<Value, Q> widen(const CentreAndOverlapTerm<Value, Value>& t) {
+    return {t.x, t.v, Q(t.q), Q(t.w), t.f, t.g};
   }
   static constexpr std::size_t most_terms = 64;
   // 1/n, n > 0. The table is made before a run begins: it is no part of what a run costs.
