@@ -363,8 +363,9 @@ scenes = source / "data/scenes"
 (folder / "catalogue.json").write_text(json.dumps({
     "schema": "impact-damper/catalogue/1", "scenes": [{"scene": "nu2-e06", "record": ["half_cycles"]}],
     "responses": [{"name": "low", "scene": "nu2-e06", "set": {"x0": 0, "force_amplitude": 0.008}, "kind": "sweep",
-                   "rule": {"max_periods": 100, "mean_periods": 10},
-                   "vary": [{"number": "force_frequency", "from": 0.95, "to": 1.01, "count": 3}]}],
+                   "rule": {"max_periods": 100, "mean_periods": 10, "nudge": 1e-6},
+                   "vary": [{"number": "force_frequency", "from": 0.95, "to": 1.01, "count": 3}],
+                   "start": [{"x": 2, "v": 0, "y": 0, "w": 0}]}],
     "figures": [{"figure": "1", "title": "t", "table": "response", "responses": ["low"], "script": "fig01.gp"}]}))
 
 
@@ -375,16 +376,18 @@ def series(code, says):
 
 
 asked = ["--scene", scenes / "nu2-e06.json", "--quiet", "--x0", 0, "--force-amplitude", 0.008, "--max-periods", 100, "--mean-periods", 10]
-varied = ["--vary", "force_frequency=0.95:1.01:3"]
+varied = ["--vary", "force_frequency=0.95:1.01:3", "--start=2:0:0:0", "--nudge=1e-6"]
 series(5, "figure 1: runs/low.json: cannot be read: No such file or directory; made by: impact-damper response sweep --scene ")
 respond("runs/low.json", "sweep", *asked, *varied)
 series(0, "# empty-1")
 for words, says in ((["--restitution", 0.7], "/scene/restitution: must be 0.6 as in response low of the catalogue, got 0.7"),
                     (["--engine", "restitution"], "/engine: must be "), (["--tolerance", 1e-6], "/rule: must be "),
-                    (["--start=1:0:0:0"], "/sweeps/1/start: must be none as in response low of the catalogue, got ")):
+                    (["--start=1:0:0:0"], "/sweeps/2/start: must be none as in response low of the catalogue, got ")):
     respond("runs/low.json", "sweep", *asked, *varied, *words)
     series(3, f"figure 1: runs/low.json: {says}")
-respond("runs/low.json", "sweep", *asked, "--vary", "force_frequency=0.95:1.02:3")
+respond("runs/low.json", "sweep", *asked, *varied[:-1], "--nudge=2e-6")
+series(3, "/sweeps/1/nudge: must be 1e-06 as in response low of the catalogue, got 2e-06")
+respond("runs/low.json", "sweep", *asked, "--vary", "force_frequency=0.95:1.02:3", *varied[2:])
 series(3, "/axis: must be ")
 respond("runs/low.json", "orbits", *asked[:-2], "--vary", "force_frequency=0.95:1.01")
 series(3, "/kind: must be sweep as in response low of the catalogue, got orbits")

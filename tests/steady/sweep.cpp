@@ -407,6 +407,15 @@ TEST_CASE("the way down begins where the way up ended") {
   }
 }
 
+TEST_CASE("the n-th start has n nudges") {
+  const auto starts = nudged({{1, 2, 0.5, 4}, {3, 0, 0, 0}, {5, 0, 0, 0}}, 0.25);
+  REQUIRE(starts.size() == 3);
+  for (std::size_t n = 0; n < 3; ++n) {
+    CHECK(starts[n].x == 2 * double(n) + 1);
+    CHECK(starts[n].nudge == 0.25 * double(n));
+  }
+}
+
 TEST_CASE("a nudge parts sweeps that a stable motion has brought to one state") {
   Scene scene = active_scene(1);
   scene.mass_ratio = 0.02;
