@@ -26,9 +26,10 @@ struct Axis {
 // (numbers_of).
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
-// Where a way along the axis begins, and what is added to x of the state at each further value before the
-// motion there is approached: finite, not negative. Two ways that meet in a strongly stable motion leave it
-// in the same state, to the last bit; with other nudges they part again where the motion is sensitive.
+// Where a sweep begins. `nudge`, at least 0 and finite, is a displacement: at each value of a way, up or
+// down, but its first it is added to x of the state that comes from the value before. Two sweeps that pass
+// through the same strongly stable motion leave it in the same state, to the last bit, and differ no more; if
+// their nudges differ they do, where the motion is irregular.
 struct SweepStart : SceneState {
   // A state alone is a start without a nudge.
   // NOLINTNEXTLINE(google-explicit-constructor)
@@ -37,7 +38,7 @@ struct SweepStart : SceneState {
   double nudge = 0;
 };
 inline constexpr NumberRange nudges{0, 1, false};  // that command line and catalogue allow
-// The starts, the n-th from 0 with n nudges.
+// These states as starts, the first without a nudge, the n-th after it with n times `nudge`.
 std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nudge);
 
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
