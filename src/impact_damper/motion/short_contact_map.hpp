@@ -53,6 +53,27 @@ struct DrivenBounds {
   Real fourth_of_q, second_of_x, third_of_x, fourth_of_x, fifth_of_x;
 };
 
+// How far from the time that it is about a series of so many pairs of terms is used, and the longest last
+// step to a zero of q; both times the rate. The same for all scenes.
+template <class Real>
+struct ReachInRadians {
+  Real s, last_step;
+};
+template <class Real, std::size_t pairs>
+inline const ReachInRadians<Real> reach_in_radians = [] {
+  // The first term left out of the velocity is (rate s)^(taken - 1) / (taken - 1)! of it.
+  const std::size_t taken = 2 * pairs;
+  Real factorial{1};
+  for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
+  const Real epsilon = std::numeric_limits<Real>::epsilon(), enough = factorial * epsilon / 16;
+  const Real s = exponential(Real(logarithm(enough) / Real(double(taken - 1))));
+  // q is taken along the last step to second order: the third power of the step is then below rounding. Its
+  // velocity is so, too, with q''' to second order in s: (rate step)^2 (rate s)^3 / 12 of it is left out.
+  const Real of_q = exponential(Real(logarithm(epsilon) * 2 / 5)),
+             of_velocity = square_root(Real(3 * epsilon / (s * s * s)));
+  return ReachInRadians<Real>{s, of_q < of_velocity ? of_q : of_velocity};
+}();
+
 // columns: how many numbers a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude
 // times the sine and times the cosine of its phase then.
 template <class Real, std::size_t columns>
@@ -72,10 +93,10 @@ class ShortContactMap {
     half_period_ = fast.half_period();
     if (!table.reaches(half_period_)) return;
     decay_factor_ = exponential(Real(-fast.a() * half_period_));
-    few_ = reach_of(few, fast);
-    more_ = reach_of(more, fast);
-    many_ = reach_of(many, fast);
-    most_ = reach_of(most, fast);
+    few_ = reach_of<few>(fast);
+    more_ = reach_of<more>(fast);
+    many_ = reach_of<many>(fast);
+    most_ = reach_of<most>(fast);
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
     latest_ = half_period_ + most_.s;
@@ -146,15 +167,6 @@ class ShortContactMap {
     const Real x = (i == 0 ? Real(1) : Real(0)) + (v * s + centre.u);
     return {x - share_ * depth, (v + centre.u1) - share_ * w, depth, w};
   }
-  // How far from the time that it is about a series of so many terms is used, times the rate: the first term
-  // left out of the velocity is (rate s)^(taken - 1) / (taken - 1)! of it.
-  static Real radians_of(std::size_t pairs) {
-    const std::size_t taken = 2 * pairs;
-    Real factorial{1};
-    for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
-    const Real enough = factorial * std::numeric_limits<Real>::epsilon() / 16;
-    return exponential(Real(logarithm(enough) / Real(double(taken - 1))));
-  }
 
  private:
   static constexpr std::size_t few = 5, more = 7, many = 9, most = terms / 2;  // pairs of terms
@@ -210,14 +222,11 @@ class ShortContactMap {
     Real growth{0};     // exp(a s), by which exp(a t) grows from T on
     Real last_step{0};  // the longest last step of s
   };
-  static Reach reach_of(std::size_t pairs, const Oscillator<Real>& fast) {
-    const Real epsilon = std::numeric_limits<Real>::epsilon(), rs = radians_of(pairs), s = rs / fast.rate();
-    // q is taken along the last step to second order: the third power of the step is then below rounding. Its
-    // velocity is so, too, with q''' to second order in s: (rate step)^2 (rate s)^3 / 12 of it is left out.
-    const Real of_q = exponential(Real(logarithm(epsilon) * 2 / 5)),
-               of_velocity = square_root(Real(3 * epsilon / (rs * rs * rs)));
-    const Real last_step = (of_q < of_velocity ? of_q : of_velocity) / fast.rate();
-    return {s, exponential(Real(fast.a() * s)), last_step};
+  template <std::size_t pairs>
+  static Reach reach_of(const Oscillator<Real>& fast) {
+    const auto& in_radians = reach_in_radians<Real, pairs>;
+    const Real s = in_radians.s / fast.rate();
+    return {s, exponential(Real(fast.a() * s)), in_radians.last_step / fast.rate()};
   }
 
   // The terms of q(T + s).

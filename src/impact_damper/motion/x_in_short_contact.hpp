@@ -25,7 +25,7 @@ class XInShortContactTable {
   // nu, zeta, stiffness K and damping c of the contact.
   XInShortContactTable(const Map& map, const Oscillator<Real>& fast, const Real& nu, const Real& zeta,
                        const Real& stiffness, const Real& damping, const Real& frequency)
-      : about_(Map::radians_of(pairs) / fast.rate()), rate_(fast.rate()) {
+      : about_(reach_in_radians<Real, pairs>.s / fast.rate()), rate_(fast.rate()) {
     if (!map.tells_before(about_)) return;
     end_ = 2 * about_;
     const SinCos<Real> phase = sin_cos(Real(frequency * about_));
