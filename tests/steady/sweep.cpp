@@ -656,8 +656,17 @@ TEST_CASE("what is not valid is rejected") {
   for (const SteadyRule& rule :
        {SteadyRule{.tolerance = nan}, SteadyRule{.tolerance = 0}, SteadyRule{.tolerance = 0.1},
         SteadyRule{.longest_period = 0}, SteadyRule{.longest_period = 65}, SteadyRule{.max_periods = 0},
-        SteadyRule{.mean_periods = 9}})
-    CHECK(problems_of(rule).size() == 1);
+        SteadyRule{.mean_periods = 9}}) {
+    const std::vector<Problem> problems = problems_of(rule);
+    REQUIRE(problems.size() == 1);
+    const std::string named = problems[0].field + ' ';
+    CHECK(fields([&] {
+            sweep(scene, rigid, {&Scene::force_amplitude, 0.1, 1, 3}, rule, {release_of(scene)}, 1, nothing);
+          }) == named);
+    CHECK(fields([&] {
+            steady_states_along(scene, rigid, &Scene::force_amplitude, {0.1}, rule, release_of(scene), [] {});
+          }) == named);
+  }
   CHECK(problems_of(SteadyRule{}).empty());
 }
 

@@ -103,7 +103,8 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 // several threads at a time.
 class ForcedScene {
  public:
-  // Throws InvalidArguments if there are problems_of() the two; NumericalError if this process's arithmetic is not IEEE 754's (floating_point.hpp).
+  // Throws InvalidArguments if there are problems_of() the two; NumericalError if this process's arithmetic
+  // is not IEEE 754's (floating_point.hpp).
   ForcedScene(const Scene& scene, const Engine& engine);
 
   // Goes on to the steady state by `rule`, and measures it.

@@ -39,6 +39,7 @@ std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& e
                                              const SceneNumber& number, const std::vector<double>& values,
                                              const SteadyRule& rule, const SweepStart& start,
                                              const std::function<void()>& after_each) {
+  require_none(problems_of(rule));
   std::vector<SteadyState> all;
   Scene there = scene;
   SceneState state = start;

@@ -43,22 +43,23 @@ std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nud
 
 // The steady states at some values of a number of the scene, in the order given: the first is approached from
 // `start`, each other one from the one before; if the number is a clearance, the secondary mass is then at
-// the same fraction of it. `after_each` is called after each of them. The rule must be valid. Throws
-// InvalidArguments if the scene is not valid at a value.
+// the same fraction of it. `after_each` is called after each of them. Throws InvalidArguments if the rule is
+// not valid, or the scene at a value.
 std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& engine,
                                              const SceneNumber& number, const std::vector<double>& values,
                                              const SteadyRule& rule, const SweepStart& start,
                                              const std::function<void()>& after_each);
 
-// The values of the axis and what the scene does there.
+// What a scene does along an axis: up[i] and down[i] are its steady states at axis.value(i).
 struct Sweep {
-  SweepStart start;                   // where the way up begins, at the axis's first value
-  std::vector<SteadyState> up, down;  // both in the order of the axis; down begins in the last state of up
+  SweepStart start;               // where the way up begins, at the axis's first value
+  std::vector<SteadyState> up;    // made from the first value to the last
+  std::vector<SteadyState> down;  // made from the last value, where `up` has ended, back to the first
 };
 
-// A sweep from each of `starts`, at the same time on several threads. `progress` is called, from any of them,
-// with the number of steady states that are done. Throws InvalidArguments if the rule is not valid, or the
-// scene at one of the values.
+// A sweep from each of `starts`, at the same time on several threads. `progress` is told how many steady
+// states are done, of 2 axis.count for each start: first 0, then from any of the threads, even from two at
+// once. Throws InvalidArguments if the rule is not valid, or the scene at one of the values.
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
                          const std::vector<SweepStart>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress);
