@@ -158,7 +158,7 @@ std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool
   if (given.size() != needed) {
     arguments.reject("--vary", "must be given " +
                                    std::string(is_sweep ? "once for a sweep" : "twice for a basin") +
-                                   ", got " + std::to_string(given.size()));
+                                   ", as NAME=FROM:TO:N, got " + std::to_string(given.size()));
     return axes;
   }
   for (const std::string& text : given)
@@ -181,7 +181,8 @@ std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool
 std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& variables) {
   const std::vector<std::string> given = arguments.texts("--vary");
   if (given.size() != 1) {
-    arguments.reject("--vary", "must be given once for orbits, got " + std::to_string(given.size()));
+    arguments.reject("--vary",
+                     "must be given once for orbits, as NAME=FROM:TO, got " + std::to_string(given.size()));
     return std::nullopt;
   }
   const auto varied = number_of(arguments, given[0], variables);
@@ -322,7 +323,8 @@ void warn_of(const std::vector<Sweep>& sweeps, const SteadyRule& rule) {
          std::to_string(rule.mean_periods) + " periods");
   if (ended > 0)
     warn(of_all(ended, all, "motions") +
-         " ended early, by a budget of the engine that \"end\" names; its option raises that");
+         " ended early, by a budget of the engine that \"end\" names; --max-impacts, --max-steps or "
+         "--max-time raises it");
 }
 
 void warn_of(const Basin& basin, const SteadyRule& rule) {
@@ -332,7 +334,8 @@ void warn_of(const Basin& basin, const SteadyRule& rule) {
          std::to_string(rule.max_periods) + " periods of the force; --max-periods raises that");
   if (basin.stopped > 0)
     warn(of_all(basin.stopped, basin.attractor.size(), "points") +
-         " are undecided because a budget of the engine ended them; its option raises that");
+         " are undecided because a budget of the engine ended them; --max-impacts, --max-steps or --max-time "
+         "raises it");
 }
 
 void warn_of(const Branches& found, const BranchRule& rule) {
@@ -355,7 +358,8 @@ void warn_of(const Branches& found, const BranchRule& rule) {
          " periods of the force, so no branch begins there; --max-periods raises that, --start adds others");
   if (ended > 0)
     warn(of_all(ended, all, "starts") +
-         " ended early, by a budget of the engine that \"end\" names; its option raises that");
+         " ended early, by a budget of the engine that \"end\" names; --max-impacts, --max-steps or "
+         "--max-time raises it");
   const auto ends = [&](BranchEnd end) {
     return std::ranges::count(found.branches, end,
                               [](const FollowedBranch& each) { return each.branch.end; });
@@ -378,7 +382,7 @@ void warn_of(const Branches& found, const BranchRule& rule) {
 void warn_of(const LyapunovExponents& found, std::size_t numbers) {
   if (found.stop_reason != StopReason::time)
     warn("there are no exponents: the run ended early, by " + std::string(name_of(found.stop_reason)) +
-         " of the engine; its option raises that");
+         "; --max-impacts, --max-steps or --max-time raises it");
   if (const std::size_t given = found.exponents.size(); 0 < given && given < numbers)
     warn(std::to_string(given) + " of " + std::to_string(numbers) +
          " exponents are given: the others are minus infinity, because masses stick, or too far below to be "
@@ -485,8 +489,11 @@ int respond(Arguments& arguments) {
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
   asked.nudge = nudge_of(arguments, asked.file);
-  asked.sweep = rule_of(arguments, SteadyRule{});
-  asked.basin.steady = rule_of(arguments, asked.basin.steady);
+  if (asked.kind == Kind::basin) {
+    asked.basin.steady = rule_of(arguments, asked.basin.steady);
+  } else {
+    asked.sweep = rule_of(arguments, asked.sweep);
+  }
   asked.basin.capture_radius =
       arguments.number("--capture-radius", {0, 0.5, false}).value_or(asked.basin.capture_radius);
   asked.orbits = branch_rule_of(arguments, asked.sweep);
@@ -608,6 +615,7 @@ Options own_options() {
       Option::Takes::nothing);
   options.push_back(threads_option());
   options.back().group = "Output";
+  options.back().help += ";\nnot for lyapunov";
   return options;
 }
 

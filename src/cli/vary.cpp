@@ -14,8 +14,14 @@ std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     const auto meant = nearest(name, names);
-    arguments.reject(option, "must name a number of the scene before the =, got " + in_quotes(text) +
-                                 (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+    constexpr std::size_t most_listed = 20;  // of a list of dampers there are up to thousands
+    std::string help;
+    if (meant) {
+      help = ", did you mean " + std::string(*meant) + "?";
+    } else if (names.size() <= most_listed) {
+      help = "; there are " + listed(names, "and");
+    }
+    arguments.reject(option, "must name a number of the scene before the =, got " + in_quotes(text) + help);
     return std::nullopt;
   }
   return Varied{static_cast<std::size_t>(found - names.begin()),

@@ -131,6 +131,10 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
     for (const std::string_view candidate : known)
       if (bare(candidate) == name) return candidate;
   }
+  // A name that was broken off.
+  if (asked.size() >= 4)
+    for (const std::string_view candidate : known)
+      if (bare(candidate).starts_with(asked)) return candidate;
   std::optional<std::string_view> found;
   // Two slips, or one in every three letters of a long word, but no more than half of a short one; farther
   // words are not what was meant.

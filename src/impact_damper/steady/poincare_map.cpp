@@ -100,7 +100,8 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
   std::vector<Problem> problems = problems_of(scene_, DamperList::allowed);
   for (const Problem& problem : problems_of(engine)) problems.push_back(problem);
   if (!(half_periods >= 1)) problems.push_back({"periods", "must be >= 1"});
-  if (scene.force_amplitude == 0) problems.push_back({"force_amplitude", "must not be 0"});
+  if (scene.force_amplitude == 0)
+    problems.push_back({"force_amplitude", "must not be 0: without a force there is no period"});
   if (std::holds_alternative<Cem>(engine))
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   require_none(problems);
