@@ -234,6 +234,8 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(nearest("mass-ratio", known) == "mass_ratio");
   CHECK(nearest("x1", known) == "x0");
   CHECK(!nearest("omega", known));
+  // Broken off, and by fewer letters from another name.
+  CHECK(nearest("exciting_freq", {"exciting_force", "exciting_frequency"}) == "exciting_frequency");
   CHECK(!nearest("q", {"x"}));
   CHECK(!nearest("q1", known));  // no letter of it is right
 }
