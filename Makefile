@@ -150,8 +150,8 @@ run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(
 test:  ## build, and run the quick tests: all without the label long
 	@$(run_tests) -LE '^long$$'
 
-bare:  ## run both commands of README.md on a bare Debian 12 (as root, a quarter of an hour); before every release
-	@$(alone) tests/bare/run $(BUILD)/bare
+bare:  ## run both commands of README.md on a bare Debian 12, or SUITE=trixie (as root, a quarter of an hour); before every release
+	@$(alone) SUITE=$(SUITE) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
