@@ -60,7 +60,8 @@ void write(const Scene& scene, Options options) {
 
 int main(int, char** arguments) {
   const std::string_view engine = arguments[1];
-  const impact_damper::Scene scene = impact_damper::read_scene(arguments[2], impact_damper::DamperList::allowed);
+  const impact_damper::Scene scene =
+      impact_damper::read_scene(arguments[2], impact_damper::DamperList::allowed);
   if (engine == "exact") impact_damper::write(scene, impact_damper::Exact{});
   if (engine == "restitution") impact_damper::write(scene, impact_damper::Restitution{});
   if (engine == "cem") impact_damper::write(scene, impact_damper::Cem{});
