@@ -16,7 +16,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 # What the program and the figures need, and nothing else: `make bare` holds it against a bare system.
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-14-dev \
+CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-dev \
   locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base pkgconf zsh fish doxygen \
   pybind11-dev python3-dev python3-numpy libhdf5-dev hdf5-tools
 # What the report is made of, and what its PDF is set with.
@@ -150,8 +150,8 @@ run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(
 test:  ## build, and run the quick tests: all without the label long
 	@$(run_tests) -LE '^long$$'
 
-bare:  ## run both commands of README.md on a bare Debian 12 (as root, a quarter of an hour); before every release
-	@$(alone) tests/bare/run $(BUILD)/bare
+bare:  ## run both commands of README.md on a bare Debian 12, or SUITE=trixie (as root, a quarter of an hour); before every release
+	@$(alone) SUITE=$(SUITE) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize

@@ -1,5 +1,7 @@
 #include "counted.hpp"
 
+#include <utility>
+
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"

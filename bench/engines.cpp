@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "contender.hpp"
 #include "impact_damper/engines/cem.hpp"

@@ -2,6 +2,7 @@
 // runs all tables that gnuplot draws, as text. Only files are not touched.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -5,6 +5,7 @@
 #endif
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/exact_dampers.hpp"

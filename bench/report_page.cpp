@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "impact_damper/io/provenance.hpp"
 #include "reference.hpp"

@@ -1,6 +1,8 @@
 // The table of results, each computed from the run at hand and held against its regression bound.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "findings.hpp"
 #include "impact_damper/engines/cem.hpp"

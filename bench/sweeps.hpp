@@ -2,6 +2,7 @@
 // restitution; the residual of the energy balance beside it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

@@ -2,6 +2,7 @@
 // code that shares nothing but the names of its numbers.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "peers/peers.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #ifdef HAVE_SICONOS
 #include "peers/siconos.hpp"

@@ -8,6 +8,7 @@
 
 #include <SiconosKernel.hpp>
 #include <cmath>
+#include <memory>
 
 #include "peers/row_book.hpp"
 

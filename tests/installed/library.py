@@ -7,6 +7,7 @@ PREFIX is where it was installed, under a DESTDIR: not where it was meant to be,
 nowhere. examples/ must print what stands beside them; an engine that is compiled by the stranger must give the
 program's bytes, also for a processor with fused multiply-add; no compilation may read Eigen or nlohmann-json.
 """
+import itertools
 import os
 import re
 import shutil
@@ -62,11 +63,11 @@ def the_examples_print_what_stands_beside_them():
 
 def an_engine_compiled_here_gives_the_programs_bytes():
     columns = built("stranger", SOURCE / "tests/installed/stranger", FUSING) / "columns"
-    scene = SOURCE / "tests/same_bits/scenes/forced-near-resonance.json"
-    for engine in ("exact", "restitution", "cem"):
+    scenes = [SOURCE / f"tests/same_bits/scenes/{name}.json" for name in ("forced-near-resonance", "dampers-forced")]
+    for engine, scene in itertools.product(("exact", "restitution", "cem"), scenes):
         wanted = run(PROGRAM, "run", "--engine", engine, "--scene", scene, "--history", "0:150:301",
                      "--record", "half_cycles,impacts,contacts,energy,history")
-        demand(len(wanted) > 50000 and run(columns, engine, scene) == wanted, f"{engine}: not the program's bytes")
+        demand(len(wanted) > 50000 and run(columns, engine, scene) == wanted, f"{engine}, {scene.name}: not the program's bytes")
 
 
 def pkg_config_is_enough():

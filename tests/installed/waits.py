@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-""".ci/install waits for another apt, says so in one line, and gives up when it must.
+""".ci/install waits for another apt, says so in one line, and gives up when it must; it installs what the system's apt has,
+and names the rest.
 
     waits.py SOURCE FOLDER
 
@@ -23,17 +24,18 @@ def stub(name: str, text: str):
     file.chmod(0o755)
 
 
-def install(failures: int, message: str) -> tuple:
-    """What .ci/install does if the first `failures` updates fail so: exit code, output, calls of apt-get, seconds slept."""
+def install(failures: int, message: str, packages=("hello",)) -> tuple:
+    """What .ci/install does if the first `failures` updates fail so, and apt has no package absent-*: exit code, output,
+    calls of apt-get, seconds slept."""
     shutil.rmtree(FOLDER, ignore_errors=True)
     (FOLDER / "bin").mkdir(parents=True)
     stub("dpkg-query", "exit 1\n")  # nothing is installed
     stub("id", "echo 0\n")
     stub("sleep", f'echo "$1" >>{FOLDER}/slept\n')
     stub("apt-get", f"""echo "$*" >>{FOLDER}/called
-case $* in *update*) [ $(grep -c update {FOLDER}/called) -gt {failures} ] || {{ echo '{message}' >&2; exit 100; }} ;; esac
+case $* in *absent-*) exit 100 ;; *update*) [ $(grep -c update {FOLDER}/called) -gt {failures} ] || {{ echo '{message}' >&2; exit 100; }} ;; esac
 """)
-    done = subprocess.run([SOURCE / ".ci/install", "hello"], capture_output=True, text=True,
+    done = subprocess.run([SOURCE / ".ci/install", *packages], capture_output=True, text=True,
                           env=dict(os.environ, PATH=f"{FOLDER}/bin:{os.environ['PATH']}"))
     slept = FOLDER / "slept"
     return (done.returncode, done.stdout, done.stderr, (FOLDER / "called").read_text().splitlines(),
@@ -46,8 +48,8 @@ def demand(holds: bool, what):
 
 
 code, out, err, called, slept = install(0, LOCKED)
-demand((code, err, slept) == (0, "", 0) and WAITING not in out and len(called) == 2, (code, out, err, called, slept))
-demand(all("-o DPkg::Lock::Timeout=300" in call for call in called), called)
+demand((code, err, slept) == (0, "", 0) and WAITING not in out and len(called) == 3, (code, out, err, called, slept))
+demand(all("-o DPkg::Lock::Timeout=300" in call for call in called if "--simulate" not in call), called)
 
 code, out, err, called, slept = install(3, LOCKED)
 demand((code, err, slept) == (0, "", 30) and out.count(WAITING) == 1, (code, out, err, slept))
@@ -59,3 +61,15 @@ demand(not any(" install " in call for call in called), called)
 
 code, out, err, called, slept = install(1000, "E: Temporary failure resolving the mirror")
 demand(code == 1 and "Temporary failure" in err and slept == 0 and WAITING not in out, (code, out, err, slept))
+
+code, out, err, called, slept = install(0, LOCKED, ("hello", "absent-1", "world", "absent-2"))
+demand((code, err) == (0, "") and out.endswith(" of Debian's):\n  absent-1 absent-2\n"), (code, out, err))
+demand(called[-1].endswith("install -q -y --no-install-recommends hello world"), called)
+
+code, out, err, called, slept = install(0, LOCKED, ["absent-1"])
+demand(code == 100 and called[-1].endswith("absent-1"), (code, out, err, called))
+
+# Fedora, macOS and others.
+shutil.rmtree(FOLDER / "bin")
+done = subprocess.run(["/bin/sh", SOURCE / ".ci/install", "hello", "world"], capture_output=True, text=True, env={"PATH": f"{FOLDER}/bin"})
+demand(done.returncode == 0 and done.stdout.endswith("(these are Debian's):\n  hello world\n"), done)

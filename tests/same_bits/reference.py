@@ -4,8 +4,8 @@
     reference.py COMMITTED NEW      two folders like data/reference/, NEW by paper/refresh
 
 Every byte of tables and verdicts has to be the same, and of the figures where gnuplot is the one that drew the
-committed ones; another one rounds and writes in its own way, and then equal tables have to be enough (the manifest has
-the figures' sums). Exit code 1 if anything differs, with the first and the worst difference of each file, or if the
+committed ones; another one rounds and writes in its own way, so what is drawn has to be the same (drawn.py), and the
+manifest, which has the figures' sums, is not compared. Exit code 1 if anything differs, with the first and the worst difference of each file, or if the
 committed files do not have their committed SHA-256 sums.
 """
 import hashlib
@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from differences import compare_files, names_in
+from drawn import difference_in_files
 
 
 def sums_of(file: Path) -> dict:
@@ -37,13 +38,15 @@ def differences(committed: Path, new: Path) -> list:
     drawn_with = [(folder / "made_with.txt").read_text().strip() for folder in (committed, new)]
     same_gnuplot = drawn_with[0] == drawn_with[1]
     if not same_gnuplot:
-        print(f"The committed figures were drawn with {drawn_with[0]}, here is {drawn_with[1]}: their bytes are not "
-              "compared, equal tables have to be enough.")
+        print(f"The committed figures were drawn with {drawn_with[0]}, here is {drawn_with[1]}: compared is what they "
+              "show, not their bytes.")
     for name in names_in(str(committed), str(new)):
         if same_gnuplot or not name.endswith((".svg", "manifest.json")):
             difference = compare_files(name, str(committed / name), str(new / name))
-            if difference:
-                found.append(str(difference))
+        else:
+            difference = name.endswith(".svg") and difference_in_files(name, committed, new)
+        if difference:
+            found.append(str(difference))
     others = [sums_of(folder / "other-engines.sha256") for folder in (committed, new)]
     found += [f"{name}: another SHA-256 sum than in other-engines.sha256"
               for name in sorted(others[0].keys() | others[1].keys()) if others[0].get(name) != others[1].get(name)]

@@ -8,6 +8,7 @@
 // what the restitution engine, or with compliant walls the exact one, makes of them. Prints the first scene
 // that differs, with all that does, and a line of totals. Exit code 0: all agrees; 1: a scene differs, or
 // less than half of the time could be compared; 2: usage.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "impact_damper/simulate.hpp"
 #include "print.hpp"

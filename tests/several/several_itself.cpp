@@ -1,6 +1,7 @@
 // The oracle for several dampers against closed forms.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"

@@ -9,6 +9,7 @@
 // Nothing written depends on the number of threads or on time, but for FOLDER/slowest.txt.
 #include "stress.hpp"
 
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <iostream>

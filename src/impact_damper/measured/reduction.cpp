@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"

@@ -2,6 +2,7 @@
 // kilograms, millimetres and seconds as well where the scene was given so.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

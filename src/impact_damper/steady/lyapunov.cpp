@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/math/elementary.hpp"

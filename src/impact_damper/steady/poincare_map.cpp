@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/motion/wall.hpp"

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "impact_damper/engine.hpp"
 #include "impact_damper/motion/contact.hpp"
@@ -29,12 +30,14 @@ template <class Real, class Receiver>
 class Variation {
  public:
   using Force = Forcing<Real>;
+  using UnforcedModes = ContactModes<Real, NoForcing<Real>>;
 
   // zeta_m: of compliant walls; absent for rigid ones.
   Variation(const Scene& scene, const std::optional<Real>& zeta_m, Receiver& receiver)
-      : system_(scene), unforced_(scene), receiver_(receiver) {
-    if (zeta_m) contact_.emplace(unforced_, *zeta_m);
-  }
+      : system_(scene),
+        unforced_(scene),
+        contact_(zeta_m ? std::optional<UnforcedModes>(std::in_place, unforced_, *zeta_m) : std::nullopt),
+        receiver_(receiver) {}
 
   void passed(const Flight<Real, Force>& flight, const Real& begin, const Real& duration,
               const State<Real>& end) {
@@ -202,7 +205,7 @@ class Variation {
 
   System<Real, Force> system_;
   System<Real, NoForcing<Real>> unforced_;
-  std::optional<ContactModes<Real, NoForcing<Real>>> contact_;
+  std::optional<UnforcedModes> contact_;
   Receiver& receiver_;
   Kind last_ = Kind::none;
   State<Real> end_{};

@@ -1,5 +1,6 @@
 #include "impact_damper/sweeps/sweep_table.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>

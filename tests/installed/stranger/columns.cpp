@@ -7,9 +7,12 @@
 #include <type_traits>
 
 #include "impact_damper/engines/cem.hpp"
+#include "impact_damper/engines/cem_dampers.hpp"
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_dampers.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 
@@ -22,13 +25,16 @@ struct OwnRecorder : Recorder {
 };
 
 Outcome run(const Scene& scene, const Exact& options, OwnRecorder& recorder) {
-  return run_exact<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_exact<double>(scene, options, recorder)
+                               : run_exact_dampers<double>(scene, options, recorder);
 }
 Outcome run(const Scene& scene, const Restitution& options, OwnRecorder& recorder) {
-  return run_restitution<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_restitution<double>(scene, options, recorder)
+                               : run_restitution_dampers<double>(scene, options, recorder);
 }
 Outcome run(const Scene& scene, const Cem& options, OwnRecorder& recorder) {
-  return run_cem<double>(scene, options, recorder);
+  return scene.dampers.empty() ? run_cem<double>(scene, options, recorder)
+                               : run_cem_dampers<double>(scene, options, recorder);
 }
 
 template <class Options>
@@ -38,7 +44,7 @@ void write(const Scene& scene, Options options) {
   Record record;
   record.impacts = record.contacts = record.energy = true;
   record.history = {{0, 150, 301}};
-  OwnRecorder recorder(record);
+  OwnRecorder recorder(record, scene.dampers.size());
   const Outcome outcome = run(scene, options, recorder);
   Run result;
   result.stop_reason = outcome.stop_reason;
@@ -54,7 +60,8 @@ void write(const Scene& scene, Options options) {
 
 int main(int, char** arguments) {
   const std::string_view engine = arguments[1];
-  const impact_damper::Scene scene = impact_damper::read_scene(arguments[2]);
+  const impact_damper::Scene scene =
+      impact_damper::read_scene(arguments[2], impact_damper::DamperList::allowed);
   if (engine == "exact") impact_damper::write(scene, impact_damper::Exact{});
   if (engine == "restitution") impact_damper::write(scene, impact_damper::Restitution{});
   if (engine == "cem") impact_damper::write(scene, impact_damper::Cem{});
