@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
 
-    matrix.py BUILD [--without-clang] [--only NAMES]
+    matrix.py BUILD [--without-clang] [--only NAMES] [--library]
 
 BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. More
-programs are built below BUILD/same_bits, kept for the next time. For this processor there are five: {g++, clang++} x
+programs are built below BUILD/same_bits, kept for the next time; that for WebAssembly is the one of `make wasm`. For
+this processor there are five: {g++, clang++} x
 {-O3 -march=native, -O2 with link-time optimisation}, and g++ -O0. The three other combinations would run nothing new:
 link-time optimisation has the passes of -O2 and sees more at once, and what clang++ evaluates in another order than g++
 it does so at any level. For other machines there are four: aarch64, riscv64 and s390x, whose bytes have the other order,
@@ -23,6 +24,9 @@ Each time all three engines run all scenes of the catalogue and those in scenes/
 element method also with its other ways to step), the catalogue's responses are found with fewer points and periods,
 all tables are made, and the runs in BUILD/runs/exact get their verdicts. The heap is filled with rubbish where the
 surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
+
+With --library the other builds for Linux are of the library alone, with again.cpp, in half the time: they simulate
+anew what is in the run and response files of the project's own build, and make no table, verdict or sweep.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -59,7 +63,7 @@ BUILDS = {name: [f"-DCMAKE_CXX_COMPILER={name.split()[0]}", "-DCMAKE_BUILD_TYPE=
           for name, options in BUILDS.items()}
 LINUX = ["aarch64", "riscv64", "s390x"]
 BUILDS |= {name: ["--toolchain", SOURCE / "toolchains/linux.cmake", f"-DMACHINE={name}"] for name in LINUX}
-BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "toolchains/wasm.cmake"]
+BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "toolchains/wasm.cmake", "-DCMAKE_BUILD_TYPE=MinSizeRel"]  # as `make wasm`
 # What runs the programs of other machines.
 RUNNERS = {**{name: [f"qemu-{name}"] for name in LINUX}, "WebAssembly": ["node"]}
 EACH_SURROUNDING_BY_ITSELF = "clang++ -O3 -march=native"
@@ -126,12 +130,12 @@ def call(command, **options) -> str:
     return done.stdout
 
 
-def build(work: Path, name: str) -> Path:
-    folder = work / re.sub(r"[^\w+]+", "-", name)
+def build(work: Path, name: str, target: str) -> Path:
+    folder = work.parent / "wasm" if name == "WebAssembly" else work / re.sub(r"[^\w+]+", "-", name)
     call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", *BUILDS[name]])
-    call(["cmake", "--build", folder, "--target", "impact-damper", "-j1"])
+    call(["cmake", "--build", folder, "--target", target, "-j1"])
     say(f"built {name}")
-    return folder / "src" / ("impact-damper.js" if name == "WebAssembly" else "impact-damper")
+    return folder / "src" / ("impact-damper.js" if name == "WebAssembly" else target)
 
 
 def tools_of(name: str) -> list:
@@ -187,6 +191,28 @@ def small_catalogues(work: Path) -> dict:
 
 def plans_of(catalogue: dict) -> list:
     return sorted({figure["plan"] for figure in catalogue["figures"] if "plan" in figure})
+
+
+def run_again(setting: Setting, places: Places, reference: Path, results: Path):
+    """The same runs and responses by the library alone: what is in the files below `reference`, simulated anew."""
+    shutil.rmtree(results, ignore_errors=True)
+    catalogue = json.loads((SOURCE / "figures/catalogue.json").read_text())
+    below = {entry["scene"]: [f"below:{w['amplitude']}:{w['length']}:{w['count']}" for w in entry.get("history_below", [])]
+             for entry in catalogue["scenes"]}
+    copied = {entry["name"] for kind in ("runs", "responses") for entry in catalogue[kind]}
+    jobs = []
+    for file in sorted(reference.glob("*/runs/**/*.json")):
+        name = file.relative_to(reference)
+        own = name.parts[2].removesuffix(".json").removesuffix(".members")
+        if own.endswith(".csv") or own in copied and name.parts[0] != ENGINES[0]:
+            continue
+        small = [scene for scene in (HERE / "scenes").glob("*.json") if re.fullmatch(re.escape(scene.stem) + r"(-\d)?", own)]
+        windows = ["0:150:301"] if small else below.get(own, []) if len(name.parts) == 3 else []
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        jobs.append([file, results / name, *(small or ["-"]), *windows])
+    call([*RUNNERS.get(setting.build, []), setting.program], cwd=places.folder(setting.surroundings),
+         env=places.environment(setting.features, setting.surroundings),
+         input="".join("\t".join(map(str, job)) + "\n" for job in jobs))
 
 
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
@@ -268,10 +294,10 @@ def draw_all(places: Places, features: str, surroundings, tables: Path, pictures
                  cwd=places.folder(surroundings), env=environment)
 
 
-def held_against(reference: Path, results: Path) -> list:
+def held_against(reference: Path, results: Path, all_of=True) -> list:
     """What differs, as text; names are engine/runs/SCENE.json, engine/tables/figNN.dat, engine/figNN.svg, verdicts.json."""
     found = []
-    names = {path.relative_to(root) for root in (reference, results) for kind in ("json", "dat", "svg")
+    names = {path.relative_to(root) for root in ([reference] if all_of else []) + [results] for kind in ("json", "dat", "svg")
              for path in root.rglob(f"*.{kind}")}
     for name in sorted(names):
         difference = compare_files(str(name), str(reference / name), str(results / name))
@@ -299,6 +325,7 @@ def main() -> int:
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
     parser.add_argument("--only", metavar="NAMES", help="only builds whose name begins with one of these, set apart by commas, and say so")
+    parser.add_argument("--library", action="store_true", help="other builds for Linux are of the library alone, and say so")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -322,7 +349,8 @@ def main() -> int:
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        made = pool.map(lambda name: build(work, name), wanted)
+        target = {name: "again" if arguments.library and name != "WebAssembly" else "impact-damper" for name in wanted}
+        made = pool.map(lambda name: build(work, name, target[name]), wanted)
     programs |= dict(zip(wanted, made))
     built = time.monotonic()
 
@@ -333,8 +361,12 @@ def main() -> int:
 
     def examine(number):
         results = work / f"results-{number}"
-        run_all(cells[number], places, catalogues, results)
-        found = held_against(reference, results)
+        library = cells[number].program.name == "again"
+        if library:
+            run_again(cells[number], places, reference, results)
+        else:
+            run_all(cells[number], places, catalogues, results)
+        found = held_against(reference, results, all_of=not library)
         if not found:
             shutil.rmtree(results)
         say(f"{number} of {len(cells) - 1}: {cells[number]}: " +
@@ -376,6 +408,8 @@ def main() -> int:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
     if arguments.only:
         print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")
+    if arguments.library:
+        print("same bits: NOT COVERED: tables, verdicts and sweeps by other builds for Linux, left out by --library")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
