@@ -8,7 +8,8 @@ reach = STATS_max > -STATS_min ? STATS_max : -STATS_min
 
 set xrange [from:to]
 set yrange [-reach - 0.15:1 + reach + 0.32]
-set xlabel "dimensionless time t"
+eval captioned
+set xlabel "dimensionless time ".formula("t")
 set ylabel "absolute displacement"
 set key top right horizontal
 plot table index "motion" using 1:2 with lines lc rgb black lw 2 title "cavity walls", \

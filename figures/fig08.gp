@@ -4,5 +4,5 @@ theory = "1 2 3"
 logarithmic = "xy"
 set yrange [4e-4:0.3]
 ordinate = "η"
-set ylabel "loss factor ".ordinate
+set ylabel "loss factor ".formula(ordinate)
 load folder."/loss.gp"

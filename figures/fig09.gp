@@ -4,5 +4,5 @@ theory = "2"
 logarithmic = "xy"
 set yrange [0.04:10]
 ordinate = "η / ν"
-set ylabel "specific loss factor ".ordinate
+set ylabel "specific loss factor ".formula(ordinate)
 load folder."/loss.gp"

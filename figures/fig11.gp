@@ -4,5 +4,5 @@ theory = "1"
 logarithmic = "xy"
 set yrange [0.04:10]
 ordinate = "(η − 2ζ) / ν"
-set ylabel ordinate
+set ylabel formula(ordinate)
 load folder."/loss.gp"

@@ -7,21 +7,24 @@ logarithmic = "x"
 eval canvas(720, 860)
 set lmargin at screen 0.115
 set rmargin at screen 0.975
+panels = 2
+eval captioned
 set multiplot
-set tmargin at screen 0.925
-set bmargin at screen 0.555
+eval panel("a", 0.975)
+set tmargin at screen 0.975
+set bmargin at screen 0.580
 set yrange [0:0.55]
 set key bottom right maxrows 4
 ordinate = "A (η − 2ζ) / ν"
-set ylabel ordinate
+set ylabel formula(ordinate)
 load folder."/loss.gp"
 
 do for [i=1:words(styles)] { eval require(sprintf("second-%d", i), 10) }
-unset title
-set tmargin at screen 0.460
+eval panel("b", 0.480)
+set tmargin at screen 0.480
 set bmargin at screen 0.090
 ordinate = "A (η − 2ζ / (1 + ν)) / ν"
-set ylabel ordinate
+set ylabel formula(ordinate)
 unset key
 plot for [i=1:words(styles)] table index sprintf("second-%d", i) using 1:2 with lines ls style_of(i), \
      for [i=1:words(styles)] last = 999 table index sprintf("second-%d", i) \

@@ -4,5 +4,5 @@ theory = "1 2 3"
 logarithmic = "x"
 set yrange [0:2]
 ordinate = "A (η − 2ζ) / (ν (1 − e))"
-set ylabel ordinate
+set ylabel formula(ordinate)
 load folder."/loss.gp"

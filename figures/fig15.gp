@@ -10,9 +10,11 @@ set lmargin at screen 0.105
 set rmargin at screen 0.975
 dark = "#BDBDBD"
 
+eval captioned
 set multiplot
-set tmargin at screen 0.925
-set bmargin at screen 0.46
+eval panel("a", 0.975)
+set tmargin at screen 0.975
+set bmargin at screen 0.480
 set xrange [0:6]
 set xtics 1
 set mxtics 5
@@ -24,19 +26,19 @@ plot table index "stuck" using 1:2:3 with filledcurves lc rgb dark title "stuck"
      table index "windows" using 2:(8):($3-$2):(0) with vectors nohead lc rgb green lw 4 title "impacts per half cycle", \
      table index "windows" using (($2+$3)/2):(17):1 with labels font ",12" notitle, \
      for [i=1:4] table index sprintf("bounce-%d", i) using 1:2 with lines ls 9 notitle, \
-     table index "accumulation" using 1:2 with lines ls 9 title "closed forms, ν → 0", \
+     table index "accumulation" using 1:2 with lines ls 9 title "closed forms, ".formula("ν")." → 0", \
      table index "one-impact" using 1:2 with lines ls 9 notitle
 eval axes("A", "phase", "")
 
-unset title
 unset label
+eval panel("b", 0.425)
 unset key
-set tmargin at screen 0.405
+set tmargin at screen 0.425
 set bmargin at screen 0.085
 set xrange [0:0.6]
 set xtics 0.1
 set mxtics 5
-set xlabel "peak amplitude A of the half cycle"
+set xlabel "peak amplitude ".formula("A")." of the half cycle"
 plot table index "impacts" using 1:2 with points pt 5 ps 0.25 lc rgb black, \
      table index "windows" using 2:(8):($3-$2):(0) with vectors nohead lc rgb green lw 4, \
      table index "one-impact" using 1:2 with lines ls 9

@@ -6,8 +6,9 @@ eval canvas(720, 560)
 set logscale y
 set xrange [0:0.5]
 set yrange [0.03:14]
-set xlabel "amplitude f₀/ν of the force"
-set ylabel "largest steady amplitude A"
+eval captioned
+set xlabel "amplitude ".formula("f₀/ν")." of the force"
+set ylabel "largest steady amplitude ".formula("A")
 set ytics ("0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "10" 10)
 do for [decade in "0.01 0.1 1"] { do for [k=2:9] { if (k != 3 && !(decade == 0.01 && k < 4)) { set ytics add ("" k * decade 1) } } }
 set mxtics 5

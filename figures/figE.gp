@@ -22,8 +22,9 @@ do for [i=1:words(regimes)] {
 }
 set xrange [low_x - width:high_x + width]
 set yrange [low_y - height:high_y + height]
-set xlabel "frequency ω of the force"
-set ylabel "amplitude f₀/ν of the force"
+eval captioned
+set xlabel "frequency ".formula("ω")." of the force"
+set ylabel "amplitude ".formula("f₀/ν")." of the force"
 set tics front
 set style fill solid 1 noborder
 set bmargin at screen 0.200

@@ -8,26 +8,25 @@ do for [i=1:panels] {
 }
 eval canvas(720, 900)
 set multiplot
-heading = title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "")
-unset title
+eval captioned
 set logscale xy
 set grid xtics ytics lc rgb "#D8D8D8" lw 0.5 dt 1
 set tics scale 0.5 nomirror
 set lmargin at screen 0.11
 set rmargin at screen 0.97
 set key at graph 0.62,graph 0.3 Left reverse samplen 3 width 1 font ",12"
-set ylabel "η / Σν" offset 1,0
-top(i) = 0.925 - 0.285 * (i - 1)
+set ylabel formula("η")." / Σ".formula("ν") offset 1,0
+top(i) = 0.975 - 0.298 * (i - 1)
 numbers = '"0.05" 0.05, "0.1" 0.1, "0.2" 0.2, "0.5" 0.5, "1" 1, "2" 2, "5" 5, "10" 10'
 bare(numbers) = system(sprintf("printf '%%s' '%s' | sed 's/\"[^\"]*\"/\"\"/g'", numbers))
 set ytics ("0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3)
 do for [i=1:panels] {
   set tmargin at screen top(i)
-  set bmargin at screen top(i) - 0.255
+  set bmargin at screen top(i) - 0.275
   set xrange [0.045:11]
   set yrange [0.02:5]
-  if (i == 1) { set label 2 heading at screen 0.5,screen 0.972 center font ",15" } else { unset label 2 }
-  if (i == panels) { set xlabel "amplitude A, divided by the least clearance" offset 0,0.3 } else { unset xlabel }
+  eval panel(substr("abcdefgh", i, i), top(i))
+  if (i == panels) { set xlabel "amplitude ".formula("A").", divided by the least clearance" offset 0,0.3 } else { unset xlabel }
   eval "set xtics (".(i == panels ? numbers : bare(numbers)).")"
   plot table index sprintf("set-%d", i) using 1:3:4 with filledcurves lc rgb sky notitle, \
     table index sprintf("sum-%d", i) using 1:2 with lines lc rgb vermillion lw 1.6 dt (6,3) title columnheader(2), \

@@ -7,8 +7,9 @@ set logscale xy
 set xrange [0.045:11]
 set yrange [0.01:12]
 set grid xtics ytics lc rgb "#D8D8D8" lw 0.5 dt 1
-set xlabel "amplitude A, divided by ε"
-set ylabel "η / Σν"
+set xlabel "amplitude ".formula("A").", divided by ".formula("ε")
+eval captioned
+set ylabel formula("η")." / Σ".formula("ν")
 set xtics ("0.05" 0.05, "0.1" 0.1, "0.2" 0.2, "0.5" 0.5, "1" 1, "2" 2, "5" 5, "10" 10)
 set ytics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "10" 10)
 set key top right Left reverse samplen 3 width 1

@@ -16,8 +16,7 @@ set style line 3 lc rgb black      lw 1.6 dt 1
 set style line 4 lc rgb vermillion lw 1.6 dt (9,3,2,3)
 set style line 5 lc rgb purple     lw 1.6 dt (14,3)
 set multiplot
-heading = title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "")
-unset title
+eval captioned
 unset key
 set logscale xy
 set xrange [0.0115:11.5]
@@ -25,7 +24,7 @@ set yrange [4e-5:0.35]
 set grid xtics ytics lc rgb "#D8D8D8" lw 0.5 dt 1
 set tics scale 0.5 nomirror
 left(i) = i % 2 ? 0.130 : 0.562
-top(i) = 0.925 - 0.279 * ((i - 1) / 2)
+top(i) = 0.985 - 0.298 * ((i - 1) / 2)
 numbers_x = '"0.02" 0.02, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2, "0.5" 0.5, "1" 1, "2" 2, "5" 5, "10" 10'
 numbers_y = '"" 5e-5, "0.0001" 1e-4, "" 2e-4, "" 5e-4, "0.001" 1e-3, "" 2e-3, "" 5e-3, "0.01" 0.01, "" 0.02, "" 0.05, "0.1" 0.1, "" 0.2'
 bare(numbers) = system(sprintf("printf '%%s' '%s' | sed 's/\"[^\"]*\"/\"\"/g'", numbers))
@@ -40,16 +39,15 @@ do for [i=1:panels] {
   eval limit(sprintf("bounce-down-%d", i), 4, "bounce-down ends", i == 3 ? -0.7 : 0.7, i < 4 ? 0.03 : 0.88, i < 4 ? "left" : "right")
   stats table index sprintf("panel-%d", i) using 1 nooutput
   is_example = STATS_max == example
-  set label 1 sprintf("e = %g", STATS_max) at graph 0.96,graph 0.92 right font ",14"
+  set label 1 sprintf("(%s)  {/:Italic e} = %g", substr("abcdef", i, i), STATS_max) at graph 0.96,graph 0.92 right font ",14"
   set xrange [0.0115:11.5]
   set yrange [4e-5:0.35]
   set lmargin at screen left(i)
   set rmargin at screen left(i) + 0.413
   set tmargin at screen top(i)
-  set bmargin at screen top(i) - 0.262
-  if (i == 1) { set label 2 heading at screen 0.5,screen 0.972 center font ",15" } else { unset label 2 }
-  if (i > panels - 2) { set xlabel "amplitude A, in clearances" offset 0,0.3 } else { unset xlabel }
-  if (i % 2) { set ylabel "loss factor η" offset 1.8,0 } else { unset ylabel }
+  set bmargin at screen top(i) - 0.281
+  if (i > panels - 2) { set xlabel "amplitude ".formula("A").", in clearances" offset 0,0.3 } else { unset xlabel }
+  if (i % 2) { set ylabel "loss factor ".formula("η") offset 1.8,0 } else { unset ylabel }
   eval "set xtics (".(i > panels - 2 ? numbers_x : bare(numbers_x)).")"
   eval "set ytics (".(i % 2 ? numbers_y : bare(numbers_y)).")"
   eval 'plot for [j=1:curves] table index sprintf("curve-%d-%d", i, j) using 1:2 with lines ls j'.\
@@ -73,5 +71,5 @@ set bmargin at screen 0.015
 set key inside center center maxrows 1 samplen 2.6 Left reverse width 1 font ",12"
 set xrange [0:1]
 set yrange [0:1]
-plot for [j=1:curves] table index sprintf("curve-1-%d", j) using (NaN):2 with lines ls j title columnheader(2)
+plot for [j=1:curves] table index sprintf("curve-1-%d", j) using (NaN):2 with lines ls j title legend(columnheader(2))
 unset multiplot

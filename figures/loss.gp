@@ -11,7 +11,8 @@ do for [i in theory] { if (has("bounce-down-".i)) { bounced = bounced." ".i } }
 failed = ""
 do for [i=1:words(styles)] { if (has(sprintf("failed-%d", i))) { failed = sprintf("%s %d", failed, i) } }
 
-set xlabel "peak amplitude A"
+if (!exists("panels")) { eval captioned }
+set xlabel "peak amplitude ".formula("A")
 eval 'set logscale '.logarithmic
 set xrange [from:7]
 set xtics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1, "0.3" 0.3, "1" 1, "3" 3, "6" 6)
@@ -40,7 +41,7 @@ eval 'plot '.spread.band.\
   'for [i=1:words(styles)] last = 999 table index sprintf("curve-%d", i)'.\
   '  using 1:(b = bin($1, i), b < last ? (last = b, $2) : NaN) with points ls style_of(i) notitle,'.\
   'for [i=1:words(styles)] table index sprintf("curve-%d", i) using (1e-9):2'.\
-  '  with linespoints ls style_of(i) title columnheader(2),'.\
+  '  with linespoints ls style_of(i) title legend(columnheader(2)),'.\
   'for [i in theory] table index "one-impact-".i using 1:2 with lines ls 9'.\
-  '  title (i eq word(theory, 1) ? "closed forms, ν → 0" : "")'.bounce_down.behind_failure
+  '  title (i eq word(theory, 1) ? "closed forms, ".formula("ν")." → 0" : "")'.bounce_down.behind_failure
 eval axes("A", ordinate, logarithmic)

@@ -5,14 +5,17 @@ unset key
 set lmargin at screen 0.02
 set rmargin at screen 0.98
 set bmargin at screen 0.02
-set tmargin at screen 0.90
+eval captioned
+set tmargin at screen 0.98
 set size ratio -1
 
 line(x, y, to_x, to_y) = sprintf("set arrow from %g,%g to %g,%g nohead lc rgb black lw 1.6 front;", x, y, to_x, to_y)
 thin(x, y, to_x, to_y) = sprintf("set arrow from %g,%g to %g,%g nohead lc rgb grey lw 0.9 dt (4,3) front;", x, y, to_x, to_y)
 pointing(x, y, to_x, to_y) = sprintf("set arrow from %g,%g to %g,%g head filled size 0.32,18 lc rgb black lw 1.6 front;", x, y, to_x, to_y)
 measure(x, to_x, y) = sprintf("set arrow from %g,%g to %g,%g heads filled size 0.28,18 lc rgb black lw 1 front;", x, y, to_x, y)
-text(x, y, what) = sprintf("set label '%s' at %g,%g center front;", what, x, y)
+# A symbol, with its index and argument, or words.
+text(x, y, what) = sprintf("set label '%s' at %g,%g center front;", \
+  strlen(what) == 1 || what[2:2] eq "_" ? formula(what[1:1]).what[2:strlen(what)] : what[2:2] eq "(" ? formula(what) : what, x, y)
 block(x, y, to_x, to_y, colour) = sprintf("set object rectangle from %g,%g to %g,%g fc rgb '%s' fs solid border lc rgb black lw 1.6 behind;", x, y, to_x, to_y, colour)
 
 # Horizontal, from x to to_x at height y, `high` to either side.

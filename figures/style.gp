@@ -24,6 +24,15 @@ set tics in scale 0.8,0.4 font ",13"
 set key noopaque samplen 3.2 spacing 1.15 font ",13" width -1
 set title title.(strlen(parameters) ? "\n{/*0.82 ".parameters."}" : "") font ",15" offset 0,-0.4
 set tmargin at screen 0.875
+# The paper's figures have their titles and parameters in their captions.
+captioned = "unset title; set tmargin at screen 0.965"
+
+# Symbols are set in italics: letters of a formula; in a legend the one before " = ".
+formula(s) = !strlen(s) ? "" : \
+  (strstrt("ABCDFKMTXYZdefmtwxyzεζηνω", s[1:1]) ? "{/:Italic ".s[1:1]."}" : s[1:1]).formula(s[2:strlen(s)])
+legend(s) = s[2:4] eq " = " ? formula(s[1:1]).s[2:strlen(s)] : s[3:5] eq " = " ? formula(s[1:1]).s[2:strlen(s)] : s
+# The letter of a panel, left of its upper end.
+panel(letter, top) = sprintf("set label 90 '(%s)' at screen 0.006,screen %g left font ',15'", letter, top - 0.012)
 
 # Nothing is drawn that is not there: the block must hold `least` rows, all of them numbers.
 # One column at a time: for two, gnuplot also fits a line and complains about short blocks.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "closed_forms.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
@@ -88,6 +89,15 @@ TEST_CASE("measures have names of their own, in order, each with its meaning") {
     if (i > 0) CHECK(measures()[i - 1].name < measures()[i].name);
   }
   CHECK_THROWS_AS(measure(no_runs, {"no_such_measure", {}, {}}), std::invalid_argument);
+}
+
+TEST_CASE("measures of closed forms are those of theory") {
+  CHECK(value("single_impact_fold", {{"restitution", 0.4}}) == fold_amplitude(0.4));
+  CHECK(value("single_impact_peak_loss", {{"mass_ratio", 0.02}, {"restitution", 0.6}}) ==
+        0.02 * peak_loss(0.6));
+  CHECK(value("single_impact_peak_product", {{"restitution", 0.8}}) == peak_product_amplitude(0.8));
+  CHECK(value("bounce_down_closed_form", {{"restitution", 0.6}}) == bounce_down_end(0.6));
+  CHECK(std::isnan(measure(no_runs, {"bounce_down_closed_form", {}, {{"restitution", 1}}}).median));
 }
 
 TEST_CASE("a wall delivers the closed form's restitution, to a moving primary mass too") {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/measures.hpp"
@@ -96,9 +97,27 @@ TEST_CASE("measures of the loss factor are what they are for amplitudes that fal
   };
   CHECK(of("product_mid_range", {{"from", 1}, {"to", 5}}) == doctest::Approx(c / nu));
   CHECK(of("product_half_range_percent", {{"from", 1}, {"to", 5}}) < 1e-9);
+  CHECK(of("product_mean", {{"from", 1}, {"to", 5}}) == doctest::Approx(c / nu));
+  // With eta as 1/A^2 the product is as 1/A: the first averaged peak is the sixth, the next the seventh.
+  const Run faster = decay(120, [](int i) { return std::sqrt(36 - 0.25 * i); });
+  for (const char* first : {"", "_with_first"}) {
+    const double largest = std::sqrt(36 - 0.25 * (*first ? 5 : 6)),
+                 product = 0.25 / pi / faster.scene.mass_ratio;
+    const auto fast = [&](const std::string& name) {
+      return measured(name, {{"from", 2.99}, {"to", 6}}, {faster});
+    };
+    const double least = product / largest, most = product / 3.0;
+    CHECK(fast(std::string("product_mid_range") + first) ==
+          doctest::Approx((least + most) / 2).epsilon(1e-3));
+    CHECK(
+        fast(std::string("product_half_range") + first + "_percent") ==
+        doctest::Approx(100 * (most - least) / (most + least)).epsilon(3e-3));  // the fit errs by 0.2 percent
+  }
   CHECK(of("loss_slope", {{"from", 1}, {"to", 5}}) == doctest::Approx(-1));
   CHECK(of("largest_loss", {}) == doctest::Approx(c / 0.3));
   CHECK(of("largest_loss_amplitude", {}) == doctest::Approx(0.3));
+  CHECK(of("largest_smoother_loss", {}) == doctest::Approx(c / 0.5));
+  CHECK(of("largest_smoother_loss_amplitude", {}) == doctest::Approx(0.5));
   // The median of the last three is that at 0.35. Averaged over 18 half cycles the last is that at 0.5.
   CHECK(of("tail_loss_ratio", {{"last", 3}}) == doctest::Approx(0.3 / 0.35));
   CHECK(of("smoothing_ratio", {}) == doctest::Approx(0.3 / 0.5));
@@ -201,10 +220,6 @@ TEST_CASE("measures of the windows are what they are for impacts made by hand") 
   // From row 70 on every other half cycle is without, and three in a row have two at most.
   CHECK(of("first_missed", {}) == doctest::Approx(amplitude(70)));
   CHECK(of("failure_for_good", {}) == doctest::Approx(amplitude(70)));
-  Run fewer = run;
-  for (std::size_t row = 30; row < 40; ++row) fewer.half_cycles->impacts[row] = 3;
-  CHECK(measured("impacts_ratio", {{"amplitude", amplitude(29.5)}, {"half_cycles", 10}}, {run, fewer}) ==
-        doctest::Approx(0.5));
 }
 
 TEST_CASE("measures of speeds and of stuck phases are what they are for contacts made by hand") {
@@ -373,23 +388,54 @@ TEST_CASE("a first missed impact is put in proportion to another scene's") {
   CHECK(measured("first_missed_ratio", {}, {sooner, later}) == doctest::Approx(3.5 / 2));
 }
 
-TEST_CASE("a smaller step is better by the sum of its amplitudes' errors") {
+TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") {
   Scene scene;
   scene.mass_ratio = 0.1;
   scene.wall_stiffness = 100;
   scene.until_time = 30;
   const Run exact = simulate(scene, Exact{}, Record{});
-  const auto error = [&](double step) {
-    const Run run = simulate(scene, Cem{.time_step = step}, Record{});
+  const auto error = [&](double step, bool locate) {
+    const Run run = simulate(scene, Cem{.time_step = step, .locate = locate}, Record{});
     double sum = 0;
     for (std::size_t row = 0; row < exact.half_cycles->amplitude.size(); ++row)
       sum += std::abs(run.half_cycles->amplitude.at(row) - exact.half_cycles->amplitude[row]);
     return sum;
   };
   const double contact = pi / std::sqrt(scene.wall_stiffness * 1.1 / 0.1);
-  CHECK(measured("step_refinement", {{"steps_per_contact", 20}, {"factor", 5}},
-                 {simulate(scene, Exact{}, {true, true, true})}) ==
-        doctest::Approx(error(contact / 20) / error(contact / 100)).epsilon(1e-9));
+  for (const bool locate : {false, true}) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (int i = 0; i < 16; ++i) {
+      const double step = contact / 20 * std::pow(5, -i / 15.0), x = std::log(step),
+                   y = std::log(error(step, locate));
+      sx += x, sy += y, sxx += x * x, sxy += x * y;
+    }
+    CHECK(measured(locate ? "step_order_located" : "step_order", {{"steps_per_contact", 20}, {"factor", 5}},
+                   {simulate(scene, Exact{}, {true, true, true})}) ==
+          doctest::Approx((16 * sxy - sx * sy) / (16 * sxx - sx * sx)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1/(1 - e)") {
+  Scene scene;
+  scene.mass_ratio = 0.02;
+  scene.until_time = 1;
+  const double grows = measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})});
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const double e : {0.4, 0.6, 0.8, 0.9}) {
+    Scene other = scene;
+    other.restitution = e;
+    other.x0 = 1.1 * bounce_down_end(e);
+    other.until_amplitude.reset();
+    other.until_time = 20;
+    const HalfCycles rows = *simulate(other, Exact{}, Record{}).half_cycles;
+    double impacts = 0;
+    for (std::size_t row = 1; row <= 5; ++row) impacts += static_cast<double>(rows.impacts.at(row)) / 5;
+    const double x = -std::log(1 - e), y = std::log(impacts);
+    sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  CHECK(grows == doctest::Approx((4 * sxy - sx * sy) / (4 * sxx - sx * sx)).epsilon(1e-9));
+  scene.mass_ratio = 100;  // stuck, a half cycle takes ten times as long
+  CHECK(std::isnan(measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})})));
 }
 
 TEST_CASE("the paper's stuck regime saves the steps that a run to the same amplitude can do without") {

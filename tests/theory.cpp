@@ -118,6 +118,20 @@ TEST_CASE("the loss factor of single impacts peaks where and as high as stated")
   CHECK(0.02 * peak_loss(0.6) == doctest::Approx(0.1019).epsilon(5e-4));
 }
 
+TEST_CASE("the product of amplitude and loss of single impacts has its peak where a scan finds it") {
+  for (double e : {0.3, 0.4, 0.6, 0.8, 0.95}) {
+    CAPTURE(e);
+    double best = 0, where = 0;
+    const double peak = peak_product_amplitude(e);
+    for (double amplitude = 0.9 * peak; amplitude < 1.1 * peak; amplitude *= 1 + 1e-6) {
+      const auto motion = single_impact(e, amplitude);
+      if (motion && amplitude * motion->loss > best) best = amplitude * motion->loss, where = amplitude;
+    }
+    CHECK(where == doctest::Approx(peak).epsilon(1e-5));
+  }
+  CHECK(std::isnan(peak_product_amplitude(0.2)));
+}
+
 TEST_CASE("a mass released by a wall at x = 0 meets the far wall as stated") {
   for (double a : {0.32, 0.5, 2.0, 6.0, 100.0, 1e6}) {
     const StuckRelease release = stuck_release(a);

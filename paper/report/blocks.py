@@ -1,5 +1,5 @@
-"""What the report's text calls for: figures with what stands beside them, numbered equations, the list of references and
-the table of all claims; as HTML and as LaTeX.
+"""What the report's text calls for: figures with what stands beside them, numbered equations, the list of references, the
+tables of the claims that the figures of a section test, at its end, and of all claims; as HTML and as LaTeX.
 
     ::: figure N             figure N of the catalogue; the lines up to ::: are its caption, in Markdown
     ::: picture LETTER FILE  another picture, an SVG of this project, with the next letter for its number
@@ -17,7 +17,7 @@ import sys
 from html import escape
 from pathlib import Path
 
-from values import Mistake, Values, stem_of
+from values import VERDICTS, Mistake, Values, stem_of
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "wasm/page"))
 from pages import own_html  # noqa: E402
@@ -124,7 +124,7 @@ def shortened(table: str) -> str:
 
 
 def parameters_of(values: Values, number: str) -> str:
-    """What the line below a figure's title says, from the head of the table that gnuplot reads."""
+    """What all curves of a figure have in common, from the head of the table that gnuplot reads."""
     table = table_of(values, number)
     text = table.with_suffix(".dat").read_text(encoding="utf-8") if table else ""
     found = re.search("^# Parameters: (.*)$", text, re.M)
@@ -226,22 +226,14 @@ class Html(Form):
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
         svg = (values.build / f"figures/{stem_of(figure)}.svg").read_text(encoding="utf-8")
-        rows = "".join(
-            f'<tr><td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
-            f'<td data-head="ours">{self.words(ours)}</td><td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
-            for _, statement, paper, ours, verdict in rows_of(values, figure.get("claims", [])))
         table = table_of(values, number)
         # The page's script makes a link of it.
         data = f'<script type="text/csv" data-file="{table.name}">\n{shortened(table.read_text(encoding="utf-8"))}</script>' if table else ""
-        claims = f"""<div class="wide rows"><table><thead><tr><th scope="col">claim</th><th scope="col">paper</th>
-<th scope="col">ours</th><th scope="col">verdict</th></tr></thead>
-<tbody>{rows}</tbody></table></div>""" if rows else ""
         cited = f' data-table="build/series/exact/{stem_of(figure)}.dat" data-sha256="{values.sha256[number]}"' if table else ""
         return raw("html", f"""<figure class="plot" id="figure-{number}" data-file="{stem_of(figure)}.svg"{cited}>
 <div class="drawing">{picture_html(svg, stem_of(figure), figure['title'])}</div>{data}
-<figcaption>""") + f"\n\n**Figure {number}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
+<figcaption>""") + f"\n\n**Figure {number}. {figure['title']}.** {caption}\n\n" + raw("html", f"""<p class="pale">{escape(made_from(values, number))}</p>
 </figcaption>
-{claims}
 </figure>{damper_html(values, number)}{own_damper_html(values, number)}""")
 
     def picture(self, letter: str, file: Path, caption: str) -> str:
@@ -250,9 +242,20 @@ class Html(Form):
         return raw("html", f'<figure class="other" id="figure-{letter}"><div class="drawing">{drawing}</div>\n<figcaption>') + \
             f"\n\n**Figure {letter}.** {caption}\n\n" + raw("html", "</figcaption></figure>")
 
+    def tested(self, figures: list, ids: list) -> str:
+        rows = "".join(
+            f'<tr><td data-head="claim">{self.words(statement)}</td><td data-head="paper">{self.words(paper)}</td>'
+            f'<td data-head="ours">{self.words(ours)}</td><td data-head="verdict" class="{verdict.replace(" ", "-")}">{verdict}</td></tr>\n'
+            for _, statement, paper, ours, verdict in rows_of(self.values, ids))
+        heads = "".join(f'<th scope="col">{head}</th>' for head in ("claim", "paper", "ours", "verdict"))
+        return raw("html", f"""<div class="wide rows tested"><table><caption>Tested by {figures_named(figures)}.</caption>
+<thead><tr>{heads}</tr></thead>
+<tbody>{rows}</tbody></table></div>""")
+
     def claims(self) -> str:
         counts = {verdict: sum(v["verdict"] == verdict for v in self.values.verdicts.values())
-                  for verdict in ("reproduced", "not reproduced", "corrected", "derived")} | {"open": len(self.values.open)}
+                  for verdict in dict.fromkeys(each for verdicts in VERDICTS.values() for each in verdicts)}
+        counts = {verdict: count for verdict, count in (counts | {"open": len(self.values.open)}).items() if count}
         sections = sections_of(self.values)
         buttons = f'<button type="button" aria-pressed="true">all {sum(counts.values())}</button>' + "".join(
             f'<button type="button" aria-pressed="false" data-verdict="{verdict.replace(" ", "-")}">{count} {verdict}</button>'
@@ -298,24 +301,45 @@ class Latex(Form):
     def figure(self, number: str, caption: str) -> str:
         values, figure = self.values, self.values.figures[number]
         picture = values.build / f"figures/{stem_of(figure)}.pdf"
-        rows = "\n\n".join(rf"\claim{{{self.words(statement)}}}{{{self.words(paper)}}}{{{self.words(ours)}}}{{{verdict}}}"
-                           for _, statement, paper, ours, verdict in rows_of(values, figure.get("claims", [])))
         made = made_from(values, number).replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
-        return raw("latex", rf"\begin{{paperfigure}}{{{number}}}{{{picture}}}") + f"\n\n**Figure {number}.** {caption}\n\n" + \
-            raw("latex", rf"\madefrom{{{made}}}" + f"\n\n{rows}\n" + r"\end{paperfigure}")
+        return raw("latex", rf"\begin{{paperfigure}}{{{number}}}{{{picture}}}") + f"\n\n**Figure {number}. {figure['title']}.** {caption}\n\n" + \
+            raw("latex", rf"\madefrom{{{made}}}" + "\n" + r"\end{paperfigure}")
 
     def picture(self, letter: str, file: Path, caption: str) -> str:
         return raw("latex", rf"\begin{{widepicture}}{{{letter}}}{{{file.stem}.pdf}}") + f"\n\n**Figure {letter}.** {caption}\n\n" + \
             raw("latex", r"\end{widepicture}")
 
-    def claims(self) -> str:
+    def table(self, rows: list) -> str:
         rows = "\n".join(rf"{self.words(statement)} & {self.words(paper)} & {self.words(ours)} & {verdict} \\"
-                         for _, statement, paper, ours, verdict in all_rows(self.values))
+                         for _, statement, paper, ours, verdict in rows)
         return raw("latex", r"\begin{claimtable}" + "\n" + rows + "\n" + r"\end{claimtable}")
+
+    def tested(self, figures: list, ids: list) -> str:
+        return f"Tested by {figures_named(figures)}:\n\n" + self.table(rows_of(self.values, ids))
+
+    def claims(self) -> str:
+        return self.table(all_rows(self.values))
 
 
 def raw(form: str, text: str) -> str:
     return f"```{{={form}}}\n{text}\n```"
+
+
+def figures_named(numbers: list) -> str:
+    *first, last = numbers
+    return f"Figures {', '.join(first)} and {last}" if first else f"Figure {last}"
+
+
+def with_claims(text: str, values: Values) -> str:
+    """The text with a line {{tested FIGURES : CLAIMS}} at the end of each section that has figures which test claims."""
+    parts = re.split(r"^(?=#+ )", text, flags=re.M)
+    for i, part in enumerate(parts):
+        tested = {number: values.figures[number]["claims"] for number in re.findall(r"^::: figure (.*)$", part, re.M)
+                  if values.figures.get(number, {}).get("claims")}
+        ids = list(dict.fromkeys(name for claims in tested.values() for name in claims))
+        if ids:
+            parts[i] = f"{part.rstrip()}\n\n{{{{tested {' '.join(tested)} : {' '.join(ids)}}}}}\n\n"
+    return "".join(parts)
 
 
 BLOCK = re.compile(r"^::: (figure|picture|equation) (.*)\n((?:(?!:::).*\n)*?):::$", re.M)
@@ -323,6 +347,7 @@ BLOCK = re.compile(r"^::: (figure|picture|equation) (.*)\n((?:(?!:::).*\n)*?):::
 
 def filled(text: str, values: Values, form) -> str:
     """The Markdown of `text` with all names and blocks put in."""
+    text = with_claims(text, values)
     for kind, words, _ in BLOCK.findall(text):
         if kind == "equation":
             if words in form.equations:
@@ -354,6 +379,9 @@ def filled(text: str, values: Values, form) -> str:
             if rest not in form.equations:
                 raise Mistake(f"{{{{{match[1]}}}}}: no equation is called {rest}")
             return form.equation_reference(rest)
+        if word == "tested":
+            figures, _, ids = rest.partition(" : ")
+            return form.tested(figures.split(), ids.split())
         if name == "references":
             return (Path(__file__).parent / "references.md").read_text(encoding="utf-8")
         if name == "claims":

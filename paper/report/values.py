@@ -3,7 +3,9 @@ counting, picking, comparing and dividing; all come from what the program made:
 
     CLAIM                   what came out for a claim, four digits; CLAIM.paper what the paper prints,
     CLAIM.low, CLAIM.high   the extremes of the ensemble, CLAIM.verdict; CLAIM.NAME a further number, NAME in "also"
-    count.claims, count.reproduced, count.not-reproduced, count.corrected, count.derived, count.open
+    power.CLAIM             percent of the smallest change that turns its verdict (paper/power.json), 0 if another ensemble
+                            does; power.CLAIM.number says of what
+    count.claims, count.SOURCE, count.SOURCE-VERDICT   of all, or of those of the source paper, quoted or ours
     scene.NAME.FIELD        a number of a scene, defaults among them, or one that a further run of the catalogue changes, of
                             its scene or engine; run.NAME.half_cycles, .impacts, .end_time
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
@@ -25,6 +27,11 @@ import json
 import re
 import subprocess
 from pathlib import Path
+
+
+# Whose claims there are, and the verdicts on them.
+VERDICTS = {"paper": ("reproduced", "not reproduced", "corrected", "derived"), "quoted": ("reproduced", "not reproduced"),
+            "ours": ("holds", "does not hold")}
 
 
 class Mistake(Exception):
@@ -137,9 +144,18 @@ class Values:
                 self.known[f"{name}.{what.replace('_', '-')}"] = number["ours"]
             self.known |= {f"{name}.{what.replace('_', '-')}": number for what, number in claim["measure"].items()
                            if isinstance(number, (int, float))}
-        self.known |= {"count.claims": len(self.verdicts), "count.open": len(self.open)}
-        for verdict in ("reproduced", "not reproduced", "corrected", "derived"):
-            self.known[f"count.{verdict.replace(' ', '-')}"] = sum(v["verdict"] == verdict for v in self.verdicts.values())
+        self.known["count.claims"] = len(self.verdicts)
+        for whose, verdicts in VERDICTS.items():
+            of_it = [self.verdicts[name]["verdict"] for name, claim in self.claims.items() if claim.get("source", "paper") == whose]
+            self.known[f"count.{whose}"] = len(of_it)
+            self.known |= {f"count.{whose}-{verdict.replace(' ', '-')}": of_it.count(verdict) for verdict in verdicts}
+        power = read(source / "paper/power.json")
+        self.known |= {f"power.{claim}": 0 for claim in power["unsettled"]}
+        turned = [(100 * number[way]["change"], f"{number['name'].replace('_', ' ')} of {number['of']}", claim)
+                  for number in power["numbers"] if number["value"] for way in ("up", "down")
+                  for claim in number.get(way, {}).get("claims", [])]
+        for change, number, claim in sorted(turned, reverse=True):
+            self.known |= {f"power.{claim}": change, f"power.{claim}.number": number}
         for each in self.catalogue["scenes"]:
             run = read(build / f"runs/exact/{each['scene']}.json")
             self.known |= {f"scene.{each['scene']}.{field}": number for field, number in run["scene"].items()}

@@ -34,23 +34,20 @@ namespace fs = std::filesystem;
 struct Verified {
   const Claim* claim;
   Spread ours;
-  NamedSpreads also;  // the further numbers that the words show
-  std::string words;  // the same in the statement's terms
-  Verdict verdict;
+  NamedSpreads also{};  // the further numbers that the templates show
+  std::string words{};  // the same in the statement's terms
+  Verdict verdict = Verdict::not_reproduced;
   Verdict recorded = Verdict::reproduced;
   bool as_recorded() const { return verdict == recorded; }
+  // One of the claim's templates, filled with what was measured.
+  std::string filled(const std::string& text) const {
+    NamedSpreads spreads = also;
+    spreads[""] = ours;
+    return in_words(text, spreads);
+  }
 };
 
-// Four significant digits, for people; the verdict file has all of them.
-std::string brief(double value) { return rounded_text(value, 4); }
-
-std::string allowed_text(const Claim& claim) {
-  const auto& [printed, below, above, reason] = claim.allowed;
-  const auto& [least, most] = printed;
-  if (least && most && *least == *most) return brief(*least) + (above > 0 ? " +- " + brief(above) : "");
-  if (least && most) return brief(*least - below) + " to " + brief(*most + above);
-  return least ? ">= " + brief(*least - below) : "<= " + brief(*most + above);
-}
+std::string allowed_text(const Claim& claim) { return allowed_in_words(claim.words, claim.allowed); }
 
 // What stands in the columns of a statement that is open.
 constexpr const char *not_measured = "not measured", *open_word = "open";
@@ -91,16 +88,27 @@ std::string open_text(const std::vector<OpenStatement>& open) {
 }
 
 std::string summary_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
-  std::size_t count[4] = {}, changed = 0, our_own = 0;
-  for (const Verified& each : all) {
-    ++count[static_cast<std::size_t>(each.verdict)];
-    changed += !each.as_recorded();
-    our_own += each.claim->source == Source::ours;
-  }
-  return std::to_string(all.size()) + " claims: " + std::to_string(count[0]) + " reproduced, " +
-         std::to_string(count[1]) + " not reproduced, " + std::to_string(count[2]) + " corrected, " +
-         std::to_string(count[3]) + " derived; " +
-         (our_own > 0 ? std::to_string(our_own) + " of them are ours, not the paper's; " : "") +
+  const auto of_source = [&](Source source, std::string_view what, std::initializer_list<Verdict> verdicts) {
+    const auto count = [&](auto is_counted) {
+      return std::to_string(std::ranges::count_if(all, is_counted));
+    };
+    const auto is_of_it = [&](const Verified& each) { return each.claim->source == source; };
+    if (source != Source::paper && std::ranges::none_of(all, is_of_it)) return std::string();
+    std::string text = count(is_of_it) + std::string(what);
+    for (const Verdict verdict : verdicts)
+      text += (verdict == *verdicts.begin() ? ": " : ", ") +
+              count([&](const Verified& each) { return is_of_it(each) && each.verdict == verdict; }) + " " +
+              std::string(verdict == Verdict::holds           ? "hold"
+                          : verdict == Verdict::does_not_hold ? "do not hold"
+                                                              : name_of(verdict));
+    return text + "; ";
+  };
+  const auto changed = std::ranges::count_if(all, [](const Verified& each) { return !each.as_recorded(); });
+  return of_source(Source::paper, " claims of the paper",
+                   {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected, Verdict::derived}) +
+         of_source(Source::quoted, " of studies that it quotes",
+                   {Verdict::reproduced, Verdict::not_reproduced}) +
+         of_source(Source::ours, " of ours", {Verdict::holds, Verdict::does_not_hold}) +
          (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + open_text(open) +
          "\n";
 }
@@ -130,11 +138,11 @@ std::string markdown_text(const std::vector<Verified>& all, const std::vector<Op
     const auto otherwise = each.claim->with_engine.find(engine);
     if (otherwise != each.claim->with_engine.end())
       text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
-              otherwise->second.explanation + "\n";
+              each.filled(otherwise->second.explanation) + "\n";
     if (each.claim->explanation.empty()) continue;
     text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
-            each.claim->explanation +
-            (each.claim->evidence.empty() ? "" : " Evidence: " + each.claim->evidence) + "\n";
+            each.filled(each.claim->explanation) +
+            (each.claim->evidence.empty() ? "" : " Evidence: " + each.filled(each.claim->evidence)) + "\n";
   }
   return text;
 }
@@ -335,12 +343,10 @@ int verify(Arguments& arguments) {
       told = now;
     }
     try {
-      NamedSpreads also;
-      for (const auto& [name, call] : claim.also) also[name] = measure(runs, call);
-      NamedSpreads spreads = also;
-      const Spread ours = spreads[""] = measure(runs, claim.measure);
-      all.push_back(
-          {&claim, ours, std::move(also), in_words(claim.words, spreads), judge(claim, ours.median)});
+      Verified& verified = all.emplace_back(Verified{.claim = &claim, .ours = measure(runs, claim.measure)});
+      for (const auto& [name, call] : claim.also) verified.also[name] = measure(runs, call);
+      verified.words = verified.filled(claim.words);
+      verified.verdict = judge(claim, verified.ours.median);
     } catch (const InvalidArguments& error) {
       std::vector<Problem> problems = error.problems();
       for (Problem& problem : problems) problem.field.insert(0, "claim " + claim.id + ": ");
@@ -386,10 +392,11 @@ Command verify_command() {
   command.footer =
       "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
       "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
-      "reproduced, not reproduced, corrected, or derived where no engine enters the number. Exit code 1 if\n"
-      "a verdict differs from the recorded one, either way. A run that was altered, contradicts itself or "
-      "is\n"
-      "of another scene or engine than the others is rejected.\n\n"
+      "reproduced, not reproduced, corrected, or derived where it cannot fail. Claims that are ours and not\n"
+      "the paper's hold or do not hold, and are counted apart. Exit code 1 if a verdict differs from the\n"
+      "recorded one, either way. A run that was altered, contradicts itself or is of another scene or "
+      "engine\n"
+      "than the others is rejected.\n\n"
       "With --power: one line for each number of the scenes, of the analysis and of what runs record, with "
       "the\n"
       "smallest change of it that turns a verdict, and the claims that it turns.\n\n"

@@ -27,7 +27,8 @@ MIDDLE, HALF = ({"name": name, "scenes": ["small"], "from": 0.5, "to": 6}
 statement = {"id": "unknown", "section": "5", "statement": "Nobody knows | yet", "printed": "perhaps", "explanation": "No engine can."}
 content = {"schema": "impact-damper/claims/1", "open": [statement], "claims": [
     claim("all", LARGEST, also={"half_range": HALF, "middle": MIDDLE}, words="{} and {middle} and {half_range}"),
-    claim("middle", MIDDLE), claim("half-range", HALF)]}
+    claim("middle", MIDDLE), claim("half-range", HALF, source="ours", verdict="does not hold", value=1e12,
+          explanation="It is {}.", evidence="e")]}
 (folder / "claims.json").write_text(json.dumps(content))
 subprocess.run([program, "run", "--scene", files / "data/scenes/small.json", "--members", "5", "-o", folder / "small.json"],
                check=True)
@@ -52,10 +53,11 @@ for number, each in zip(shown, [all_three, *alone], strict=True):
     assert abs(number - each["ours"]) < 1e-3 * number, all_three
 
 assert verdicts["open"] == ["unknown"], verdicts
-summary = "3 claims: 3 reproduced, 0 not reproduced, 0 corrected, 0 derived; all as recorded; besides, 1 statement of the paper is open"
+summary = "2 claims of the paper: 2 reproduced, 0 not reproduced, 0 corrected, 0 derived; 1 of ours: 0 hold, 1 do not hold; all as recorded; besides, 1 statement of the paper is open"
 assert done.stdout.endswith(summary + "\n"), done.stdout
 assert re.search(r"^unknown  +perhaps  +not measured  +not measured  +open$", done.stdout, re.M), done.stdout
 table = (folder / "table.md").read_text()
 assert "| unknown | 5 | Nobody knows \\| yet | perhaps | not measured | not measured | No engine can. | open |\n" in table, table
 assert summary in table
+assert "**half-range** (does not hold). It is %s. Evidence: e\n" % alone[1]["words"] in table, table
 print("further numbers agree; open is beside the claims")

@@ -44,7 +44,7 @@ commands = commands.replace("/usr/local", str(PREFIX), 1)
 
 done = shell(commands)
 demand(done.returncode == 0 and not done.stderr, done.stderr + done.stdout)
-demand("1 claims: 1 reproduced" in done.stdout and "all as recorded" in done.stdout, done.stdout)
+demand("1 claims of the paper: 1 reproduced" in done.stdout and "all as recorded" in done.stdout, done.stdout)
 picture = (FOLDER / "own/fig16.svg").read_text(encoding="utf-8")
 for text in ("Loss factor with a mass ratio of 8 %", "ν = 8 %", "loss factor η", "closed forms"):
     demand(text in picture, f"the picture does not say {text}")

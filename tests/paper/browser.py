@@ -231,7 +231,7 @@ class Report(unittest.TestCase):
         rows = """[...document.querySelectorAll(".claims tbody tr")].filter(row => !row.hidden)
           .map(row => [...row.cells].map(cell => cell.textContent))"""
         everything = self.page.does(rows)
-        for verdict in ("reproduced", "not reproduced", "corrected", "derived", "open"):
+        for verdict in ("reproduced", "not reproduced", "corrected", "derived", "holds"):
             self.page.does(f"""[...document.querySelectorAll(".claims .switches button")]
               .find(b => b.textContent.match(/^\\d+ {verdict}$/)).click()""")
             self.assertEqual(self.page.does(rows), [row for row in everything if row[-1] == verdict], verdict)

@@ -76,6 +76,67 @@ class TheText(unittest.TestCase):
             self.assertEqual(typed(allowed), [], allowed)
 
 
+def sentences_without_verdict(text: str) -> list:
+    """Sentences that say of something that it is confirmed, reproduced or the like, without the field that puts the verdict in."""
+    text = re.sub(r"^#.*$", "", re.sub(r"\A---\n(.*\n)*?---\n", "", text), flags=re.M)
+    return [sentence for paragraph in text.split("\n\n") for sentence in re.split(r"(?<=[.:;])\s+", paragraph)
+            if re.search(r"\b(confirm|corroborat|reproduc|refut|disprov|verif)", re.sub(r"\{\{.*?\}\}", "", sentence))
+            and not re.search(r"\{\{[^{}]*[.]verdict\}\}|\{\{count[.]", sentence)]
+
+
+def comparisons_without_verdict(text: str, verdicts: dict) -> list:
+    """Paragraphs and rows of tables that show what the paper prints beside what came out of a claim that is not reproduced, and
+    do not put its verdict in. In the sections on what is not reproduced and what is corrected the heading says it."""
+    found = []
+    for section in re.split(r"^(?=# )", text, flags=re.M):
+        if re.search(r"\{#(not-reproduced|corrected)\}", section.partition("\n")[0]):
+            continue
+        for part in re.split(r"\n\n|\n(?=\|)", section):
+            fields = {field.partition("|")[0].rstrip("\\") for field in re.findall(r"\{\{([^{}]*)\}\}", part)}
+            found += [name for name, verdict in verdicts.items() if verdict not in ("reproduced", "holds", "derived")
+                      and {name, f"{name}.paper"} <= fields and f"{name}.verdict" not in fields]
+    return found
+
+
+def left_out_of_their_section(text: str, verdicts: dict) -> list:
+    """Claims that are not reproduced or corrected and are not named in the section on those."""
+    def section(name: str) -> str:
+        return re.search(rf"^# [^\n]*\{{#{name}\}}\n(.*?)(?=^# )", text, re.M | re.S)[1]
+
+    return [name for name, verdict in verdicts.items() if verdict in ("not reproduced", "corrected")
+            and not re.search(rf"\{{\{{{re.escape(name)}(?=[.|}}\\])", section(verdict.replace(" ", "-")))]
+
+
+class TheVerdicts(unittest.TestCase):
+    """No sentence contradicts a verdict: who says one says it by a field."""
+
+    def setUp(self):
+        self.text = TEXT.read_text(encoding="utf-8")
+        self.verdicts = {each["claim"]: each["verdict"] for each in json.loads(VERDICTS.read_text())["verdicts"]}
+
+    def test_a_verdict_is_put_in_and_not_typed(self):
+        self.assertEqual(sentences_without_verdict(self.text), [])
+        for fault in ("The rule of thumb is confirmed, up to its last digit.", "Here {{a}} percent are reproduced.",
+                      "It is {{a.verdict}}. This reproduces the paper."):
+            self.assertEqual(len(sentences_without_verdict(fault)), 1, fault)
+        for allowed in ("It is {{a.verdict}}, and so the rest is reproduced.", "# Not reproduced {#not-reproduced}"):
+            self.assertEqual(sentences_without_verdict(allowed), [], allowed)
+
+    def test_who_compares_with_the_paper_says_the_verdict(self):
+        self.assertEqual(comparisons_without_verdict(self.text, self.verdicts), [])
+        fault = "# In short {#in-short}\n\nThe paper gives {{a.paper}}; the result here is {{a|3}}.\n"
+        self.assertEqual(comparisons_without_verdict(fault, {"a": "not reproduced"}), ["a"])
+        self.assertEqual(comparisons_without_verdict("| {{a.paper}} | {{a\\|3}} |\n| {{a.verdict}} |", {"a": "corrected"}), ["a"])
+        self.assertEqual(comparisons_without_verdict(fault, {"a": "reproduced"}), [])
+        self.assertEqual(comparisons_without_verdict(fault.replace("is {{a|3}}", "is {{a|3}}, {{a.verdict}}"), {"a": "corrected"}), [])
+
+    def test_every_claim_that_fails_is_in_its_section(self):
+        self.assertEqual(left_out_of_their_section(self.text, self.verdicts), [])
+        text = "# A {#corrected}\n{{a}}\n# B {#not-reproduced}\n{{b|2}}, {{c.paper}}\n# C\n{{d}}\n"
+        verdicts = {"a": "corrected", "b": "not reproduced", "c": "not reproduced", "d": "not reproduced", "e": "reproduced"}
+        self.assertEqual(left_out_of_their_section(text, verdicts), ["d"])
+
+
 class TheReport(unittest.TestCase):
     def test_a_changed_value_changes_the_text(self):
         before = (made("as-it-is", "--html") / "report.html").read_text(encoding="utf-8")
@@ -88,13 +149,15 @@ class TheReport(unittest.TestCase):
         other = FOLDER / "verdicts.json"
         other.write_text(json.dumps(verdicts))
         after = (made("changed", "--html", verdicts=other) / "report.html").read_text(encoding="utf-8")
-        sentence = r'the\s+result\s+here\s+is\s+<span class="value"\s+title="product-mid-range">([\d.]+)</span>'
+        sentence = r'the\s+middle,\s+here\s+<span\s+class="value"\s+title="product-mid-range">([\d.]+)</span>'
         self.assertEqual(re.search(sentence, before)[1], said)
         self.assertEqual(re.search(sentence, after)[1], "0.4321")
         further = r'title="collapse-zeta.worst">([\d.]+)</span>'
         self.assertEqual((re.search(further, before)[1], re.search(further, after)[1]), (worst, "77"))
-        count = r'title="count.not-reproduced">(\d+)<'
+        count = r'title="count.paper-not-reproduced">(\d+)<'
         self.assertEqual(int(re.search(count, after)[1]), int(re.search(count, before)[1]) - 1)
+        told = r'is\s+<span\s+class="value"\s+title="product-mid-range.verdict">([a-z ]+)</span>\s+in\s+its\s+third\s+digit'
+        self.assertEqual((re.search(told, before)[1], re.search(told, after)[1]), ("not reproduced", "reproduced"))
         row = r'<tr id="claim-product-mid-range">.*?</tr>'
         self.assertIn('class="reproduced"', re.search(row, after, re.S)[0])
 
@@ -119,7 +182,8 @@ class TheReport(unittest.TestCase):
             row = re.search(rf'<tr id="claim-{each["id"]}">.*?</tr>', page, re.S)[0]
             self.assertIn(">not measured<", row)
             self.assertIn('class="open">open<', row)
-        self.assertEqual(re.search(r'title="count.claims">(\d+)<', page)[1], str(len(stated["claims"])))
+        counted = [int(re.search(rf'title="count.{source}">(\d+)<', page)[1]) for source in ("paper", "quoted", "ours")]
+        self.assertEqual(sum(counted), len(stated["claims"]))
         self.assertEqual(page.count('<tr id="claim-'), len(stated["claims"]) + len(stated["open"]))
 
     def test_what_claims_say_is_set(self):

@@ -93,6 +93,13 @@ double peak_loss_amplitude(double restitution) { return asymmetry(restitution) /
 
 double peak_loss(double restitution) { return 4 / (pi * asymmetry(restitution)); }
 
+double peak_product_amplitude(double restitution) {
+  const double b = asymmetry(restitution);
+  const double tangent = (pi + std::sqrt(square(pi) - 32 * square(b))) / (4 * b);
+  const double sine = tangent / std::sqrt(1 + square(tangent));
+  return b / (sine * (pi - 2 * b / tangent));
+}
+
 double equal_spacing_amplitude(double restitution) {
   return std::sqrt(4 + square(asymmetry(restitution) * pi)) / (square(pi) - 4);
 }

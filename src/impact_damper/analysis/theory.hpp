@@ -35,6 +35,10 @@ double fold_amplitude(double restitution);
 // e < 1 for both.
 double peak_loss_amplitude(double restitution);
 double peak_loss(double restitution);
+// The amplitude of the peak of A eta/nu next to the fold. By the angle, V = 1/(pi - 2 b cot(theta)) and
+// A eta/nu = 4 b V^2/(pi A) = 4 V sin(theta)/pi, which is stationary where 2 b t^2 - pi t + 4 b = 0, t =
+// tan(theta): the larger root is the peak. NaN for e < 0.286, where pi^2 < 32 b^2 and there is none; e < 1.
+double peak_product_amplitude(double restitution);
 // The amplitude above which equal spacing is unstable (a multiplier of the map from impact to impact passes
 // -1): A cos(theta) = 2/(pi^2 - 4), V = pi/(pi^2 - 4), for every e.
 // Linearised at the fixed point, the map from one departure (phase, speed) to the next is

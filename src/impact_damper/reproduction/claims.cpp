@@ -75,7 +75,10 @@ MeasureCall read_measure(ObjectReader object) {
 }
 
 constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected,
-                           Verdict::derived};
+                           Verdict::derived,    Verdict::holds,          Verdict::does_not_hold};
+
+bool agrees(Verdict verdict) { return verdict == Verdict::reproduced || verdict == Verdict::holds; }
+bool is_of_ours(Verdict verdict) { return verdict == Verdict::holds || verdict == Verdict::does_not_hold; }
 
 // By the kind of what is printed, or a value or range with a tolerance of its own.
 Allowed read_allowed(ObjectReader& object) {
@@ -111,8 +114,9 @@ Allowed read_allowed(ObjectReader& object) {
   return allowed;
 }
 
-void read_words(ObjectReader& object, Claim& claim) {
-  std::set<std::string, std::less<>> names;
+using Names = std::set<std::string, std::less<>>;  // of what a claim measures beside its own number
+
+void read_words(ObjectReader& object, Claim& claim, Names& names) {
   if (auto also = object.optional_object("also")) {
     for (const std::string& name : also->keys()) {
       claim.also[name] = read_measure(also->required_object(name));
@@ -121,7 +125,13 @@ void read_words(ObjectReader& object, Claim& claim) {
     }
   }
   if (!object.optional("words", claim.words, some_text)) return;
-  if (const auto problem = problem_of_words(claim.words, names)) object.reject("words", *problem);
+  if (const auto problem = problem_of_words(claim.words, names, Fields::needed))
+    object.reject("words", *problem);
+}
+
+void require_explanation(ObjectReader& object, std::string_view key, std::string& text, const Names& names) {
+  if (!object.required(key, text, some_text)) return;
+  if (const auto problem = problem_of_words(text, names, Fields::allowed)) object.reject(key, *problem);
 }
 
 Claim read_claim(ObjectReader& object) {
@@ -130,10 +140,11 @@ Claim read_claim(ObjectReader& object) {
   object.required("section", claim.section, some_text);
   object.required("statement", claim.statement, some_text);
   object.required("printed", claim.printed, some_text);
-  object.optional("source", claim.source, {Source::paper, Source::ours});
+  object.optional("source", claim.source, {Source::paper, Source::quoted, Source::ours});
   claim.allowed = read_allowed(object);
   claim.measure = read_measure(object.required_object("measure"));
-  read_words(object, claim);
+  Names names;
+  read_words(object, claim, names);
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
   const bool recorded = object.required("verdict", claim.recorded, verdicts);
   if (auto engines = object.optional_object("with_engine")) {
@@ -142,16 +153,20 @@ Claim read_claim(ObjectReader& object) {
       if (!otherwise) continue;
       Claim::Otherwise& read = claim.with_engine[std::string(engine)];
       otherwise->required("verdict", read.recorded, verdicts);
-      otherwise->required("explanation", read.explanation, some_text);
+      require_explanation(*otherwise, "explanation", read.explanation, names);
     }
   }
   if (!recorded) {
     for (const std::string_view key : {"corrected", "explanation", "evidence"}) object.has(key);
     return claim;  // which of them belong there depends on the verdict
   }
-  if (claim.recorded != Verdict::reproduced) {
-    object.required("explanation", claim.explanation, some_text);
-    if (claim.recorded != Verdict::derived) object.required("evidence", claim.evidence, some_text);
+  if (is_of_ours(claim.recorded) != (claim.source == Source::ours))
+    object.reject("verdict",
+                  "must be \"holds\" or \"does not hold\" if, and only if, the source is \"ours\", got " +
+                      in_quotes(name_of(claim.recorded)) + " with " + in_quotes(name_of(claim.source)));
+  if (!agrees(claim.recorded)) {
+    require_explanation(object, "explanation", claim.explanation, names);
+    if (claim.recorded != Verdict::derived) require_explanation(object, "evidence", claim.evidence, names);
   }
   const bool corrected = object.has("corrected");
   if ((claim.recorded == Verdict::corrected) != corrected) {
@@ -207,6 +222,10 @@ std::string_view name_of(Verdict verdict) {
       return "corrected";
     case Verdict::derived:
       return "derived";
+    case Verdict::holds:
+      return "holds";
+    case Verdict::does_not_hold:
+      return "does not hold";
   }
   return {};
 }
@@ -215,6 +234,8 @@ std::string_view name_of(Source source) {
   switch (source) {
     case Source::paper:
       return "paper";
+    case Source::quoted:
+      return "quoted";
     case Source::ours:
       return "ours";
   }
@@ -244,8 +265,9 @@ Verdict judge(const Claim& claim, double ours) {
            !(interval.most && !(ours <= *interval.most + above));
   };
   const Allowed& allowed = claim.allowed;
-  if (lies_in(allowed.printed, allowed.below, allowed.above))
-    return claim.recorded == Verdict::derived ? Verdict::derived : Verdict::reproduced;
+  const bool is_allowed = lies_in(allowed.printed, allowed.below, allowed.above);
+  if (claim.source == Source::ours) return is_allowed ? Verdict::holds : Verdict::does_not_hold;
+  if (is_allowed) return claim.recorded == Verdict::derived ? Verdict::derived : Verdict::reproduced;
   if (claim.corrected && lies_in(*claim.corrected, 0, 0)) return Verdict::corrected;
   return Verdict::not_reproduced;
 }

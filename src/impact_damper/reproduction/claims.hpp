@@ -11,16 +11,19 @@
 //
 // Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
 // "range" (either end null for none) with a "tolerance" and its "reason" take the place of kind and digits.
-// "source": "ours" marks a claim that is not the paper's but ours.
+// "source" says whose claim it is if not the paper's: "quoted" marks our reading of what the paper quotes
+// from an earlier study, "ours" a claim of this project. What is not in the paper cannot be reproduced: ours
+// "holds" or "does not hold".
 //
 // Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
 // and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method
 // that finds contact at whole steps, with its default step; locating touch and release it has no exceptions.
 //
-// A claim recorded as "not reproduced" or "corrected" has an "explanation" and "evidence", and a corrected
-// one the "corrected" interval [least, most] that takes the place of what is printed. One recorded as
-// "derived" has an "explanation": no engine enters its number, which confirms a derivation and measures
-// nothing.
+// A claim recorded as "not reproduced", "does not hold" or "corrected" has an "explanation" and "evidence",
+// and a corrected one the "corrected" interval [least, most] that takes the place of what is printed. One
+// recorded as "derived" has an "explanation": it cannot fail, since it follows from how something is defined
+// or from another claim, and confirms that derivation. Explanations and evidence are templates as "words" is,
+// so that the results that they name are measured ones.
 //
 // What the paper states and nothing here measures yet stands beside the claims, is listed with them and
 // counts as none of them:
@@ -41,10 +44,10 @@
 
 namespace impact_damper {
 
-enum class Verdict { reproduced, not_reproduced, corrected, derived };
-std::string_view name_of(Verdict verdict);  // "reproduced", "not reproduced", "corrected", "derived"
+enum class Verdict { reproduced, not_reproduced, corrected, derived, holds, does_not_hold };
+std::string_view name_of(Verdict verdict);  // "not reproduced" and so on
 
-enum class Source { paper, ours };  // whose claim it is
+enum class Source { paper, quoted, ours };  // whose claim it is
 std::string_view name_of(Source source);
 
 // How our value is found: a name out of measures.hpp, the runs it looks at and its numbers.
@@ -60,14 +63,14 @@ struct Claim {
   Source source = Source::paper;
   Allowed allowed;
   MeasureCall measure;
-  std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the words show
+  std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the templates show
   std::string words = "{}";                              // our result, a template of words.hpp
   std::optional<Interval> corrected;
   Verdict recorded = Verdict::reproduced;
-  std::string explanation, evidence;
+  std::string explanation, evidence;  // templates
   struct Otherwise {
     Verdict recorded = Verdict::reproduced;
-    std::string explanation;
+    std::string explanation;  // a template
   };
   std::map<std::string, Otherwise, std::less<>> with_engine;  // by the engine's name
 };
@@ -96,7 +99,7 @@ std::vector<Claim> parse_claims(const std::string& name, const std::string& text
 
 // The verdict that `ours`, the median of an ensemble, gives: if it lies in the allowed interval widened by
 // the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
-// lies in the corrected interval; else not reproduced. NaN never agrees.
+// lies in the corrected interval; else not reproduced. Ours holds or does not hold instead. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
 
 }  // namespace impact_damper

@@ -6,17 +6,19 @@
 
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
 
 namespace impact_damper {
 
-Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from, double to) {
+Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from, double to,
+                 FirstPoint first) {
   const LossFactor loss = averaged_loss_factor(half_cycles_of(run), fit);
   const std::vector<double> y = ordinate(loss, run.scene, which);
   Curve curve;
-  for (std::size_t i = 1; i < y.size(); ++i) {
+  for (std::size_t i = first == FirstPoint::counted ? 0 : 1; i < y.size(); ++i) {
     if (!(loss.amplitude[i] >= from && loss.amplitude[i] <= to)) continue;
     curve.x.push_back(loss.amplitude[i]);
     curve.y.push_back(y[i]);
@@ -77,16 +79,18 @@ double worst_spread_percent(const std::vector<Curve>& curves, double from, doubl
 
 namespace {
 
-std::pair<double, double> extremes(const std::vector<const Run*>& runs, LossOrdinate which,
-                                   const LossFactorOptions& fit, double from, double to) {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const Run* run : runs) {
-    for (const double y : loss_curve(*run, which, fit, from, to).y) {
-      least = std::min(least, y);
-      most = std::max(most, y);
+// Of the ordinates A eta_s / nu of all runs together, A in [from, to].
+template <class Find>
+Spread of_products(Runs& runs, const MeasureCall& call, FirstPoint first, Find find) {
+  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
+    std::vector<double> all;
+    for (const Run* run : group) {
+      const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, runs.analysis().loss,
+                                     number(call, "from"), number(call, "to"), first);
+      all.insert(all.end(), curve.y.begin(), curve.y.end());
     }
-  }
-  return {least, most};
+    return all.empty() ? std::nan("") : find(all);
+  });
 }
 
 using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double, int);
@@ -108,20 +112,24 @@ std::pair<double, double> highest(const Curve& curve) {
   return {curve.x[static_cast<std::size_t>(top - curve.y.begin())], *top};
 }
 
+template <FirstPoint first>
 Spread product_mid_range(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, runs.analysis().loss,
-                                        number(call, "from"), number(call, "to"));
+  return of_products(runs, call, first, [](const std::vector<double>& products) {
+    const auto [least, most] = std::ranges::minmax(products);
     return (least + most) / 2;
   });
 }
 
+template <FirstPoint first>
 Spread product_half_range(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto [least, most] = extremes(group, LossOrdinate::amplitude_times, runs.analysis().loss,
-                                        number(call, "from"), number(call, "to"));
+  return of_products(runs, call, first, [](const std::vector<double>& products) {
+    const auto [least, most] = std::ranges::minmax(products);
     return 100 * (most - least) / (most + least);
   });
+}
+
+Spread product_mean(Runs& runs, const MeasureCall& call) {
+  return of_products(runs, call, FirstPoint::left_out, mean);
 }
 
 Spread loss_slope(Runs& runs, const MeasureCall& call) {
@@ -131,16 +139,29 @@ Spread loss_slope(Runs& runs, const MeasureCall& call) {
   });
 }
 
+template <LossFactorOptions AnalysisOptions::*fit>
 Spread largest_loss(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().loss)).second;
+    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().*fit)).second;
   });
 }
 
+template <LossFactorOptions AnalysisOptions::*fit>
 Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().loss)).first;
+    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().*fit)).first;
   });
+}
+
+// Closed forms of single impacts, nu -> 0.
+Spread single_impact_fold(Runs&, const MeasureCall& call) {
+  return once(fold_amplitude(number(call, "restitution")));
+}
+Spread single_impact_peak_loss(Runs&, const MeasureCall& call) {
+  return once(number(call, "mass_ratio") * peak_loss(number(call, "restitution")));
+}
+Spread single_impact_peak_product(Runs&, const MeasureCall& call) {
+  return once(peak_product_amplitude(number(call, "restitution")));
 }
 
 Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
@@ -278,22 +299,75 @@ std::vector<Measure> loss_measures() {
        1,
        8,
        {"from", "to"},
-       product_mid_range,
+       product_mid_range<FirstPoint::left_out>,
        "mean of the least and the largest A eta_s / nu of all scenes, A in [from, to]"},
       {"product_half_range_percent",
        1,
        8,
        {"from", "to"},
-       product_half_range,
+       product_half_range<FirstPoint::left_out>,
        "half their difference, in percent of their mean"},
+      {"product_mid_range_with_first",
+       1,
+       8,
+       {"from", "to"},
+       product_mid_range<FirstPoint::counted>,
+       "product_mid_range with each curve's first point, which the release enters"},
+      {"product_half_range_with_first_percent",
+       1,
+       8,
+       {"from", "to"},
+       product_half_range<FirstPoint::counted>,
+       "product_half_range_percent with each curve's first point"},
+      {"product_mean",
+       1,
+       8,
+       {"from", "to"},
+       product_mean,
+       "mean of all A eta_s / nu of all scenes, A in [from, to]"},
       {"loss_slope",
        1,
        1,
        {"from", "to"},
        loss_slope,
        "d ln eta_s / d ln A by least squares, A in [from, to]"},
-      {"largest_loss", 1, 1, {}, largest_loss, "largest averaged eta"},
-      {"largest_loss_amplitude", 1, 1, {}, largest_loss_amplitude, "amplitude at which it is met"},
+      {"largest_loss", 1, 1, {}, largest_loss<&AnalysisOptions::loss>, "largest averaged eta"},
+      {"largest_loss_amplitude",
+       1,
+       1,
+       {},
+       largest_loss_amplitude<&AnalysisOptions::loss>,
+       "amplitude at which it is met"},
+      {"largest_smoother_loss",
+       1,
+       1,
+       {},
+       largest_loss<&AnalysisOptions::smoother_loss>,
+       "largest eta averaged over 18 half cycles"},
+      {"largest_smoother_loss_amplitude",
+       1,
+       1,
+       {},
+       largest_loss_amplitude<&AnalysisOptions::smoother_loss>,
+       "amplitude at which it is met"},
+      {"single_impact_fold",
+       0,
+       0,
+       {"restitution"},
+       single_impact_fold,
+       "amplitude below which single impacts do not exist, closed form for nu -> 0"},
+      {"single_impact_peak_loss",
+       0,
+       0,
+       {"mass_ratio", "restitution"},
+       single_impact_peak_loss,
+       "largest eta of single impacts, closed form for nu -> 0, times nu"},
+      {"single_impact_peak_product",
+       0,
+       0,
+       {"restitution"},
+       single_impact_peak_product,
+       "amplitude of the largest A eta / nu of single impacts, closed form for nu -> 0"},
       {"product_peak_amplitude",
        1,
        1,

@@ -159,9 +159,12 @@ Spread step_limit(Runs& runs, const MeasureCall&) {
   return once(low);
 }
 
-// By how much a step smaller by `factor` makes the component element method better: error of the half
-// cycles' amplitudes against the exact engine, up to t = 30, before chaos can set in.
-Spread step_refinement(Runs& runs, const MeasureCall& call) {
+// The power of the time step as which the error of the component element method falls: of the half cycles'
+// amplitudes against the exact engine, up to t = 30, before chaos can set in. The steps are spaced evenly in
+// the logarithm, 16 of them, because the error of a single one depends on where impacts happen to fall in a
+// step.
+template <bool locate>
+Spread step_order(Runs& runs, const MeasureCall& call) {
   Scene scene = runs.file(call.scenes.front()).scene;
   scene.until_time = 30;
   scene.until_amplitude.reset();
@@ -169,6 +172,7 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
   const auto error = [&](double step) {
     Cem cem;
     cem.time_step = step;
+    cem.locate = locate;
     const Run run = runs.simulated(scene, cem, Record{});
     double sum = 0;
     const std::size_t rows = std::min(run.half_cycles->amplitude.size(), exact.half_cycles->amplitude.size());
@@ -177,7 +181,13 @@ Spread step_refinement(Runs& runs, const MeasureCall& call) {
     return sum;
   };
   const double coarse = nominal_contact_time(scene) / number(call, "steps_per_contact");
-  return once(error(coarse) / error(coarse / number(call, "factor")));
+  constexpr int steps = 16;
+  Curve errors;
+  for (int i = 0; i < steps; ++i) {
+    errors.x.push_back(coarse * exponential(-logarithm(number(call, "factor")) * i / (steps - 1)));
+    errors.y.push_back(error(errors.x.back()));
+  }
+  return once(log_slope(errors));
 }
 
 }  // namespace
@@ -229,12 +239,20 @@ std::vector<Measure> model_measures() {
        {},
        step_limit,
        "largest omega h at which the component element method stays bounded, undamped, by trial"},
-      {"step_refinement",
+      {"step_order",
        1,
        1,
        {"steps_per_contact", "factor"},
-       step_refinement,
-       "error of the component element method, divided by its error with a smaller step"},
+       step_order<false>,
+       "power of the time step as which the error of the component element method falls, down to a step "
+       "smaller by a "
+       "factor"},
+      {"step_order_located",
+       1,
+       1,
+       {"steps_per_contact", "factor"},
+       step_order<true>,
+       "the same with touch and release located inside the step"},
   };
 }
 

@@ -20,10 +20,11 @@ struct Curve {
 };
 
 // One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The
-// first point is left out: row 0, which ran from the release and is less than a half cycle, is among the
-// peaks it is fitted to.
+// first point is left out unless it is asked for: row 0, which ran from the release and is less than a half
+// cycle, is among the peaks it is fitted to.
+enum class FirstPoint { left_out, counted };
 Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
-                 double to = everywhere);
+                 double to = everywhere, FirstPoint first = FirstPoint::left_out);
 
 // Slope of ln y against ln x by least squares.
 double log_slope(const Curve& curve);

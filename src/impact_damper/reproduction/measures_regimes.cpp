@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/measures_parts.hpp"
@@ -159,11 +160,32 @@ Spread rows_with_impacts(Runs& runs, const MeasureCall& call) {
   });
 }
 
-Spread impacts_ratio(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    return mean_impacts(*group[0], rows_below(*group[0], call)) /
-           mean_impacts(*group[1], rows_below(*group[1], call));
-  });
+// How the number of impacts in a half cycle that ends stuck grows as e comes closer to 1: the power of
+// 1/(1 - e) by least squares over e = 0.4, 0.6, 0.8 and 0.9, each from a release at 1.1 times the amplitude
+// above which its bounces end. At a fixed amplitude there would be no such half cycle beyond some e. NaN if a
+// scene, as one with a heavy secondary mass, has too few half cycles in that time.
+Spread stuck_impacts_growth(Runs& runs, const MeasureCall& call) {
+  const Run& base = runs.file(call.scenes.front());
+  constexpr double above = 1.1;
+  constexpr std::size_t half_cycles = 5;
+  Curve growth;
+  for (const double e : {0.4, 0.6, 0.8, 0.9}) {
+    Scene scene = base.scene;
+    scene.restitution = e;
+    scene.x0 = above * impact_damper::bounce_down_end(e);
+    scene.until_amplitude.reset();
+    scene.until_time = double(half_cycles + 1) * half_turn<double>();
+    const Run run = runs.simulated(scene, base.engine, Record{});
+    if (half_cycles_of(run).amplitude.size() <= half_cycles) return once(std::nan(""));
+    growth.x.push_back(1 / (1 - e));
+    growth.y.push_back(mean_impacts(run, {1, 1 + half_cycles}));
+  }
+  return once(log_slope(growth));
+}
+
+Spread bounce_down_closed_form(Runs&, const MeasureCall& call) {
+  const double e = number(call, "restitution");
+  return once(e <= 0.95 ? impact_damper::bounce_down_end(e) : std::nan(""));
 }
 
 Spread stuck_share(Runs& runs, const MeasureCall& call) {
@@ -382,12 +404,18 @@ std::vector<Measure> regime_measures() {
        {"amplitude", "half_cycles", "impacts"},
        rows_with_impacts,
        "share of these half cycles with just so many impacts"},
-      {"impacts_ratio",
-       2,
-       2,
-       {"amplitude", "half_cycles"},
-       impacts_ratio,
-       "mean number of impacts of the first scene, divided by the second's"},
+      {"stuck_impacts_growth",
+       1,
+       1,
+       {},
+       stuck_impacts_growth,
+       "power of 1/(1 - e) as which the impacts in a half cycle that ends stuck become more"},
+      {"bounce_down_closed_form",
+       0,
+       0,
+       {"restitution"},
+       bounce_down_closed_form,
+       "amplitude at the end of bounce-down, closed form for nu -> 0 and e <= 0.95"},
       {"longest_stuck_series",
        1,
        1,

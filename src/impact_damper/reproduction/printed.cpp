@@ -19,18 +19,26 @@ double value_of(const std::string& digits) {
   return *value;
 }
 
-// Of "approximately" a number: the unit of its last digit, at most half of the number.
-double about(const std::string& digits) { return std::min(*last_digit(digits), value_of(digits) / 2); }
+// So many units of the last digit of a number, at most a tenth of the number.
+double tolerance_of(const std::string& digits, double units) {
+  return std::min(units * *last_digit(digits), value_of(digits) / 10);
+}
 
 }  // namespace
 
 const std::vector<PrintedKind>& printed_kinds() {
   static const std::vector<PrintedKind> table{
-      {"number", 1, {}, "A number as printed: half a unit of its last digit."},
-      {"approximate", 1, {}, "Approximately a number: a unit of its last digit, at most half of the number."},
-      {"range", 2, {}, "A range: at each end a unit of its last digit, at most half of the number."},
-      {"at_least", 1, {}, "A bound as printed: half a unit of its last digit."},
-      {"at_most", 1, {}, "A bound as printed: half a unit of its last digit."},
+      {"number", 1, {}, "A number as printed: half a unit of its last digit, at most a tenth of the number."},
+      {"approximate",
+       1,
+       {},
+       "Approximately a number: a unit of its last digit, at most a tenth of the number."},
+      {"range", 2, {}, "A range: at each end a unit of its last digit, at most a tenth of the number."},
+      {"at_least",
+       1,
+       {},
+       "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
+      {"at_most", 1, {}, "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
       {"count", 1, {}, "A count: nothing to round."},
       {"all", 0, {1, 1}, "Every one, so a share of 1."},
       {"mostly", 0, {0.5, 1}, "More often than not, so a share of a half at least."},
@@ -79,16 +87,16 @@ Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digi
   if (!(first <= last)) throw std::invalid_argument("must ascend");
   allowed.printed = {first, last};
   if (kind.name == "number") {
-    allowed.below = allowed.above = *last_digit(digits[0]) / 2;
+    allowed.below = allowed.above = tolerance_of(digits[0], 0.5);
   } else if (kind.name == "approximate" || kind.name == "range") {
-    allowed.below = about(digits.front());
-    allowed.above = about(digits.back());
+    allowed.below = tolerance_of(digits.front(), 1);
+    allowed.above = tolerance_of(digits.back(), 1);
   } else if (kind.name == "at_least") {
     allowed.printed.most = none;
-    allowed.below = *last_digit(digits[0]) / 2;
+    allowed.below = tolerance_of(digits[0], 0.5);
   } else if (kind.name == "at_most") {
     allowed.printed.least = none;
-    allowed.above = *last_digit(digits[0]) / 2;
+    allowed.above = tolerance_of(digits[0], 0.5);
   }
   return allowed;
 }

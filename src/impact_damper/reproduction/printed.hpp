@@ -2,11 +2,15 @@
 // is how the paper says it, a number by its digits or a word, never what comes out here.
 //
 //   a number              half a unit of its last digit to either side: what rounding leaves open
-//   "approximately" it    a whole unit to either side, but not more than half of the number
+//   "approximately" it    a whole unit to either side, and so of "about" and "nearly" it
 //   a range               the same at each end
 //   a bound               half a unit on the side of the bound; open on the other
 //   a count               no tolerance
 //   a word                the same interval wherever the word, or one that says the same, is used
+//
+// No number allows more than a tenth of itself, so that what is printed with one digit is not held more
+// loosely than what is printed with two. A tenth is also what "proportional", "nearly one curve" and "small"
+// allow.
 //
 // The last digit of a whole number is the last that is not zero: "31" is of two digits, "10" of one.
 #pragma once

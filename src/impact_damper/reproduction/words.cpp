@@ -37,12 +37,17 @@ std::string bracketed(const std::string& median, const std::string& low, const s
   return median + unit + " (" + low + " to " + high + unit + ")";
 }
 
-std::string with_digits(const Spread& spread, double factor, int digits, const std::string& unit) {
-  if (!std::isfinite(spread.median)) return "none";
-  const auto text = [&](double value) {
-    return std::isfinite(value) ? rounded_text(factor * value + 0.0, digits) : std::string("none");  // no -0
-  };
-  return bracketed(text(spread.median), text(spread.low), text(spread.high), unit);
+// How a number of a field is written: multiplied, in so many digits, with its unit.
+struct Written {
+  double factor = 1;
+  int digits = 4;
+  std::string unit;
+};
+Written written_as(const std::string& form) {
+  if (form == "%") return {100, 3, " %"};
+  if (form == "percent") return {1, 4, " %"};
+  if (form == "degrees") return {1, 4, " degrees"};
+  return {};
 }
 
 // A whole number: each of the three rounded to it.
@@ -58,18 +63,31 @@ std::string counted(const Spread& spread, std::optional<std::int64_t> of) {
 }
 
 std::string field_text(const Field& field, const Spread& spread) {
-  if (field.form == "%") return with_digits(spread, 100, 3, " %");
   if (field.form == "count") return counted(spread, std::nullopt);
   if (const auto count = count_of(field.form)) return counted(spread, count);
-  return spread_text(spread);
+  if (!std::isfinite(spread.median)) return "none";
+  const Written how = written_as(field.form);
+  const auto text = [&](double value) {
+    return std::isfinite(value) ? rounded_text(how.factor * value + 0.0, how.digits)  // no -0
+                                : std::string("none");
+  };
+  return bracketed(text(spread.median), text(spread.low), text(spread.high), how.unit);
+}
+
+// The form of the first field that is the claim's own number; empty if there is none.
+std::string own_form(std::string_view words) {
+  for (std::size_t open = words.find('{'); open != std::string_view::npos;) {
+    const Field field = field_at(words, open);
+    if (field.name.empty()) return field.form;
+    open = words.find('{', field.end);
+  }
+  return {};
 }
 
 }  // namespace
 
-std::string spread_text(const Spread& spread) { return with_digits(spread, 1, 4, ""); }
-
 std::optional<std::string> problem_of_words(std::string_view words,
-                                            const std::set<std::string, std::less<>>& names) {
+                                            const std::set<std::string, std::less<>>& names, Fields fields) {
   bool has_field = false;
   for (std::size_t open = words.find('{'); open != std::string_view::npos;) {
     if (words.find('}', open) == std::string_view::npos) return "has a { without }";
@@ -77,11 +95,13 @@ std::optional<std::string> problem_of_words(std::string_view words,
     has_field = true;
     if (!field.name.empty() && !names.contains(field.name))
       return "must name a measure of \"also\" in braces, got " + in_quotes(field.name);
-    if (!field.form.empty() && field.form != "%" && field.form != "count" && !count_of(field.form))
-      return "must have %, count or of N behind the bar, got " + in_quotes(field.form);
+    if (!field.form.empty() && field.form != "count" && !count_of(field.form) &&
+        written_as(field.form).unit.empty())
+      return "must have %, percent, degrees, count or of N behind the bar, got " + in_quotes(field.form);
     open = words.find('{', field.end);
   }
-  if (!has_field) return "must show what is measured, {}, got none in " + in_quotes(words);
+  if (!has_field && fields == Fields::needed)
+    return "must show what is measured, {}, got none in " + in_quotes(words);
   return std::nullopt;
 }
 
@@ -97,6 +117,21 @@ std::string in_words(std::string_view words, const NamedSpreads& spreads) {
     behind = field.end;
   }
   return text.append(words.substr(behind));
+}
+
+std::string allowed_in_words(std::string_view words, const Allowed& allowed) {
+  const std::string form = own_form(words);
+  const auto& [least, most] = allowed.printed;
+  const bool is_one = least && most && *least == *most;
+  if (is_one && count_of(form) && allowed.above == 0)
+    return field_text({{}, form, 0}, {*least, *least, *least});
+  Written how = written_as(form);
+  how.digits = 4;
+  if (count_of(form)) how = {100, 4, " %"};
+  const auto text = [&](double value) { return rounded_text(how.factor * value + 0.0, how.digits); };
+  if (is_one) return text(*least) + (allowed.above > 0 ? " +- " + text(allowed.above) : "") + how.unit;
+  if (least && most) return text(*least - allowed.below) + " to " + text(*most + allowed.above) + how.unit;
+  return (least ? ">= " + text(*least - allowed.below) : "<= " + text(*most + allowed.above)) + how.unit;
 }
 
 }  // namespace impact_damper

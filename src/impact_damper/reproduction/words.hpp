@@ -2,12 +2,14 @@
 // {lower}", filled with measured numbers.
 //
 //   {}         the claim's own measure; {NAME} one of those beside it (Claim::also)
-//   {NAME|%}   as a percentage: "58 % (45 to 83 %)"
+//   {NAME|%}   a share as a percentage: "58 % (45 to 83 %)"
+//   {|percent} what is measured in percent, {|degrees} in degrees: "4.04 % (3.4 to 4.7 %)"
 //   {|of 6}    a share as a count: "all 6", "none of 6", "5 of 6"
 //   {|count}   a whole number, "no" for 0
 //
-// Numbers have four significant digits, percentages three. A number is the ensemble's median; its extremes
-// follow in brackets unless they read the same.
+// Numbers have four significant digits, shares as percentages three. A number is the ensemble's median; its
+// extremes follow in brackets unless they read the same. What is allowed is written in the unit of the
+// claim's own field.
 #pragma once
 
 #include <map>
@@ -17,19 +19,24 @@
 #include <string_view>
 
 #include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/reproduction/printed.hpp"
 
 namespace impact_damper {
 
 using NamedSpreads = std::map<std::string, Spread, std::less<>>;  // "" is the claim's own measure
 
-// "0.3344 (0.3304 to 0.3344)"; "none" where there is no number.
-std::string spread_text(const Spread& spread);
-
-// What is wrong with a template whose fields may name `names`, or absent.
+// What is wrong with a template whose fields may name `names`, or absent. One that needs fields has at least
+// one.
+enum class Fields { allowed, needed };
 std::optional<std::string> problem_of_words(std::string_view words,
-                                            const std::set<std::string, std::less<>>& names);
+                                            const std::set<std::string, std::less<>>& names, Fields fields);
 
 // The template filled. It must have no problem, and `spreads` all that it names: std::invalid_argument else.
 std::string in_words(std::string_view words, const NamedSpreads& spreads);
+
+// What lies between `least` and `most` or, where they are equal, within the tolerance of it, in the unit of
+// the first field "{}" of the template, which must have no problem: "4 to 15 %", ">= 5 degrees", "all 6", "5
+// +- 0.1".
+std::string allowed_in_words(std::string_view words, const Allowed& allowed);
 
 }  // namespace impact_damper
