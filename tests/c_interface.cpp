@@ -129,7 +129,7 @@ TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
   CHECK(time == loss.time);
   CHECK(eta == loss.eta);
   std::size_t rows_of_it = 0;
-  CHECK(impact_damper_bounce_down_end(run) == end_of_bounce_down(wanted).value());
+  CHECK(impact_damper_bounce_down_end(run) == end_of_bounce_down(wanted).value().amplitude);
   impact_damper_free(run);
 
   // What is not recorded is not there.

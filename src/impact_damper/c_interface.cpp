@@ -262,7 +262,7 @@ size_t impact_damper_loss_factor(const impact_damper_run* run, double* amplitude
 double impact_damper_bounce_down_end(const impact_damper_run* run) {
   try {
     if (run->run.scene.dampers.empty())
-      return impact_damper::as_double(impact_damper::end_of_bounce_down(run->run));
+      if (const auto end = impact_damper::end_of_bounce_down(run->run)) return end->amplitude;
   } catch (const std::exception&) {
     // Contacts were not recorded, or there was not enough memory.
   }

@@ -52,6 +52,25 @@ Scene paper_decay() {
 
 }  // namespace
 
+TEST_CASE("without viscous damping the best damping is what it is with next to none") {
+  Scene scene;
+  scene.mass_ratio = 0.3;
+  scene.restitution = 0.2;
+  scene.x0 = 2;
+  scene.until_amplitude = 0.02;
+  Exact engine;
+  engine.budget.max_time = 3000;
+  const std::vector<std::string> best{"largest_loss_factor", "amplitude_of_largest_loss_factor"};
+  scene.damping_ratio = 0;
+  const KeptNumbers none = kept(scene, best, engine);
+  scene.damping_ratio = 1e-12;
+  const KeptNumbers next_to_none = kept(scene, best, engine);
+  // Damping of 1e-12 changes an amplitude by 3e-9 in 3000 units of time.
+  for (const std::size_t i : {0u, 1u})
+    CHECK(*none.numbers[i] == doctest::Approx(*next_to_none.numbers[i]).epsilon(1e-7));
+  CHECK(*none.numbers[0] == doctest::Approx(0.5315).epsilon(1e-4));
+}
+
 TEST_CASE("time to an amplitude and loss factor of viscous damping are those of the closed form") {
   for (const double zeta : {0.004, 0.02}) {
     const Scene scene = viscous_decay(zeta);

@@ -56,7 +56,7 @@ StuckPhases stuck_phases(const Run& run, const RegimeOptions& options) {
   return phases;
 }
 
-std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& options) {
+std::optional<HalfCycleRow> end_of_bounce_down(const Run& run, const RegimeOptions& options) {
   const HalfCycles& rows = half_cycles_of(run);
   std::vector<bool> sticks(rows.amplitude.size(), false);
   for_each_stuck_part(run, options, [&](std::size_t row, double, double) { sticks[row] = true; });
@@ -65,7 +65,7 @@ std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& op
     if (sticks[row]) {
       ++series;
     } else {
-      if (series >= options.bounce_down_half_cycles) return rows.amplitude[row - 1];
+      if (series >= options.bounce_down_half_cycles) return HalfCycleRow{row - 1, rows.amplitude[row - 1]};
       series = 0;
     }
   }
@@ -87,19 +87,17 @@ ImpactFailure impact_failure(const Run& run, const RegimeOptions& options) {
   const std::size_t regular = windows.empty() ? 0 : windows.back().last;
   for (std::size_t row = std::max(regular, span / 2) + 1;
        row - span / 2 + span <= count && !failure.first_missed; ++row)
-    if (rows.impacts[row] == 0 && some_missed(row - span / 2)) failure.first_missed = rows.amplitude[row];
+    if (rows.impacts[row] == 0 && some_missed(row - span / 2))
+      failure.first_missed = {row, rows.amplitude[row]};
 
   for (std::size_t row = count < span ? 0 : count - span + 1; row-- > 1 && some_missed(row);)
-    if (rows.impacts[row] == 0) failure.for_good = rows.amplitude[row];
+    if (rows.impacts[row] == 0) failure.for_good = {row, rows.amplitude[row]};
   return failure;
 }
 
 std::size_t failure_row(const Run& run) {
-  const ImpactFailure failure = impact_failure(run);
-  const std::vector<double>& rows = run.half_cycles->amplitude;
-  const std::optional<double> amplitude = failure.first_missed ? failure.first_missed : failure.for_good;
-  if (!amplitude) return rows.size();
-  return static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+  const auto [missed, for_good] = impact_failure(run);
+  return missed ? missed->row : for_good ? for_good->row : run.half_cycles->amplitude.size();
 }
 
 std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& options) {

@@ -40,22 +40,28 @@ struct StuckPhases {
 // Needs half_cycles and contacts. Row 0, which no zero crossing began, gives none.
 StuckPhases stuck_phases(const Run& run, const RegimeOptions& options = {});
 
-// End of bounce-down: the amplitude of the last half cycle of the first unbroken series of half cycles, at
+// A half cycle of a run.
+struct HalfCycleRow {
+  std::size_t row = 0;
+  double amplitude = 0;  // divided by epsilon
+};
+
+// End of bounce-down: the last half cycle of the first unbroken series of half cycles, at
 // least bounce_down_half_cycles long, in each of which the mass sticks. Absent if there is no such series,
 // and if the run ends in it. Needs half_cycles and contacts.
-std::optional<double> end_of_bounce_down(const Run& run, const RegimeOptions& options = {});
+std::optional<HalfCycleRow> end_of_bounce_down(const Run& run, const RegimeOptions& options = {});
 
-// Impact failure: the amplitude of a half cycle without an impact; absent if there is none of the kind.
+// Impact failure: a half cycle without an impact; absent if there is none of the kind.
 struct ImpactFailure {
   // The first one after the last regular window that its neighbours do not make up for: the
   // failure_half_cycles half cycles in whose middle it lies have fewer impacts than half cycles. (In the
   // chaotic ranges at higher amplitudes a single impact may be missed too, but impacting recovers.)
-  std::optional<double> first_missed;
+  std::optional<HalfCycleRow> first_missed;
   // The first one after which, to the end of the run, any failure_half_cycles successive half cycles have
   // fewer impacts than half cycles: impacting does not recover.
-  std::optional<double> for_good;
+  std::optional<HalfCycleRow> for_good;
 };
-// Amplitudes are divided by epsilon. Needs half_cycles.
+// Needs half_cycles.
 ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
 // The row of the first missed impact, else of failure for good; the number of rows without one. Needs
 // half_cycles.

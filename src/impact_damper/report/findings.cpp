@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -81,7 +80,11 @@ void find_best_damping(Findings& findings) {
     }
     return spread_of(values);
   };
-  findings.best = {loss.eta[best], loss.amplitude[best], loss.time[best], over_losses(&LossFactor::eta),
+  findings.best = {best,
+                   loss.eta[best],
+                   loss.amplitude[best],
+                   loss.time[best],
+                   over_losses(&LossFactor::eta),
                    over_losses(&LossFactor::amplitude)};
 }
 
@@ -118,8 +121,9 @@ DamperFindings findings_of_damper(const Run& run, std::size_t number) {
     if (found.loads->contact) found.loads->contact->force *= c;
   }
   if (its.half_cycles->amplitude.empty()) return found;
-  const auto scaled = [&](const std::optional<double>& length) {
-    return length ? std::optional(*length * c) : std::nullopt;
+  const auto scaled = [&](std::optional<HalfCycleRow> half_cycle) {
+    if (half_cycle) half_cycle->amplitude *= c;
+    return half_cycle;
   };
   found.sticking_ends = scaled(end_of_bounce_down(its));
   const ImpactFailure failure = impact_failure(its);
@@ -250,8 +254,7 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   if (windows.empty()) return findings;
   findings.run = with_history(findings.run, windows);
   const std::vector<double>& time = findings.run.history->time;
-  const auto up_to = windows.size() > 1 ? windows[1].begin : std::numeric_limits<double>::infinity();
-  const auto second = static_cast<std::size_t>(std::ranges::lower_bound(time, up_to) - time.begin());
+  const std::size_t second = std::min(time.size(), static_cast<std::size_t>(windows[0].count));
   if (second > 1) findings.begin = {0, second - 1};
   if (second + 1 < time.size()) findings.chosen = {second, time.size() - 1};
   if (findings.several() && findings.chosen) {

@@ -35,6 +35,7 @@ struct Fall {
 };
 
 struct BestDamping {
+  std::size_t row = 0;                     // of Findings::loss
   double eta = 0;                          // largest local loss factor before impact failure, per radian
   double amplitude = 0;                    // at which it is met, divided by epsilon
   double time = 0;                         // when, in units of 1/Omega_n
@@ -53,7 +54,7 @@ struct Loads {
 struct DamperFindings {
   double energy = 0;  // that its impacts took, by K epsilon^2
   std::int64_t impacts = 0;
-  std::optional<double> sticking_ends;  // as in Findings
+  std::optional<HalfCycleRow> sticking_ends;  // as in Findings
   ImpactFailure failure;
   std::optional<Loads> loads;  // if it strikes a wall
 };
@@ -82,9 +83,9 @@ struct Findings {
   std::vector<LossFactor> losses_of_others;  // as `loss`
   std::optional<BestDamping> best;
 
-  std::optional<double> sticking_ends;  // amplitude, end of bounce-down
-  double stuck_time = 0;                // in all, in units of 1/Omega_n
-  std::vector<RegularWindow> windows;   // the longest of each number of impacts, most impacts first
+  std::optional<HalfCycleRow> sticking_ends;  // end of bounce-down
+  double stuck_time = 0;                      // in all, in units of 1/Omega_n
+  std::vector<RegularWindow> windows;         // the longest of each number of impacts, most impacts first
   ImpactFailure failure;
   std::int64_t most_impacts = 0;  // in one half cycle
   // Of several, by number. Of them all together there are no sticking_ends and no windows, and no contact in

@@ -64,7 +64,8 @@ SteadyRule rule_for(const Scene& scene, const Engine& engine) {
   return rule;
 }
 
-std::vector<double> frequencies_for(const Scene& scene, const Engine& engine) {
+// Ascending, without the scene's own.
+std::vector<double> other_frequencies(const Scene& scene, const Engine& engine) {
   constexpr double distinct = 5e-4;  // relative; closer ones are one
   const double locked = locked_resonance(scene), given = scene.force_frequency;
   std::vector<double> all{0.97 * given, 1.03 * given};
@@ -81,7 +82,6 @@ std::vector<double> frequencies_for(const Scene& scene, const Engine& engine) {
         !near_last)
       kept.push_back(each);
   }
-  kept.insert(std::ranges::lower_bound(kept, given), given);
   return kept;
 }
 
@@ -96,8 +96,11 @@ class Sweeper {
 
   ForcedResponse response() && { return std::move(response_); }
 
-  // Up from the scene's release, and back down.
-  void sweep_through(const std::vector<double>& frequencies) {
+  // Up from the scene's release through its own frequency and these, which ascend, and back down.
+  void sweep_through(std::vector<double> frequencies) {
+    const auto own = std::ranges::lower_bound(frequencies, scene_.force_frequency);
+    response_.given = static_cast<std::size_t>(own - frequencies.begin());
+    frequencies.insert(own, scene_.force_frequency);
     const std::vector<double> downwards(frequencies.rbegin(), frequencies.rend());
     const std::vector<SteadyState> rising = along(frequencies, release_of(scene_));
     const std::vector<SteadyState> falling = along(downwards, rising.back().state);
@@ -110,8 +113,7 @@ class Sweeper {
     const auto largest = response_.largest();
     if (!largest) return;
     std::vector<ResponsePoint>& points = response_.points;
-    const auto at = static_cast<std::size_t>(
-        std::ranges::lower_bound(points, largest->frequency, {}, &ResponsePoint::frequency) - points.begin());
+    const std::size_t at = largest->point, given = response_.given;
     struct Gap {
       std::size_t before;
       std::vector<double> frequencies;
@@ -134,9 +136,11 @@ class Sweeper {
                                      : points[gap.before + 1].falling.steady.state);
       if (!rises) std::ranges::reverse(way);
     });
-    for (const Gap& gap : gaps)
+    for (const Gap& gap : gaps) {
+      if (gap.before < given) response_.given += gap.frequencies.size();
       for (std::size_t k = 0; k < gap.frequencies.size(); ++k)
         points.push_back({gap.frequencies[k], {gap.ways[0][k], {}}, {gap.ways[1][k], {}}});
+    }
     std::ranges::sort(points, {}, &ResponsePoint::frequency);
   }
 
@@ -148,8 +152,9 @@ class Sweeper {
       std::vector<ArrivedMotion*> open;
       std::vector<double> frequencies;
       const auto largest = response_.largest();
-      for (ResponsePoint& point : response_.points) {
-        if (!point.has_two_motions() && !(largest && point.frequency == largest->frequency)) continue;
+      for (std::size_t i = 0; i < response_.points.size(); ++i) {
+        ResponsePoint& point = response_.points[i];
+        if (!point.has_two_motions() && !(largest && largest->point == i)) continue;
         for (const Way way : both_ways) {
           ArrivedMotion& motion = point.*way;
           if (!motion.is_known() || motion.is_periodic() || motion.earlier_amplitude) continue;
@@ -199,10 +204,10 @@ bool ResponsePoint::has_two_motions() const {
 
 std::optional<LargestAmplitude> ForcedResponse::largest(Way way) const {
   std::optional<LargestAmplitude> found;
-  for (const ResponsePoint& point : points) {
-    const ArrivedMotion& motion = point.*way;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ArrivedMotion& motion = points[i].*way;
     if (motion.is_known() && !(found && motion.amplitude() <= found->motion.amplitude()))
-      found = {point.frequency, motion};
+      found = {i, points[i].frequency, motion};
   }
   return found;
 }
@@ -229,14 +234,10 @@ std::vector<PointRange> ForcedResponse::two_motions() const {
 ForcedResponse forced_response(const Scene& scene, const Engine& engine, const Threads& threads,
                                const std::function<void(std::int64_t done)>& progress) {
   Sweeper sweeper(scene, engine, rule_for(scene, bounded(engine)), threads, progress);
-  sweeper.sweep_through(frequencies_for(scene, engine));
+  sweeper.sweep_through(other_frequencies(scene, engine));
   for (int round = 0; round < 2; ++round) sweeper.refine();
   sweeper.confirm();
-  ForcedResponse response = std::move(sweeper).response();
-  response.given = static_cast<std::size_t>(
-      std::ranges::lower_bound(response.points, scene.force_frequency, {}, &ResponsePoint::frequency) -
-      response.points.begin());
-  return response;
+  return std::move(sweeper).response();
 }
 
 }  // namespace impact_damper

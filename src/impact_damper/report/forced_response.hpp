@@ -38,6 +38,7 @@ struct ResponsePoint {
 
 // A point in one of the two ways.
 struct LargestAmplitude {
+  std::size_t point = 0;  // of ForcedResponse::points
   double frequency = 0;
   ArrivedMotion motion;
 };

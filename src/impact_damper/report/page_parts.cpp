@@ -94,7 +94,7 @@ std::string best_sentences(const Findings& findings) {
             range_html(quantities.length(best.amplitudes->low), quantities.length(best.amplitudes->high)) +
             ". ";
   const bool failed = findings.failure.first_missed || findings.failure.for_good;
-  if (!failed && best.amplitude == findings.loss.amplitude.back())
+  if (!failed && best.row + 1 == findings.loss.eta.size())
     text += "It is found at the end of the run: further down the damping may be better still. ";
   return text;
 }

@@ -25,11 +25,9 @@ std::string regime_table(const Findings& findings) {
                   .heads = {"Regime", "from", "to", "half cycles"},
                   .rows = {}};
   if (findings.sticking_ends && !findings.forced()) {
-    const std::vector<double>& amplitudes = findings.run.half_cycles->amplitude;
-    const auto last = std::ranges::find(amplitudes, *findings.sticking_ends);
+    const auto& [row, amplitude] = *findings.sticking_ends;
     table.rows.push_back({"bounces that end stuck to a wall", quantities.length(*findings.first_amplitude),
-                          quantities.length(*findings.sticking_ends),
-                          count_html(last - amplitudes.begin() + 1)});
+                          quantities.length(amplitude), count_html(static_cast<std::int64_t>(row + 1))});
   }
   for (const RegularWindow& window : findings.windows)
     table.rows.push_back({impacts_in_words(window.impacts), quantities.length(window.upper),
@@ -45,7 +43,7 @@ std::string sticking_sentence(const Findings& findings) {
                       percent_html(findings.stuck_time / findings.run.end_time) + " of the time. ";
   if (findings.forced()) return share;
   if (findings.sticking_ends)
-    return share + "Down to an amplitude of " + quantities.length(*findings.sticking_ends) +
+    return share + "Down to an amplitude of " + quantities.length(findings.sticking_ends->amplitude) +
            " its bounces on a wall die out before the primary mass has come back, half cycle after half "
            "cycle; there sticking ends. ";
   return share + "It does so only now and then, or to the end of the run. ";
@@ -56,15 +54,16 @@ std::string failure_sentence(const Findings& findings) {
   if (findings.forced()) return "";
   const auto& [missed, for_good] = findings.failure;
   if (missed) {
-    const std::string text = "Impacts begin to fail at an amplitude of " + quantities.length(*missed) +
+    const std::string text = "Impacts begin to fail at an amplitude of " +
+                             quantities.length(missed->amplitude) +
                              ": from there on a half cycle may pass without one";
     if (!for_good) return text + ". ";
-    return text + (for_good == missed
+    return text + (for_good->row == missed->row
                        ? ", and they do not recover. "
-                       : ", and below " + quantities.length(*for_good) + " they do not recover. ");
+                       : ", and below " + quantities.length(for_good->amplitude) + " they do not recover. ");
   }
   if (for_good)
-    return "From an amplitude of " + quantities.length(*for_good) +
+    return "From an amplitude of " + quantities.length(for_good->amplitude) +
            " on, to the end of the run, there are fewer impacts than half cycles. ";
   return "Impacts do not begin to fail within this run. ";
 }
@@ -143,7 +142,7 @@ std::string dampers_html(const Findings& findings) {
     row = {std::to_string(n + 1), quantities.length(c)};
     add(has_form, [&] { return quantities.length(peak_loss_amplitude(e) * c); });
     add(has_form, [&] { return quantities.length(fold_amplitude(e) * c); });
-    if (free) add(failed.has_value(), [&] { return quantities.length(*failed); });
+    if (free) add(failed.has_value(), [&] { return quantities.length(failed->amplitude); });
     add(lost > 0, [&] { return percent_html(found.energy / lost); });
     row.push_back(count_html(found.impacts));
     add(found.loads.has_value(), [&] { return quantities.velocity(found.loads->speed); });
@@ -158,8 +157,8 @@ std::string dampers_html(const Findings& findings) {
   if (free) text += " <i>Failed at</i> is where its impacts began to fail in this run.";
   if (const auto& stuck = findings.dampers[findings.shown].sticking_ends; free && stuck)
     text += " The bounces of damper " + std::to_string(findings.shown + 1) +
-            ", which took most, ended stuck to a wall down to an amplitude of " + quantities.length(*stuck) +
-            ".";
+            ", which took most, ended stuck to a wall down to an amplitude of " +
+            quantities.length(stuck->amplitude) + ".";
   const auto has_default = [](const SceneDamper& damper) {
     return damper.wall_stiffness == SceneDamper{}.wall_stiffness;
   };

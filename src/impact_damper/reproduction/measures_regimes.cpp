@@ -63,29 +63,33 @@ std::vector<bool> sticks(const Run& run, const RegimeOptions& regimes) {
 
 Spread bounce_down_end(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    if (const auto end = end_of_bounce_down(run, runs.analysis().regimes)) return *end;
+    if (const auto end = end_of_bounce_down(run, runs.analysis().regimes)) return end->amplitude;
     // No series of stuck half cycles has come to an end: either one still goes on or there was none.
     return sticks(run, runs.analysis().regimes).back() ? run.half_cycles->amplitude.back()
                                                        : run.half_cycles->amplitude.front();
   });
 }
 
+double amplitude_or_nan(const std::optional<HalfCycleRow>& half_cycle) {
+  return half_cycle ? half_cycle->amplitude : std::nan("");
+}
+
 Spread first_missed(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return impact_failure(run, runs.analysis().regimes).first_missed.value_or(std::nan(""));
+    return amplitude_or_nan(impact_failure(run, runs.analysis().regimes).first_missed);
   });
 }
 
 Spread failure_for_good(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
-    return impact_failure(run, runs.analysis().regimes).for_good.value_or(std::nan(""));
+    return amplitude_or_nan(impact_failure(run, runs.analysis().regimes).for_good);
   });
 }
 
 Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    return impact_failure(*group[0], runs.analysis().regimes).first_missed.value_or(std::nan("")) /
-           impact_failure(*group[1], runs.analysis().regimes).first_missed.value_or(std::nan(""));
+    return amplitude_or_nan(impact_failure(*group[0], runs.analysis().regimes).first_missed) /
+           amplitude_or_nan(impact_failure(*group[1], runs.analysis().regimes).first_missed);
   });
 }
 

@@ -52,12 +52,11 @@ std::vector<double> theory_amplitudes(double from, double to, double spacing) {
 
 // How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
 std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
-  const std::optional<double> amplitude = impact_failure(run).first_missed;
-  if (!amplitude) return loss.eta.size();
-  const std::vector<double>& rows = run.half_cycles->amplitude;
-  const auto failure = static_cast<std::size_t>(std::ranges::find(rows, *amplitude) - rows.begin());
+  const auto missed = impact_failure(run).first_missed;
+  if (!missed) return loss.eta.size();
+  const std::vector<double>& peak_time = run.half_cycles->peak_time;
   const double last =
-      run.half_cycles->peak_time[std::min(failure + static_cast<std::size_t>(span) / 2, rows.size() - 1)];
+      peak_time[std::min(missed->row + static_cast<std::size_t>(span) / 2, peak_time.size() - 1)];
   const auto behind = std::ranges::lower_bound(loss.time, last);
   return std::min(loss.eta.size(),
                   std::max<std::size_t>(2, static_cast<std::size_t>(behind - loss.time.begin())));
