@@ -299,6 +299,11 @@ plain = list(csv.DictReader(respond("exponents.csv", "lyapunov", *on_orbit, "--p
                                     "csv").splitlines()))
 demand([[float(row[key]) for row in plain] for key in ("exponent", "standard_error")] ==
        [document["exponents"], document["standard_errors"]], "exponents.csv: other numbers")
+document = examined(respond("several_orbits.json", "orbits", "--scene", "boxes.json", "--vary", "force_frequency=1:1.01",
+                            "--max-points", 4, "--max-branches", 1), "orbits of several dampers")
+demand(len(document["branches"][0]["dampers"]) == 2 and len(document["branches"][0]["values"]) > 1,
+       f"orbits of several dampers: {document['branches']}")
+
 # Of several dampers each impact contracts by its own restitution.
 boxes = ["--scene", "boxes.json", "--engine", "restitution", "--force-frequency", 0.95]
 document = examined(respond("several.json", "lyapunov", *boxes, "--periods", 10, "--discard", 0), "exponents of several dampers")

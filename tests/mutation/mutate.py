@@ -172,7 +172,8 @@ class Tree:
 
 def first_failure(test, out):
     if test == "cli":
-        found = re.search(r"The following tests FAILED:\s+\d+ - (.*) \(", out)
+        found = (re.search(r"^FAILED \d+ (.*)", out, re.MULTILINE) or  # tests/cli/command_lines.py
+                 re.search(r"The following tests FAILED:\s+\d+ - (.*) \(", out))
         return found[1] if found else "cli"
     found = re.search(r"^TEST CASE:\s+(.*)", out, re.MULTILINE)
     return f"{test}: {found[1]}" if found else f"{test}: crashed"
