@@ -73,13 +73,14 @@ SceneState release_of(const Scene& scene) {
 }
 
 Scene released_from(Scene scene, const SceneState& state) {
-  scene.x0 = state.x;
-  scene.v0 = state.v;
-  scene.y0 = state.y;
-  scene.w0 = state.w;
+  const auto allowed = [](double value) { return is_too_small(value) ? 0 : value; };
+  scene.x0 = allowed(state.x);
+  scene.v0 = allowed(state.v);
+  scene.y0 = allowed(state.y);
+  scene.w0 = allowed(state.w);
   for (std::size_t n = 0; n < state.dampers.size(); ++n) {
-    scene.dampers[n].y0 = state.dampers[n].y;
-    scene.dampers[n].w0 = state.dampers[n].w;
+    scene.dampers[n].y0 = allowed(state.dampers[n].y);
+    scene.dampers[n].w0 = allowed(state.dampers[n].w);
   }
   return scene;
 }

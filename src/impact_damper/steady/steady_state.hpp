@@ -155,7 +155,7 @@ class ForcedScene {
 
 // The state in a row of a history.
 SceneState state_in(const History& history, std::size_t row);
-// A scene's initial state, and the scene with another one.
+// A scene's initial state, and the scene with another one, in which 0 stands for what is_too_small().
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);
 
