@@ -18,10 +18,11 @@ std::string option_of(std::string_view field) {
   return "--" + name;
 }
 
-NumberRange range_of(const SceneField& field) {
-  const double any = std::numeric_limits<double>::max();
+std::string range_of(const SceneField& field) {
+  if (field.least < 0) return "0, or a number of a magnitude >= " + number_text(least_magnitude);
   // The limits that only keep squares finite are no news to anybody until they are passed.
-  return {field.least <= -1e12 ? -any : field.least, field.most >= 1e6 ? any : field.most};
+  const double any = std::numeric_limits<double>::max();
+  return NumberRange{field.least, field.most >= 1e6 ? any : field.most}.describe("a number");
 }
 
 // An option of the command line, for all the engines that have it.
@@ -274,7 +275,7 @@ Options scene_options(Stops stops) {
   const Scene defaults;
   for (const SceneField& field : scene_fields) {
     add(option_of(field.name), "X",
-        std::string(field.meaning) + ";\n" + range_of(field).describe("a number") + ", default " +
+        std::string(field.meaning) + ";\n" + range_of(field) + ", default " +
             number_text(defaults.*field.member));
   }
   if (stops == Stops::ignored) return options;

@@ -84,8 +84,11 @@ Scene with_alone(const Scene& scene, const SceneDamper& damper) {
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range) {
-    if (range.allows(value)) return;
-    problems.push_back({std::string(name), range.describe("must be") + ", got " + number_text(value)});
+    const bool too_small = range.least < 0 && is_too_small(value);
+    if (range.allows(value) && !too_small) return;
+    const std::string allowed = too_small ? "must be 0 or of a magnitude >= " + number_text(least_magnitude)
+                                          : range.describe("must be");
+    problems.push_back({std::string(name), allowed + ", got " + number_text(value)});
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
     problems.push_back(

@@ -32,6 +32,12 @@ struct SceneDamper {
   bool operator==(const SceneDamper&) const = default;
 };
 inline constexpr std::size_t most_dampers = 1000;
+// Of what may be negative: a number closer to 0 is neither 0 nor more than the rounding errors of what the
+// others do, and its squares may underflow.
+inline constexpr double least_magnitude = 1e-30;
+constexpr bool is_too_small(double value) {
+  return value != 0 && value < least_magnitude && value > -least_magnitude;
+}
 
 struct Scene {
   double mass_ratio = 0.02;     // nu = m/M, 1e-9 to 1e6
@@ -47,7 +53,7 @@ struct Scene {
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
   // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12. (The
-  // magnitudes of x0, v0, y0, w0 and force_amplitude are at most 1e12, too.)
+  // magnitudes of x0, v0, y0, w0 and force_amplitude are 0, or least_magnitude to 1e12.)
   std::optional<double> until_time;       // stop at this time
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
   // Several dampers in place of the one above. A run then does not use the numbers of that one (mass_ratio,

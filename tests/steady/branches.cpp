@@ -150,7 +150,7 @@ TEST_CASE("a start on a branch that is known begins no other, and starts without
   State<double> start = two_impact_orbits(scene).at(0).state;
   start.w += 1e-3;
   const ParameterRange range{Parameter::force_amplitude, 0.06, 0.061};
-  const State<double> mirror_image = PoincareMap(scene, Restitution{}, 1)(start).state;
+  const State<double> mirror_image = PoincareMap(scene, Restitution{}, 1)(start)->state;
   const Branches found = found_from(scene, range, {start, mirror_image}, {.max_branches = 1});
   CHECK(end_of(found.starts[0]) == "periodic");
   CHECK(found.starts[0].branch == 0);
@@ -191,6 +191,24 @@ TEST_CASE("branches do not depend on the number of threads, and more than were a
     CHECK(one.branches[n].amplitudes == three.branches[n].amplitudes);
     CHECK(one.branches[n].branch.orbits.back().scene.x0 == three.branches[n].branch.orbits.back().scene.x0);
   }
+}
+
+TEST_CASE("where the orbit that a branch joins is not found, the branch goes on") {
+  // The secant method for a junction leads to where no orbit is found.
+  Scene scene;
+  scene.mass_ratio = 0.0375, scene.restitution = 0.469, scene.damping_ratio = 0.0475;
+  scene.wall_stiffness = 216, scene.x0 = 0, scene.y0 = 0.577;
+  scene.force_amplitude = 0.1074;
+  scene.until_time = 1;
+  const Branches found = found_from(scene, {Parameter::force_frequency, 1.09, 0.8176}, {{0, 0, 0.577, 0}},
+                                    {.max_branches = 8}, Exact{});
+  CHECK(found.branches.size() == 8);
+  for (const FollowedBranch& each : found.branches)
+    for (const Orbit& orbit : each.branch.orbits) {
+      const SceneState begin = release_of(orbit.scene);
+      const PoincareImage image = *PoincareMap(orbit.scene, orbit.engine, 2 * orbit.periods)(begin);
+      CHECK(distance(image.state, begin) <= 1e-6 * size_of(begin));
+    }
 }
 
 TEST_CASE("what is not valid is rejected, with its fields") {

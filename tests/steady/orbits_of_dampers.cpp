@@ -85,10 +85,9 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
     State<double> start{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0.1, 0.9),
                         random.uniform(-1, 1)};
     if (rigid && random.chance(0.2)) start.y = start.w = 0;
-    const PoincareImage one = PoincareMap(scene, engine, half_periods)(start, with_parameters),
-                        list = PoincareMap(as_list(scene), engine, half_periods)(as_list(start),
-                                                                                 with_parameters);
-    REQUIRE(list.stop_reason == one.stop_reason);
+    const PoincareImage one = *PoincareMap(scene, engine, half_periods)(start, with_parameters),
+                        list = *PoincareMap(as_list(scene), engine, half_periods)(as_list(start),
+                                                                                  with_parameters);
     double scale = 1;
     for (const StateVector& row : one.by_state)
       for (const double entry : row) scale = std::max(scale, std::fabs(entry));
@@ -126,9 +125,9 @@ TEST_CASE("half a period of several dampers applied twice is a period") {
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
     const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
     const SceneState start = settled(scene, engine).state;
-    const PoincareImage whole = PoincareMap(scene, engine, 2)(start);
+    const PoincareImage whole = *PoincareMap(scene, engine, 2)(start);
     const PoincareMap half(scene, engine, 1);
-    const PoincareImage first = half(start), second = half(first.state);
+    const PoincareImage first = *half(start), second = *half(first.state);
     CHECK(farthest(vector_of(second.state), vector_of(whole.state)) < 1e-10);
     CHECK(whole.impacts.size() == first.impacts.size() + second.impacts.size());
     for (std::size_t j = 0; j < 6; ++j) {
@@ -148,7 +147,7 @@ TEST_CASE("the nearest miss of several dampers is that of their samples") {
         two_dampers(random.uniform(0.1, 0.6), random.uniform(0.6, 1.4), random.uniform(0.5, 3), 0.2);
     const SceneState start = release_of(scene);
     const PoincareMap map(scene, Restitution{}, 4);
-    const PoincareImage image = map(start, with_parameters);
+    const PoincareImage image = *map(start, with_parameters);
     scene.until_time = map.duration();
     const Run run = simulate(
         scene, Restitution{},
@@ -179,8 +178,7 @@ TEST_CASE("a stable orbit of two dampers is what simulation comes to, as fast as
     const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
     const SteadyState steady = settled(scene, engine);
     REQUIRE(steady.period == 1);
-    const Orbit orbit = find_orbit(scene, engine, 1, steady.state);
-    REQUIRE(orbit.end == OrbitEnd::converged);
+    const Orbit orbit = *find_orbit(scene, engine, 1, steady.state);
     CHECK(orbit.symmetric);
     CHECK(orbit.stable());
     CHECK(orbit.multipliers.size() == 6);
@@ -192,8 +190,7 @@ TEST_CASE("a stable orbit of two dampers is what simulation comes to, as fast as
     SceneState guess = steady.state;
     guess.x += 1e-3;
     guess.dampers[1].w -= 1e-3;
-    const Orbit again = find_orbit(scene, engine, 1, guess);
-    REQUIRE(again.end == OrbitEnd::converged);
+    const Orbit again = *find_orbit(scene, engine, 1, guess);
     REQUIRE(again.residuals.size() > 3);
     CHECK(distance(release_of(again.scene), release_of(orbit.scene)) < 1e-9);
     const auto& r = again.residuals;
@@ -210,15 +207,14 @@ TEST_CASE("a Neimark-Sacker point of two dampers is where simulation leaves the 
   for (const int side : {0, 1}) {
     Scene near = at->orbit.scene;
     near.force_frequency = at->parameter + (side == 0 ? -1e-3 : 1e-3);
-    const Orbit orbit = find_orbit(near, Restitution{}, 1, release_of(near), {.symmetric = true});
-    REQUIRE(orbit.end == OrbitEnd::converged);
+    const Orbit orbit = *find_orbit(near, Restitution{}, 1, release_of(near), {.symmetric = true});
     CHECK(orbit.stable() == (side == 0));
     SceneState s = release_of(orbit.scene);
     s.x += 1e-5;
     const PoincareMap map(near, Restitution{}, 2);
     double before = 0, after = 0;  // the largest departures of 40 periods, early and late
     for (int n = 0; n < 640; ++n) {
-      s = map(s).state;
+      s = map(s)->state;
       const double off = distance(s, release_of(orbit.scene));
       if (n < 40) before = std::max(before, off);
       if (n >= 600) after = std::max(after, off);
@@ -286,8 +282,7 @@ TEST_CASE(
   CHECK(rigid.branches.empty());
   const SteadyState steady = settled(scene, Exact{});
   REQUIRE(steady.period);
-  const Orbit orbit = find_orbit(scene, Exact{}, int(*steady.period), steady.state);
-  REQUIRE(orbit.end == OrbitEnd::converged);
+  const Orbit orbit = *find_orbit(scene, Exact{}, int(*steady.period), steady.state);
   CHECK_FALSE(orbit.stable());
 }
 
@@ -343,8 +338,7 @@ TEST_CASE("a mass that sticks while phase 0 passes comes to stick once") {
   scene.y0 = 0.4;
   const SteadyState steady = settled(scene, Restitution{});
   REQUIRE(steady.period == 1);
-  const Orbit orbit = find_orbit(scene, Restitution{}, 1, steady.state);
-  REQUIRE(orbit.end == OrbitEnd::converged);
+  const Orbit orbit = *find_orbit(scene, Restitution{}, 1, steady.state);
   CHECK(orbit.scene.y0 * (1 - orbit.scene.y0) == 0);
   CHECK(orbit.sticking == 2);
 }

@@ -90,8 +90,7 @@ TEST_CASE("the derivative agrees with differences in extended precision, for eve
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Case c = random_case(seed);
     const PoincareMap map(c.scene, c.engine, 1 + int(seed % 3));
-    const PoincareImage image = map(c.start, with_parameters);
-    REQUIRE(image.stop_reason == StopReason::time);
+    const PoincareImage image = *map(c.start, with_parameters);
     // Near grazing, and where changes grow much, differences are no reference.
     if (image.slowest_impact && *image.slowest_impact < 0.02) continue;
     if (image.nearest_miss && *image.nearest_miss < 1e-3) continue;
@@ -155,7 +154,7 @@ TEST_CASE("a mass that is pressed against its wall at phase 0 only adds to the m
     Case c = random_case(seed);
     c.start = {-std::fabs(c.start.x) - 0.5, c.start.v, 0, 0};
     if (!(-2 * c.scene.damping_ratio * c.start.v - c.start.x > 0)) continue;
-    const PoincareImage image = PoincareMap(c.scene, Restitution{}, 1 + int(seed % 2))(c.start);
+    const PoincareImage image = *PoincareMap(c.scene, Restitution{}, 1 + int(seed % 2))(c.start);
     const double share = c.scene.mass_ratio / (1 + c.scene.mass_ratio);
     for (const StateVector& row : image.by_state) {
       CHECK(row[2] == doctest::Approx(share * row[0]).epsilon(1e-9).scale(1e-3));
@@ -174,9 +173,9 @@ TEST_CASE("a mass that is pressed against its wall at phase 0 only adds to the m
 TEST_CASE("two half periods are one period, with the derivative") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Case c = random_case(seed);
-    const PoincareImage half = PoincareMap(c.scene, c.engine, 1)(c.start),
-                        whole = PoincareMap(c.scene, c.engine, 2)(c.start),
-                        again = PoincareMap(c.scene, c.engine, 1)(half.state);
+    const PoincareImage half = *PoincareMap(c.scene, c.engine, 1)(c.start),
+                        whole = *PoincareMap(c.scene, c.engine, 2)(c.start),
+                        again = *PoincareMap(c.scene, c.engine, 1)(half.state);
     if (whole.slowest_impact.value_or(1) < 0.02 || whole.nearest_miss.value_or(1) < 1e-3) continue;
     const StateVector a = vector_of(whole.state), b = vector_of(again.state);
     const double scale = std::max(1.0, largest(whole.by_state));
@@ -198,7 +197,7 @@ TEST_CASE("volumes contract as the divergence and the impacts tell") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Case c = random_case(seed);
     const PoincareMap map(c.scene, c.engine, 2);
-    const PoincareImage image = map(c.start);
+    const PoincareImage image = *map(c.start);
     const Run run = simulate(begun_at(map.scene(), c.start), c.engine,
                              {.half_cycles = false, .impacts = true, .contacts = true});
     const bool sticks = has_rigid_walls(c.engine) && !run.contacts->begin.empty();
@@ -230,7 +229,7 @@ TEST_CASE("the derivative grows as one divided by the speed of a grazing impact"
   for (double offset = 0.0505; offset < 0.09; offset = 0.05 + (offset - 0.05) * 4) {
     // x of the steady state is 0.45 sin(t/2); y = 1/2 + offset - x turns at its largest.
     const State<double> start{0, 0.225, 0.5 + offset, -0.225};
-    const PoincareImage image = PoincareMap(scene, Restitution{}, 2)(start);
+    const PoincareImage image = *PoincareMap(scene, Restitution{}, 2)(start);
     REQUIRE(image.impacts.size() >= 1);
     REQUIRE(image.slowest_impact);
     speeds.push_back(*image.slowest_impact);
@@ -241,7 +240,7 @@ TEST_CASE("the derivative grows as one divided by the speed of a grazing impact"
     CHECK(speeds[i] > 1.5 * speeds[i - 1]);
     CHECK(sizes[i] * speeds[i] == doctest::Approx(sizes[i - 1] * speeds[i - 1]).epsilon(0.2));
   }
-  const PoincareImage none = PoincareMap(scene, Restitution{}, 2)({0, 0.225, 0.5, -0.225});
+  const PoincareImage none = *PoincareMap(scene, Restitution{}, 2)({0, 0.225, 0.5, -0.225});
   CHECK(none.impacts.empty());
   CHECK(!none.slowest_impact);
   CHECK(*none.nearest_miss == doctest::Approx(0.05).epsilon(1e-12));
@@ -252,7 +251,7 @@ TEST_CASE("the nearest miss is that of densely sampled runs") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const Case c = random_case(seed);
     const PoincareMap map(c.scene, c.engine, 2);
-    const PoincareImage image = map(c.start);
+    const PoincareImage image = *map(c.start);
     if (image.sticking > 0) continue;
     const std::int64_t count = 200'000;
     const Run run = simulate(begun_at(map.scene(), c.start), c.engine,

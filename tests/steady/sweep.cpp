@@ -260,7 +260,7 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
     REQUIRE(!steady.period);
     CHECK(steady.measured_periods == 14);  // in blocks of one and of two
     const State<double> begin =
-        forced.pass_periods(forced.pass_periods(release_of(scene)).states.back()).states.back();
+        forced.pass_periods(forced.pass_periods(release_of(scene))->states.back())->states.back();
     constexpr std::int64_t count = 14 * 2000;
     const History history = followed(scene, engine, begin, 14, count + 1);
     std::complex<double> sum = 0;
@@ -322,7 +322,7 @@ TEST_CASE("a steady motion of several dampers is that of one run, and carries it
   scene.dampers = {{.mass_ratio = 0.03, .y0 = 0.5}, {.mass_ratio = 0.02, .clearance = 2.5, .y0 = 1}};
   for (const Engine& engine : {rigid, compliant}) {
     const ForcedScene forced(scene, engine);
-    const auto passed = forced.pass_periods(release_of(scene));
+    const auto passed = *forced.pass_periods(release_of(scene));
     Scene all = scene;
     all.until_time = 4 * period_of(scene);
     const Run run = simulate(all, engine, {.half_cycles = false, .history = {{0, *all.until_time, 5}}});
@@ -349,8 +349,8 @@ TEST_CASE("a state that rounding has put beyond a rigid wall is on it") {
   const ForcedScene forced(active_scene(0.9), rigid);
   for (const auto& [beyond, on] : {std::pair{-1e-15, 0.0}, {1 + 1e-15, 1.0}}) {
     const double w = on == 0 ? 0.3 : -0.3;
-    const auto one = forced.pass_periods({0.2, 0.1, beyond, w}),
-               other = forced.pass_periods({0.2, 0.1, on, w});
+    const auto one = *forced.pass_periods({0.2, 0.1, beyond, w}),
+               other = *forced.pass_periods({0.2, 0.1, on, w});
     for (std::size_t i = 0; i < one.states.size(); ++i) CHECK(distance(one.states[i], other.states[i]) == 0);
   }
 }
@@ -492,8 +492,8 @@ TEST_CASE("states from period to period are those of one run") {
     Scene scene = active_scene(0.97);
     scene.damping_ratio = 0.1;  // steady, so that rounding errors are not amplified
     scene.force_amplitude = 4;  // and in contact for long
-    const auto passed = ForcedScene(scene, engine).pass_periods(release_of(scene));
-    const auto more = ForcedScene(scene, engine).pass_periods(passed.states.back());
+    const auto passed = *ForcedScene(scene, engine).pass_periods(release_of(scene));
+    const auto more = *ForcedScene(scene, engine).pass_periods(passed.states.back());
     const History history = followed(scene, engine, release_of(scene), 16, 17);
     for (std::size_t i = 0; i < 8; ++i) {
       CHECK(distance(passed.states[i], state_at(history, i + 1)) < 1e-9);

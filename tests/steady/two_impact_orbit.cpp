@@ -34,7 +34,7 @@ TEST_CASE("the restitution engine repeats the motion after half a period, mirror
     const Scene scene = random_scene(seed);
     for (const TwoImpactOrbit& orbit : two_impact_orbits(scene)) {
       if (!(orbit.state.y > 1e-3 && orbit.state.y < 1 - 1e-3)) continue;
-      const PoincareImage image = PoincareMap(scene, Restitution{}, 1)(orbit.state);
+      const PoincareImage image = *PoincareMap(scene, Restitution{}, 1)(orbit.state);
       if (image.impacts.size() != 1) continue;  // a wall was in the way
       ++compared;
       // The closed form is a difference of the linear response and a transient, each as large as that.

@@ -36,11 +36,15 @@ CemEngine<Real, Observer>::CemEngine(const Scene& scene, const Cem& options, Obs
   }
   // In contact from the beginning, by no impact: overlapping, or at rest at a wall and pressed to it, which
   // y'' tells, or y''' where that is zero to rounding: by where y is a step later, y'' h^2/2 + y''' h^3/6.
+  // In the stuck regime, where both are zero to rounding, the first derivative after them that is not tells;
+  // else the first step does.
   const State<Real>& s = initial_;
   const Real h = small_.h;
   const Real bend = acceleration(Real(0), s).q, jerk = s.v - force_.amplitude * force_.frequency;
   const bool at_rest_on_wall = (s.y == 0 || s.y == 1) && s.w == 0;
-  const Real moves = at_rest_on_wall ? bend + h / 3 * jerk : Real(0);
+  const Lead<Real> lead = lead_of_x(Real(2 * flight_.zeta), Real(1), force_, force_.phase(Real(0)), s.x, s.v);
+  const bool by_lead = stuck_speed_ && lead.order > 3;
+  const Real moves = !at_rest_on_wall ? Real(0) : by_lead ? Real(-lead.value) : Real(bend + h / 3 * jerk);
   if (s.y < 0 || (s.y == 0 && moves < 0)) wall_ = Wall::left;
   if (s.y > 1 || (s.y == 1 && moves > 0)) wall_ = Wall::right;
   stuck_ = stuck_speed_ && wall_ && at_rest_on_wall;

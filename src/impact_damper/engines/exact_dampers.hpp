@@ -131,31 +131,20 @@ class ExactOfDampers {
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (masses_.rests(i) && !masses_.held[i] && masses_.away[i] == side) enter(i);
   }
-  // The wall's force on the mass i, divided by nu_i, and its rate of change while x'' = bend.
-  struct WallForce {
-    Real force, change;
-  };
-  WallForce wall_force(std::size_t i, const Real& bend) const {
-    const auto& [stiffness, damping, modes, impact, work] = walls_[i];
-    const Real q = masses_.away[i] * masses_.u[i], w = masses_.w(i);
-    const Real force = damping * w + stiffness * q;
-    return {force, damping * (-bend - force) + stiffness * w};
+  // The walls of those in contact.
+  void list_pushed() {
+    pushed_.clear();
+    for (const std::size_t i : in_contact_)
+      pushed_.push_back({masses_.nu[i], walls_[i].stiffness, walls_[i].damping,
+                         masses_.away[i] * masses_.u[i], masses_.w(i)});
   }
-  // To which walls x'' leads the masses that rest, 1 for the left ones; where it is zero to rounding, x'''.
-  Real side_of_acceleration() const {
-    const auto f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()));
-    Real bend = f[0] - 2 * system_.zeta * v_ - x_;
-    Real size = absolute(x_) + 2 * system_.zeta * absolute(v_) + absolute(system_.forcing.amplitude);
-    for (const std::size_t i : in_contact_) {
-      const Real pushes = masses_.nu[i] * wall_force(i, Real(0)).force;
-      bend += pushes;
-      size += absolute(pushes);
-    }
-    Real tells = bend;
-    if (absolute(bend) <= 4 * std::numeric_limits<Real>::epsilon() * size) {
-      tells = f[1] - v_ - 2 * system_.zeta * bend;
-      for (const std::size_t i : in_contact_) tells += masses_.nu[i] * wall_force(i, bend).change;
-    }
+  // To which walls x'' leads the masses that rest, 1 for the left ones; where it is zero to rounding, the
+  // first derivative after it that is not.
+  Real side_of_acceleration() {
+    list_pushed();
+    const Real tells = lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing,
+                                       system_.forcing.phase(tracker_.now()), x_, v_, pushed_)
+                           .value;
     return tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0);
   }
 
@@ -261,10 +250,7 @@ class ExactOfDampers {
 
   // Several push their walls, for the length of a series or until one leaves or another meets a wall.
   void push_together() {
-    pushed_.clear();
-    for (const std::size_t i : in_contact_)
-      pushed_.push_back({masses_.nu[i], walls_[i].stiffness, walls_[i].damping,
-                         masses_.away[i] * masses_.u[i], masses_.w(i)});
+    list_pushed();
     if (ring_no_more()) return press_together();
     Piece& piece = piece_;
     if (pieces_together_ == 1) piece.set_walls(system_.zeta, system_.forcing, pushed_);

@@ -48,8 +48,10 @@ class HalfCycleTracker {
   std::int64_t complete_ = 0;
 };
 
-// On which side of zero x is from a release on: the first of x, x', x'' and x''' that is not zero tells.
-// Returns the time from which on events of x are looked for; nothing where x does not move.
+// On which side of zero x is from a release on: the first of x, x', x'' and x''' that is not zero tells. In
+// flight and in sticking no later one has to, as a release is at phase 0 of the force: x''' is f0 omega_f.
+// Returns the time from which on events of x are looked for; nothing where x does not move, or in a contact
+// moves by what comes later than x''': then the next motion tells.
 template <class Real, MotionOf<Real> Motion>
 std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
                                HalfCycleTracker<Real>& half_cycles, const Search<Real>& search) {
@@ -60,7 +62,7 @@ std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
   half_cycles.take_side(leads[order] > 0 ? 1 : -1);
   if (order < 3) return Real(0);
   const Real fourth = motion.derivative_of_x(1, half_cycles.side(), Real(0), search.span).whole.third;
-  const Real leap = begin_by_third<Real>(leads[order], fourth, search.span);
+  const Real leap = begin_by_lead<Real>(3, leads[order], fourth, search.span);
   return leap < duration ? leap : duration;
 }
 

@@ -173,7 +173,8 @@ class RestitutionOfDampers {
     return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
   }
 
-  // x'' times the mass that moves, and the side to which it leads: where x'' is zero to rounding, x''' does.
+  // x'' times the mass that moves, 0 if it is zero to rounding; and the side to which it leads or, where it
+  // is zero, the first derivative after it that is not.
   struct Acceleration {
     Real force, side;
   };
@@ -204,13 +205,9 @@ class RestitutionOfDampers {
     if (some_rest_) joined_.emplace(system_.zeta / mass_, 1 / mass_, system_.forcing);
   }
   Acceleration acceleration() const {
-    const auto f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()));
-    const Real force = f[0] - 2 * system_.zeta * v_ - x_;
-    const Real rounding =
-        4 * std::numeric_limits<Real>::epsilon() *
-        (absolute(x_) + 2 * system_.zeta * absolute(v_) + absolute(system_.forcing.amplitude));
-    const Real tells = absolute(force) > rounding ? force : Real(f[1] - v_ - 2 * system_.zeta * force);
-    return {force, tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0)};
+    const auto [order, value] = lead_of_x(Real(2 * system_.zeta), Real(1), system_.forcing,
+                                          system_.forcing.phase(tracker_.now()), x_, v_);
+    return {order == 2 ? value : Real(0), value > 0 ? Real(1) : value < 0 ? Real(-1) : Real(0)};
   }
   void stick(std::size_t i, const Real& later) {
     masses_.held[i] = true;

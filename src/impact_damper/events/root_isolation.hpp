@@ -212,12 +212,12 @@ std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const
   return root ? std::optional(root->time) : std::nullopt;
 }
 
-// How long after its beginning to begin the search for a fall of u, if u, u' and u'' are zero but for
-// rounding (M7.4): until then u has the sign of u''' there, `third`. At most `span`, for which `fourth`, a
-// bound on |u''''|, holds.
+// How long after its beginning to begin the search for a fall of u, if u and its derivatives below the
+// `order`-th are zero but for rounding (M7.4): until then u has the sign of that one there, `lead`. At most
+// `span`, for which `next`, a bound on the derivative after it, holds.
 template <class Real>
-Real begin_by_third(const Real& third, const Real& fourth, const Real& span) {
-  const Real leap = 2 * absolute(third) / fourth;
+Real begin_by_lead(std::size_t order, const Real& lead, const Real& next, const Real& span) {
+  const Real leap = Real(double(order + 1)) / 2 * absolute(lead) / next;
   return leap < span ? leap : span;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "impact_damper/base/errors.hpp"
+
 namespace impact_damper {
 
 // Eigen's EigenSolver knows eigenvectors, too, and brings a matrix into Hessenberg form first: the same
@@ -19,6 +21,7 @@ std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix
   if (largest == 0) return values;
   Eigen::RealSchur<Eigen::MatrixXd> schur(n);
   schur.computeFromHessenberg(hessenberg / largest, Eigen::MatrixXd(), false);
+  if (schur.info() != Eigen::Success) throw NumericalError("a matrix whose eigenvalues were not found");
   const Eigen::MatrixXd triangular = schur.matrixT() * largest;
 
   // On the diagonal stand real eigenvalues, and blocks of two rows for two conjugate ones.

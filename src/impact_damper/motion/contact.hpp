@@ -9,6 +9,7 @@
 #include "impact_damper/events/fall_by_ends.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/motion/contact_modes.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/motion/sustained_contact.hpp"
 
@@ -43,7 +44,7 @@ class Contact {
 
   // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
   std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
-    if (start_.y == wall_) {
+    if (start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)) {
       std::optional<End> end;
       if (system_.short_contact) end = system_.short_contact(start_of_map());
       if constexpr (forced)
@@ -62,7 +63,7 @@ class Contact {
   // The same where the short-contact map tells it, and the change of x.
   auto end_of_short_contact() const {
     using Result = typename Map::EndAndChange;
-    const auto end = system_.short_contact && start_.y == wall_
+    const auto end = system_.short_contact && start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)
                          ? system_.short_contact.template operator()<Result>(start_of_map())
                          : std::nullopt;
     if constexpr (forced)
@@ -71,11 +72,11 @@ class Contact {
   }
   // The same, certified step by step.
   std::optional<WallEvent<Real>> search_leave(const Real& horizon, Search<Real>& search) const {
-    // A mass at rest may be pressed against the wall by q''' alone.
-    Real from{0};
-    if (start_.y == wall_ && start_.w == 0) {
+    // A mass at rest may be pressed against the wall by q''', or a later derivative, alone.
+    Real from = pressed_until();
+    if (from == 0 && start_.y == wall_ && start_.w == 0) {
       const Real third = third_of_q_at_rest();
-      if (inward_ * third > 0) from = begin_by_third<Real>(third, fourth_of_q(search.span), search.span);
+      if (inward_ * third > 0) from = begin_by_lead<Real>(3, third, fourth_of_q(search.span), search.span);
     }
     const auto fall = isolate_fall<Real>([&](const Real& t) { return depth(t, search.span); }, from, horizon,
                                          search, resolution());
@@ -196,6 +197,13 @@ class Contact {
     return {start_.x, start_.v, x2, x3};
   }
 
+  // Until when a mass that rests on its wall stays in it by Lemma L7; 0 where q'' or q''' tells.
+  Real pressed_until() const {
+    if (start_.w != 0 || start_.y != wall_) return 0;
+    const ContactModes<Real, Force>& c = system_;
+    const Lead<Real> lead = lead_of_x(Real(2 * c.zeta), Real(1), c.forcing, phase_, start_.x, start_.v);
+    return lead.order > 3 && inward_ * lead.value < 0 ? pressed_at_least(lead, c.zeta, c.forcing) : Real(0);
+  }
   Real third_of_q_at_rest() const {
     const auto x = leads_of_x();
     return system_.damping * x[2] - x[3];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "impact_damper/motion/contact_modes.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
@@ -22,6 +23,7 @@ class ContactWithoutModes {
         start_(copied(start)),
         wall_(origin),
         inward_(wall == Wall::left ? -1 : 1),
+        phase_(phase),
         size_of_force_(absolute(forcing().amplitude)) {
     s_ = {start.x,
           start.v,
@@ -45,8 +47,12 @@ class ContactWithoutModes {
     if (start_.y == wall_ && start_.w == 0) {  // as in contact.hpp
       const Chain chain(*this, Real(0));
       const Real third = chain.s[3][2];
-      if (inward_ * third > 0)
-        from = begin_by_third<Real>(third, chain.bound_of_q(4, search.span), search.span);
+      const Real& zeta = exponential_.equations().zeta;
+      const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), forcing(), phase_, start_.x, start_.v);
+      if (lead.order > 3 && inward_ * lead.value < 0)
+        from = pressed_at_least(lead, zeta, forcing());
+      else if (inward_ * third > 0)
+        from = begin_by_lead<Real>(3, third, chain.bound_of_q(4, search.span), search.span);
     }
     const auto fall = isolate_fall<Real>(
         [&](const Real& t) {
@@ -140,7 +146,9 @@ class ContactWithoutModes {
   const ContactModes<Real, Force>& system_;
   const ContactExponential<Real>& exponential_;
   State<Real> start_;
-  Real wall_, inward_, size_of_force_;
+  Real wall_, inward_;
+  SinCos<Real> phase_;  // of the force at the beginning
+  Real size_of_force_;
   Vector s_;
 };
 

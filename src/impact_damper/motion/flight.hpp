@@ -82,10 +82,11 @@ class Flight {
   }
   // The same of a mass that begins at rest on a wall, and leaves it.
   std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
-    const Real leap = begin_by_jerk(search.span);
+    const Real leap = begin_by_lead_of_y(search.span);
     // If y'' differs from zero by rounding alone, its sign may be wrong: then the prediction begins after the
-    // leap, too. From an exact zero guess_by_parabola goes by y'''.
-    return met_from(lead_of_y()[2] != 0 ? leap : Real(0), leap, horizon, search);
+    // leap, too. From an exact zero guess_by_parabola goes by y''', unless that is rounding as well.
+    const bool by_jerk = lead_of_y()[2] == 0 && primary_.lead().order <= 3;
+    return met_from(by_jerk ? Real(0) : leap, leap, horizon, search);
   }
   // The same by Lemma L1, step by step.
   std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
@@ -111,7 +112,7 @@ class Flight {
           std::numeric_limits<Real>::infinity()};
     };
     // A mass that begins at rest on a wall turns there, and by rounding alone a second time.
-    const Real leap = start_.w == 0 && u_ == 0 ? begin_by_jerk(search.span) : Real(0);
+    const Real leap = start_.w == 0 && u_ == 0 ? begin_by_lead_of_y(search.span) : Real(0);
     return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
   }
   // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one.
@@ -131,13 +132,9 @@ class Flight {
     const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
-  // Whether a secondary mass at rest on the wall next to it sticks to it, pressed against it: y'' tells, or
-  // y''' where y'' is no more than the rounding errors of the terms it is the sum of.
-  bool sticks() const {
-    const auto lead = lead_of_y();
-    const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
-    return absolute(acceleration) > primary_.rounding_of_acceleration() ? acceleration < 0 : jerk < 0;
-  }
+  // Whether a secondary mass at rest on the wall next to it sticks to it, pressed against it: the first
+  // derivative of y, from y'' = -x'' on, that is not zero to rounding tells.
+  bool sticks() const { return away_ * primary_.lead().value > 0; }
   // A bound on |y''''| for a time `span` from the beginning on.
   Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
 
@@ -212,13 +209,17 @@ class Flight {
     }
     return met;
   }
-  // Where the search for the next wall begins if the mass is released at rest and leaves with y''' alone
-  // (M7.4); else 0.
-  Real begin_by_jerk(const Real& span) const {
-    const auto lead = lead_of_y();
-    const Real acceleration = away_ * lead[2], jerk = away_ * lead[3];
-    if (!(jerk > 0 && acceleration < jerk * Real(1e-6))) return 0;
-    const Real far = 2 * jerk / fourth_of_y(span), near = 1 / square_root(Real(1 + jerk / gap()));
+  // Where the search for the next wall begins if the mass is released at rest and leaves with y''', or a
+  // later derivative, alone (M7.4); else 0.
+  Real begin_by_lead_of_y(const Real& span) const {
+    const auto y = lead_of_y();
+    const Lead<Real> lead = primary_.lead();
+    const bool by_jerk = lead.order <= 3;
+    const std::size_t order = by_jerk ? 3 : lead.order;
+    const Real size = away_ * (by_jerk ? y[3] : Real(-lead.value));
+    if (!(size > 0) || (by_jerk && !(away_ * y[2] < size * Real(1e-6)))) return 0;
+    const Real far = begin_by_lead<Real>(order, size, primary_.beginning().bound(order + 1, span), span),
+               near = 1 / square_root(Real(1 + size / gap()));
     return near < far ? near : far;
   }
   // Whether the terms that a correction leaves out, of fourth order, are below rounding for x and x', too,

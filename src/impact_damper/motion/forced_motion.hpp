@@ -11,6 +11,7 @@
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/driven_series.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
@@ -126,12 +127,9 @@ class ForcedMotion {
     }
   }
 
-  // What rounding may leave of x'' at the beginning where its terms cancel: below it x'' is taken for zero
-  // (before M7.4).
-  Real rounding_of_acceleration() const {
-    return 4 * std::numeric_limits<Real>::epsilon() *
-           (oscillator_.b() * absolute(x0_) + 2 * oscillator_.a() * absolute(v0_) +
-            absolute(forcing_.amplitude));
+  // The way in which x'' and the derivatives after it lead at the beginning.
+  Lead<Real> lead() const {
+    return lead_of_x(Real(2 * oscillator_.a()), oscillator_.b(), forcing_, phase_, x0_, v0_);
   }
 
   // Whether x, or x', is proved to keep its sign in [0, t], by its ends, x and v at the last.

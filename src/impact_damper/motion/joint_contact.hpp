@@ -12,16 +12,10 @@
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
-
-// A wall that is pushed: the mass ratio nu of who pushes it, its K = k/nu and c, and q and q' now.
-template <class Real>
-struct PushedWall {
-  Real nu, stiffness, damping;
-  Real q, w;
-};
 
 // One piece at a time. It is a motion (motion.hpp); y and y' in its states mean nothing. Series are in s =
 // t/h_: their terms are h_^n/n! times the n-th derivatives by t. Whatever is passed and returned is by t.
@@ -39,6 +33,7 @@ class JointContact {
   struct Function {
     Terms terms;
     Real third;
+    std::size_t order;  // of the derivative of x, or of a mass's distance from its wall, that it is
   };
 
   // The walls are those of the piece that begins next.
@@ -75,7 +70,8 @@ class JointContact {
       q_[i] = walls[i].q;
       q_[count + i] = h_ * walls[i].w;
     }
-    const auto [sin, cos] = forcing_.phase(time);
+    phase_ = forcing_.phase(time);
+    const auto& [sin, cos] = phase_;
     const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
     Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
     const auto& over = reciprocals<Real>;
@@ -174,11 +170,14 @@ class JointContact {
   // When a function first falls through zero, in [0, until).
   std::optional<Real> fall(const Function& g, const Real& until, Search<Real>& search) const {
     Real from{0};
-    // At rest on a wall the third derivative may lead alone (M7.4).
-    const Real third = 6 * get(g.terms, 3) * (over_h_ * over_h_ * over_h_);
-    if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0 && third > 0 &&
-        2 * get(g.terms, 2) >= -rounding_of_second())
-      from = begin_by_third<Real>(third, bound(g.terms, 4), until);
+    // At rest on a wall the third derivative, or a later one, may lead alone (M7.4).
+    if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0) {
+      const std::size_t lead = order_of_lead() - g.order, order = lead > 3 ? lead : 3;
+      Real value = get(g.terms, order);
+      for (std::size_t n = order; n > 0; --n) value *= Real(double(n)) * over_h_;
+      if (value > 0 && (lead > 2 || get(g.terms, 2) >= 0))
+        from = begin_by_lead<Real>(order, value, bound(g.terms, order + 1), until);
+    }
     return fall(g, from, until, search);
   }
 
@@ -224,14 +223,15 @@ class JointContact {
     return square_root(Real(1 + all_k + most_k)) + 2 * zeta + all_c + most_c +
            (forcing ? forcing.frequency : Real(0));
   }
-  // Of h^2 x'' at the beginning, from the sizes of what it is the sum of. Where it is rounding the force is
-  // no larger than the others together.
-  Real rounding_of_second() const {
-    const std::size_t count = nu_.size();
-    Real size = h_ * h_ * absolute(get(x_, 0)) + 2 * zeta_ * h_ * absolute(get(x_, 1));
-    for (std::size_t i = 0; i < count; ++i)
-      size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
-    return 8 * std::numeric_limits<Real>::epsilon() * size;
+  // Of the derivative of x that leads at the beginning; no more than the series has.
+  std::size_t order_of_lead() const {
+    std::vector<PushedWall<Real>> walls;
+    for (std::size_t i = 0; i < nu_.size(); ++i)
+      walls.push_back({nu_[i], spring_[i] * over_h_ * over_h_, damping_[i] * over_h_, q_[i],
+                       over_h_ * q_[nu_.size() + i]});
+    const std::size_t order =
+        lead_of_x<Real>(2 * zeta_, Real(1), forcing_, phase_, get(x_, 0), over_h_ * get(x_, 1), walls).order;
+    return order > 0 && order + 1 < joint_terms ? order : joint_terms - 2;
   }
   static Real get(const Terms& terms, std::size_t n) { return terms[n / 2][n % 2]; }
   static void set(Terms& terms, std::size_t n, const Real& value) {
@@ -265,6 +265,7 @@ class JointContact {
           order == 0 ? Real(sign * get(terms, n))
                      : Real(sign * over_h_ * (Real(double(n + 1)) * get(terms, n + 1))));
     g.third = bound(g.terms, 3);
+    g.order = order;
     return g;
   }
   LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
@@ -286,6 +287,7 @@ class JointContact {
 
   Real zeta_{0};
   Force forcing_{};
+  SinCos<Real> phase_{};  // of the force, when the piece begins
   Real length_{0};
   // The unit of time of the series, a power of two, so that no number is rounded for it: the rounding would
   // be the same in every piece, and add up.

@@ -29,8 +29,14 @@ class JoinedMasses {
     // look on from `from` > 0 would find the next time that it vanishes, a period later.
     const auto start = primary_.beginning();
     const Real push = push_ * start[2], change_of_push = push_ * start[3];
-    if (push <= 0 && change_of_push < 0) return from < horizon ? std::optional(from) : std::nullopt;
-    const auto released = primary_.falls(2, push_, from, horizon, search);
+    const Lead<Real> lead = primary_.lead();
+    const bool by_lead = lead.order > 3;  // x'' and x''' are rounding errors
+    if (by_lead ? push_ * lead.value < 0 : push <= 0 && change_of_push < 0)
+      return from < horizon ? std::optional(from) : std::nullopt;
+    const Real leap = by_lead ? begin_by_lead<Real>(lead.order - 2, lead.value,
+                                                    start.bound(lead.order + 1, search.span), search.span)
+                              : Real(0);
+    const auto released = primary_.falls(2, push_, from < leap ? leap : from, horizon, search);
     if (released) turn_ = primary_.turn_before(*released);
     return released;
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -37,14 +38,16 @@ Scene at_frequency(Scene scene, double frequency) {
 
 double locked_resonance(const Scene& scene) { return 1 / square_root(1 + secondary_mass(scene)); }
 
-// Impacts in a period of the force, at the resonances from the release on, where there are more.
+// Impacts in a period of the force, at the resonances from the release on, where there are more; infinity
+// where they are so many that a budget ends the run.
 double impacts_in_a_period(const Scene& scene, const Engine& engine) {
   constexpr std::int64_t periods = 100;
   double most = 0;
   for (const double resonance : {locked_resonance(scene), 1.0}) {
     const auto watched =
         ForcedScene(at_frequency(scene, resonance), engine).watch(release_of(scene), periods);
-    most = std::max(most, double(watched.impacts[0] + watched.impacts[1]) / double(periods));
+    if (!watched) return std::numeric_limits<double>::infinity();
+    most = std::max(most, double(watched->impacts[0] + watched->impacts[1]) / double(periods));
   }
   return most;
 }

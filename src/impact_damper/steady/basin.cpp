@@ -54,7 +54,7 @@ Attractor attractor_of(const ForcedScene& scene, const SteadyState& steady, bool
                   steady.symmetric};
   if (!found.idle) found.impacts_by_damper = steady.impacts_by_damper;
   for (SceneState state = steady.state; with_states && std::ssize(found.states) < found.period;) {
-    const ForcedScene::Watched passed = scene.pass_periods(state);
+    const ForcedScene::Watched passed = *scene.pass_periods(state);  // as often before, to find the period
     for (const SceneState& each : passed.states)
       if (std::ssize(found.states) < found.period) found.states.push_back(each);
     state = passed.states.back();

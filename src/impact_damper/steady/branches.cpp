@@ -16,7 +16,7 @@ constexpr double beyond_end = 1e-3;
 
 struct PeriodicMotion {
   SteadyState steady;
-  std::optional<Orbit> orbit;
+  std::optional<Expected<Orbit, NoOrbit>> orbit;  // absent: it is not periodic
 };
 
 class BranchSearch {
@@ -38,20 +38,24 @@ class BranchSearch {
     if (motion.steady.stop_reason != StopReason::time || !motion.steady.period) return motion;
     const int periods = int(*motion.steady.period);
     const SceneState& s = motion.steady.state;
-    const ForcedScene::Watched watched = forced.watch(s, periods);
+    const auto watched = forced.watch(s, periods);
+    if (!watched) {
+      motion.steady.stop_reason = watched.failure();
+      return motion;
+    }
     SceneState centred = s;
     centred.y = 0.5 - s.x;
     centred.w = -s.v;
     for (std::size_t i = 0; i < s.dampers.size(); ++i)
-      if (watched.by_damper[i] == ImpactCounts{})
+      if (watched->by_damper[i] == ImpactCounts{})
         centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
-    if (watched.impacts == ImpactCounts{}) {
+    if (watched->impacts == ImpactCounts{}) {
       motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});
     } else if (scene.dampers.empty()) {
       motion.orbit = find_orbit(scene, engine_, periods, s);
     } else {
       motion.orbit = find_orbit(scene, engine_, periods, centred);
-      if (motion.orbit->end != OrbitEnd::converged) motion.orbit = find_orbit(scene, engine_, periods, s);
+      if (!*motion.orbit) motion.orbit = find_orbit(scene, engine_, periods, s);
     }
     return motion;
   }
@@ -100,8 +104,8 @@ class BranchSearch {
     const double value = end + (upwards ? 1 : -1) * beyond_end * (range_.most() - range_.least());
     if (!(value > range_.least() && value < range_.most())) return {};
     PeriodicMotion motion = settled(at(last.scene, value), release_of(last.scene));
-    if (!motion.orbit || motion.orbit->end != OrbitEnd::converged) return {};
-    return std::move(motion.orbit);
+    if (!motion.orbit || !*motion.orbit) return {};
+    return **std::move(motion.orbit);
   }
 
   // The orbit of half the length at which a branch ends, joining another.
@@ -111,16 +115,18 @@ class BranchSearch {
     const Scene& scene = end.orbit.scene;
     const bool symmetric = end.kind == BranchEventKind::symmetry_breaking;
     const int periods = symmetric ? end.orbit.periods : end.orbit.periods / 2;
-    Orbit orbit = find_orbit(scene, engine_, periods, release_of(scene), {.symmetric = symmetric});
-    if (orbit.end != OrbitEnd::converged) return {};
-    return orbit;
+    auto orbit = find_orbit(scene, engine_, periods, release_of(scene), {.symmetric = symmetric});
+    return orbit ? std::optional(*std::move(orbit)) : std::nullopt;
   }
 
   double amplitude_of(const Orbit& orbit) const {
     // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
-    return ForcedScene(orbit.scene, engine_)
-        .watch(release_of(orbit.scene), std::int64_t{2} * orbit.periods)
-        .amplitude;
+    const auto watched =
+        ForcedScene(orbit.scene, engine_).watch(release_of(orbit.scene), std::int64_t{2} * orbit.periods);
+    if (!watched)
+      throw NumericalError("the largest |x| of an orbit was not found: " +
+                           std::string(name_of(watched.failure())));
+    return watched->amplitude;
   }
 
  private:
@@ -130,9 +136,9 @@ class BranchSearch {
     SceneState s = release_of(orbit.scene);
     for (int n = 0; n < 2 * orbit.periods; ++n) {
       if (distance(s, state) <= gap * size_of(state)) return true;
-      const PoincareImage image = half(s);
-      if (image.stop_reason != StopReason::time) return false;
-      s = image.state;
+      const auto image = half(s);
+      if (!image) return false;
+      s = image->state;
     }
     return false;
   }
@@ -144,9 +150,9 @@ class BranchSearch {
       if (a.periods != orbit.periods || a.symmetric != orbit.symmetric || value < low || value > high)
         continue;
       const Orbit& nearer = std::abs(value_of(a) - value) <= std::abs(value_of(b) - value) ? a : b;
-      const Orbit there = find_orbit(orbit.scene, engine_, orbit.periods, release_of(nearer.scene),
-                                     {.symmetric = orbit.symmetric});
-      if (there.end == OrbitEnd::converged && is_twin(orbit, release_of(there.scene), 1e-6)) return true;
+      const auto there = find_orbit(orbit.scene, engine_, orbit.periods, release_of(nearer.scene),
+                                    {.symmetric = orbit.symmetric});
+      if (there && is_twin(orbit, release_of(there->scene), 1e-6)) return true;
     }
     return false;
   }
@@ -230,11 +236,12 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
   for (std::size_t n = 0; n < starts.size(); ++n) {
     BranchStart start{starts[n], motions[n].steady, std::nullopt, std::nullopt};
     if (motions[n].orbit) {
-      start.orbit = motions[n].orbit->end;
-      if (*start.orbit == OrbitEnd::converged) {
-        start.branch = search.known(all.branches, *motions[n].orbit);
+      const Expected<Orbit, NoOrbit>& orbit = *motions[n].orbit;
+      start.orbit = orbit ? OrbitEnd::converged : orbit.failure().end;
+      if (orbit) {
+        start.branch = search.known(all.branches, *orbit);
         if (!start.branch &&
-            add(BranchOrigin::start, std::int64_t(n), std::nullopt, *motions[n].orbit, range.to > range.from))
+            add(BranchOrigin::start, std::int64_t(n), std::nullopt, *orbit, range.to > range.from))
           start.branch = std::ssize(all.branches) - 1;
       }
     }
@@ -257,12 +264,11 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
         continue;
       }
       if (search.is_joined(all.branches, event)) continue;
-      const Orbit orbit = branching_off(event, range.parameter);
-      const double value = search.value_of(orbit);
-      if (orbit.end != OrbitEnd::converged || orbit.periods > rule.steady.longest_period ||
-          !(value >= range.least() && value <= range.most()))
-        continue;
-      add(BranchOrigin::event, n, std::int64_t(i), orbit, value > event.parameter);
+      const auto orbit = branching_off(event, range.parameter);
+      if (!orbit || orbit->periods > rule.steady.longest_period) continue;
+      const double value = search.value_of(*orbit);
+      if (!(value >= range.least() && value <= range.most())) continue;
+      add(BranchOrigin::event, n, std::int64_t(i), *orbit, value > event.parameter);
     }
     bool upwards = true;
     const std::optional<Orbit> beyond = search.beyond(branch, upwards);

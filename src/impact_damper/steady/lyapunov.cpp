@@ -107,11 +107,11 @@ class OneDamper {
   }
   double duration() const { return *period_.until_time; }
   StopReason pass_period() {
-    const VariedRun run = run_with_variation(period_, engine_, frame_, Kept::end);
-    const State<double>& end = run.end;
-    if (run.stop_reason == StopReason::time)
-      period_.x0 = end.x, period_.v0 = end.v, period_.y0 = end.y, period_.w0 = end.w;
-    return run.stop_reason;
+    const auto run = run_with_variation(period_, engine_, frame_, Kept::end);
+    if (!run) return run.failure();
+    const State<double>& end = run->end;
+    period_.x0 = end.x, period_.v0 = end.v, period_.y0 = end.y, period_.w0 = end.w;
+    return StopReason::time;
   }
   void begin_to_average() { frame_.begin_to_average(); }
   std::span<const double> logarithms() const { return frame_.logarithms(); }

@@ -65,8 +65,8 @@ struct Equation {
   std::vector<std::size_t> resting(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
-  PoincareImage image_of(const Point& p,
-                         PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
+  Expected<PoincareImage, StopReason> image_of(
+      const Point& p, PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
     return map(p.back())(state_of(state_at(p), scene), wanted);
   }
   // Whether an iterate is one that a scene may have.
@@ -105,12 +105,12 @@ bool carry_across(const Equation& equation, const Point& before, Point& p, Plane
 }
 
 struct Solution {
-  OrbitEnd end = OrbitEnd::no_convergence;
   Point point;
   PoincareImage image;
   std::vector<double> residuals;
   Plane plane;
 };
+using Solved = Expected<Solution, NoOrbit>;
 
 const StateVector& by_parameter(const PoincareImage& image, Parameter parameter) {
   return parameter == Parameter::force_frequency ? image.by_frequency : image.by_amplitude;
@@ -167,21 +167,19 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
 
 // Solves H^n(s) = s on a plane by Newton's method from `start`, which a prediction from `before` led to. A
 // step that raises the rest is halved.
-Solution solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane) {
+Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane) {
   Solution best, now;
   now.point = start;
-  best.plane = now.plane = plane;
+  now.plane = plane;
   double least = std::numeric_limits<double>::infinity(), fraction = 1;
   Point step, last = before;
   std::vector<double> residuals;
   for (int i = 0; i < equation.options.max_iterations; ++i) {
     if (!equation.allows(now.point)) break;
     if (!carry_across(equation, last, now.point, now.plane)) break;
-    now.image = equation.image_of(now.point, PoincareMap::Derivatives::by_state_and_parameters);
-    if (now.image.stop_reason != StopReason::time) {
-      best.end = OrbitEnd::run_stopped;
-      break;
-    }
+    auto image = equation.image_of(now.point, PoincareMap::Derivatives::by_state_and_parameters);
+    if (!image) return NoOrbit{OrbitEnd::run_stopped, std::move(residuals)};
+    now.image = *std::move(image);
     const Rest rest = rest_of(now);
     residuals.push_back(rest.size);
     const bool tolerated = least <= equation.options.tolerance;
@@ -201,8 +199,8 @@ Solution solve(const Equation& equation, const Point& before, const Point& start
     step = along(*next, -1, now.point);
     now.point = *next;
   }
-  if (best.end != OrbitEnd::run_stopped && least <= equation.options.tolerance)
-    best.end = best.image.one_sided ? OrbitEnd::no_derivative : OrbitEnd::converged;
+  if (!(least <= equation.options.tolerance)) return NoOrbit{OrbitEnd::no_convergence, std::move(residuals)};
+  if (best.image.one_sided) return NoOrbit{OrbitEnd::no_derivative, std::move(residuals)};
   best.residuals = std::move(residuals);
   return best;
 }
@@ -215,11 +213,11 @@ Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 
 std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
-  const PoincareImage image = shorter.image_of(p);
-  if (image.stop_reason != StopReason::time) return {};
-  StateVector rest = vector_of(image.state);
+  const auto image = shorter.image_of(p);
+  if (!image) return {};
+  StateVector rest = vector_of(image->state);
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= p[i];
-  for (const std::size_t damper : image.idle) {
+  for (const std::size_t damper : image->idle) {
     rest[index_of_y(damper)] = -rest[0];
     rest[index_of_w(damper)] = -rest[1];
   }
@@ -256,13 +254,10 @@ Multipliers multipliers_of(const PoincareImage& image) {
 
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
   Orbit orbit;
-  orbit.end = found.end;
   orbit.residuals = found.residuals;
   orbit.engine = equation.engine;
   orbit.periods = periods;
   orbit.symmetric = symmetric;
-  orbit.scene = equation.scene;
-  if (found.end != OrbitEnd::converged) return orbit;
   const PoincareMap map = equation.map(found.point.back());
   orbit.scene = map.scene();
   orbit.scene = released_from(orbit.scene, state_of(state_at(found.point), orbit.scene));
@@ -364,11 +359,11 @@ class Follower {
     Branch branch;
     const Scene& scene = first_.scene;
     const double begin = scene.*member_of(equation_.parameter);
-    if (first_.end != OrbitEnd::converged || !(begin >= options_.least && begin <= options_.most))
-      return branch;
+    if (!(begin >= options_.least && begin <= options_.most)) return branch;
     const Point start = point_at(vector_of(release_of(scene)), begin);
-    Solution now = solve(equation_, start, start, at_value(start));
-    if (now.end != OrbitEnd::converged) return branch;
+    const Solved first = solve(equation_, start, start, at_value(start));
+    if (!first) return branch;
+    Solution now = *first;
     const Point origin = now.point;
     add(branch, now);
     auto tangent = tangent_at(now, point_at(StateVector(start.size() - 1), options_.upwards ? 1.0 : -1.0));
@@ -383,18 +378,18 @@ class Follower {
         anchor_ = now;
         anchor_tangent_ = *tangent;
       }
-      const Solution next = between(now, *tangent, step);
-      const auto turned = next.end == OrbitEnd::converged && follows(now, next, step)
-                              ? tangent_at(next, next.plane.normal)
-                              : std::nullopt;
-      if (!turned || !(dot(*turned, next.plane.normal) > 0.9) ||
-          jumped(now, (*tangent).back(), next, (*turned).back())) {
+      const Solved found = between(now, *tangent, step);
+      const auto turned =
+          found && follows(now, *found, step) ? tangent_at(*found, found->plane.normal) : std::nullopt;
+      if (!turned || !(dot(*turned, found->plane.normal) > 0.9) ||
+          jumped(now, (*tangent).back(), *found, (*turned).back())) {
         step /= 2;
         if (step >= options_.smallest_step) continue;
         branch.end = BranchEnd::step_too_small;
         add_grazing_at_end(branch, now);
         return branch;
       }
+      const Solution& next = *found;
       add_events(branch, now, *tangent, step, next);
       if (branch.end == BranchEnd::joined) {
         branch.orbits.push_back(branch.events.back().orbit);
@@ -458,7 +453,7 @@ class Follower {
   }
 
   // The solution at a distance s from `now`, along the tangent there.
-  Solution between(const Solution& now, const Point& tangent, double s) const {
+  Solved between(const Solution& now, const Point& tangent, double s) const {
     const Point from = along(now.point, s, tangent);
     return solve(equation_, now.point, from, {from, normal_at(now, tangent)});
   }
@@ -514,20 +509,21 @@ class Follower {
       p.back() = value;
       return solve(half, middle, p, at_value(p));
     };
-    Solution other = at_parameter_value(middle, middle.back() * (1 + 1e-6)),
-             at = at_parameter_value(middle, middle.back());
+    Solved other = at_parameter_value(middle, middle.back() * (1 + 1e-6)),
+           at = at_parameter_value(middle, middle.back());
     for (int i = 0; i < 20; ++i) {
-      if (at.end != OrbitEnd::converged || other.end != OrbitEnd::converged) return {};
-      const double value = products_of(at.image).flip, change = value - products_of(other.image).flip;
-      const double by = value * (at.point.back() - other.point.back()) / change;
+      if (!at || !other) return {};
+      const double value = products_of(at->image).flip, change = value - products_of(other->image).flip;
+      const double by = value * (at->point.back() - other->point.back()) / change;
       if (!std::isfinite(by)) break;
-      other = std::exchange(at, at_parameter_value(at.point, at.point.back() - by));
-      if (std::fabs(by) <= 1e-14 * at.point.back()) break;
+      other = std::exchange(at, at_parameter_value(at->point, at->point.back() - by));
+      if (at && std::fabs(by) <= 1e-14 * at->point.back()) break;
     }
-    if (at.end != OrbitEnd::converged || !(distance(at.point, middle) < step) || !is_flip(at.image))
-      return {};
-    at.image = equation_.image_of(at.point, PoincareMap::Derivatives::by_state_and_parameters);
-    return at;
+    if (!at || !(distance(at->point, middle) < step) || !is_flip(at->image)) return {};
+    auto image = equation_.image_of(at->point, PoincareMap::Derivatives::by_state_and_parameters);
+    if (!image) return {};
+    at->image = *std::move(image);
+    return *std::move(at);
   }
   // Whether H^n(s) - s has turned round.
   bool crosses(const Solution& now, const Solution& next) const {
@@ -571,10 +567,10 @@ class Follower {
     int side = 0;
     for (int i = 0; i < 80 && high - low > 1e-14; ++i) {
       const double s = low + (high - low) * (at_low / (at_low - at_high));
-      Solution at = between(now, tangent, s);
-      if (at.end != OrbitEnd::converged) return {};
-      const double value = value_of(at);
-      found = std::move(at);
+      Solved at = between(now, tangent, s);
+      if (!at) return {};
+      const double value = value_of(*at);
+      found = *std::move(at);
       if (value == 0) break;
       if (value * at_low > 0) {
         const double moved = s - low;
@@ -600,11 +596,11 @@ class Follower {
     Solution last = now;
     while (high - low > 1e-13) {
       const double middle = low + (high - low) / 2;
-      Solution at = between(now, tangent, middle);
-      if (at.end != OrbitEnd::converged) return;
-      if (of_one_kind(now.image, at.image)) {
+      Solved at = between(now, tangent, middle);
+      if (!at) return;
+      if (of_one_kind(now.image, at->image)) {
         low = middle;
-        last = std::move(at);
+        last = *std::move(at);
       } else {
         high = middle;
       }
@@ -652,10 +648,10 @@ class Follower {
   std::optional<Extrapolated> at_size_0(std::optional<double> PoincareImage::*size_of, double spacing) const {
     std::array<double, 5> size, value;
     for (std::size_t i = 0; i < size.size(); ++i) {
-      const Solution at = between(anchor_, anchor_tangent_, -spacing * double(i));
-      if (at.end != OrbitEnd::converged || !(at.image.*size_of)) return {};
-      size[i] = *(at.image.*size_of);
-      value[i] = at.point.back();
+      const Solved at = between(anchor_, anchor_tangent_, -spacing * double(i));
+      if (!at || !(at->image.*size_of)) return {};
+      size[i] = *(at->image.*size_of);
+      value[i] = at->point.back();
     }
     // It must be on its way to zero: a first impact of chattering may be slow all along a branch.
     const auto [least, most] = std::ranges::minmax(size);
@@ -677,9 +673,9 @@ class Follower {
     const double share = (end - now.point.back()) / (next.point.back() - now.point.back());
     Point p = along(now.point, share, along(next.point, -1, now.point));
     p.back() = end;
-    const Solution last = solve(equation_, now.point, p, at_value(p));
-    branch.end = last.end == OrbitEnd::converged ? BranchEnd::range : BranchEnd::step_too_small;
-    if (last.end == OrbitEnd::converged) add(branch, last);
+    const Solved last = solve(equation_, now.point, p, at_value(p));
+    branch.end = last ? BranchEnd::range : BranchEnd::step_too_small;
+    if (last) add(branch, *last);
   }
 
   FollowOptions options_;
@@ -765,8 +761,8 @@ std::string_view name_of(BranchEnd end) {
   return {};
 }
 
-Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const SceneState& guess,
-                 const OrbitOptions& options) {
+Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, int periods,
+                                    const SceneState& guess, const OrbitOptions& options) {
   if (guess.dampers.size() != scene.dampers.size())
     require_none(
         {{"guess", "must be of as many dampers as the scene's list, " + std::to_string(scene.dampers.size()) +
@@ -784,26 +780,25 @@ Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const Sc
   Equation equation{scene, engine, options.symmetric ? periods : 2 * periods, Parameter::force_frequency,
                     options};
   const Point start = point_at(vector_of(guess), scene.force_frequency);
-  Solution found = solve(equation, start, start, at_value(start));
-  bool symmetric = options.symmetric;
-  if (found.end != OrbitEnd::converged) return orbit_of(equation, found, periods, symmetric);
+  Solved found = solve(equation, start, start, at_value(start));
+  if (!found) return found.failure();
 
   // The least number of half periods after which it closes.
   for (int n = 1; n < equation.half_periods; ++n) {
     const bool divides = equation.half_periods % n == 0;
-    if (!divides || !closes_after(equation, found.point, n, 100 * options.tolerance)) continue;
+    if (!divides || !closes_after(equation, found->point, n, 100 * options.tolerance)) continue;
     Equation less = equation;
     less.half_periods = n;
-    Solution shorter = solve(less, found.point, found.point, at_value(found.point));
-    if (shorter.end != OrbitEnd::converged) continue;
-    shorter.residuals = std::move(found.residuals);
+    Solved shorter = solve(less, found->point, found->point, at_value(found->point));
+    if (!shorter) continue;
+    shorter->residuals = std::move(found->residuals);
     found = std::move(shorter);
     equation = less;
     break;
   }
-  symmetric = equation.half_periods % 2 != 0;
+  const bool symmetric = equation.half_periods % 2 != 0;
   periods = symmetric ? equation.half_periods : equation.half_periods / 2;
-  return orbit_of(equation, found, periods, symmetric);
+  return orbit_of(equation, *found, periods, symmetric);
 }
 
 Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& options) {
@@ -821,32 +816,32 @@ Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& opti
   return Follower(orbit, parameter, options).follow();
 }
 
-Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOptions& options) {
+Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter parameter,
+                                       const OrbitOptions& options) {
   require_none(problems_of(options));
   const Orbit& from = event.orbit;
-  Orbit none;
-  none.scene = from.scene;
-  none.engine = from.engine;
   const bool doubles =
       event.kind == BranchEventKind::flip || event.kind == BranchEventKind::symmetry_breaking;
-  if (!doubles || from.end != OrbitEnd::converged) return none;
+  if (!doubles) return NoOrbit{};
   const int half_periods = from.symmetric ? from.periods : 2 * from.periods;
   const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
   const Point origin = point_at(vector_of(release_of(from.scene)), event.parameter);
-  const std::optional<StateVector> direction = reversed_by(
-      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene)));
-  if (!direction) return none;
+  const auto image =
+      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene));
+  if (!image) return NoOrbit{OrbitEnd::run_stopped};
+  const std::optional<StateVector> direction = reversed_by(*image);
+  if (!direction) return NoOrbit{};
   const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {
     const Point start = along(origin, gap, normal);
-    const Solution found = solve(equation, origin, start, {start, normal});
-    if (found.end != OrbitEnd::converged) continue;
+    const Solved found = solve(equation, origin, start, {start, normal});
+    if (!found) continue;
     // On the branch from which it comes the state would be the same after half of the time, here it is on
     // the other side.
-    const auto rest = rest_after(equation, found.point, half_periods);
-    if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, found, half_periods, false);
+    const auto rest = rest_after(equation, found->point, half_periods);
+    if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, *found, half_periods, false);
   }
-  return none;
+  return NoOrbit{};
 }
 
 }  // namespace impact_damper

@@ -9,11 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/expected.hpp"
 #include "impact_damper/steady/multipliers.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
 
 namespace impact_damper {
 
+// What Newton's iteration ended in.
 enum class OrbitEnd {
   converged,
   no_convergence,  // the iteration went astray; or the orbit is not isolated (OrbitOptions::symmetric)
@@ -35,10 +37,14 @@ struct OrbitOptions {
   int max_iterations = 40;  // >= 1
 };
 
-// All but `end` and `residuals` is meaningful if end == converged only.
+// Why there is none.
+struct NoOrbit {
+  OrbitEnd end = OrbitEnd::no_convergence;  // never converged
+  std::vector<double> residuals{};          // as in Orbit
+};
+
 struct Orbit {
-  OrbitEnd end = OrbitEnd::no_convergence;
-  std::vector<double> residuals;  // |H^n(s) - s| at each iterate, in the units of `tolerance`
+  std::vector<double> residuals;  // |H^n(s) - s| at each iterate, in the units of `tolerance`; at least one
   Scene scene;                    // its initial condition is on the orbit, its until_time the orbit's period
   Engine engine;
   int periods = 1;                   // of the force, after which the orbit first closes
@@ -56,14 +62,13 @@ struct Orbit {
 
   // Without impacts two multipliers are 1: a secondary mass at rest elsewhere rests there, too.
   bool stable() const { return !impacts.empty() && multipliers[0].modulus() < 1; }
-  // The last one. There must be one: branching_off() returns an orbit without any where it finds none.
   double residual() const { return residuals.back(); }
 };
 
 // guess: at phase 0 of the force, of as many dampers as the scene has. Throws InvalidArguments as PoincareMap
 // does, and for options out of range.
-Orbit find_orbit(const Scene& scene, const Engine& engine, int periods, const SceneState& guess,
-                 const OrbitOptions& options = {});
+Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, int periods,
+                                    const SceneState& guess, const OrbitOptions& options = {});
 
 enum class Parameter { force_frequency, force_amplitude };
 double Scene::*member_of(Parameter parameter);
@@ -99,7 +104,7 @@ enum class BranchEnd {
   step_too_small,  // no orbit was found near enough to the last
   unstable,        // FollowOptions::max_multiplier
   points,          // FollowOptions::max_points
-  not_an_orbit,    // the first was not converged, or is none for the parameter's first value
+  not_an_orbit,    // the first is none for the parameter's first value, or that is beyond the range
 };
 std::string_view name_of(BranchEnd end);
 
@@ -130,8 +135,9 @@ struct Branch {
 Branch follow(const Orbit& orbit, Parameter parameter, const FollowOptions& options);
 
 // An orbit of the branch that begins at a flip or a symmetry breaking of an orbit of half its length
-// (M13.21), 0.01 away from it or 0.001; not converged if none is found. The other half of that branch holds
+// (M13.21), 0.01 away from it or 0.001. The other half of that branch holds
 // mirror images, or the same orbits half of their period later. Throws InvalidArguments as find_orbit does.
-Orbit branching_off(const BranchEvent& event, Parameter parameter, const OrbitOptions& options = {});
+Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter parameter,
+                                       const OrbitOptions& options = {});
 
 }  // namespace impact_damper

@@ -109,10 +109,10 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
   if (!scene_.dampers.empty()) several_.emplace(scene_, engine_);
 }
 
-PoincareImage PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {
-  End end = several_ ? of_several(s, wanted) : of_one_damper(s, wanted);
-  PoincareImage image = std::move(end.image);
-  if (image.stop_reason != StopReason::time) return image;
+Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {
+  Expected<End, StopReason> end = several_ ? of_several(s, wanted) : of_one_damper(s, wanted);
+  if (!end) return end.failure();
+  PoincareImage image = std::move(end->image);
 
   // The end of the time moves with omega_f (M13.8).
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
@@ -120,39 +120,40 @@ PoincareImage PoincareMap::operator()(const SceneState& s, Derivatives wanted) c
     for (double& entry : row) entry *= mirror;
   for (std::size_t i = 0; i < image.by_frequency.size(); ++i) {
     image.by_frequency[i] =
-        mirror * (image.by_frequency[i] - end.rates[i] * (duration() / scene_.force_frequency));
+        mirror * (image.by_frequency[i] - end->rates[i] * (duration() / scene_.force_frequency));
     image.by_amplitude[i] *= mirror;
   }
   if (mirror < 0) image.state = mirrored(image.state, scene_);
   return image;
 }
 
-PoincareMap::End PoincareMap::of_one_damper(const SceneState& s, Derivatives wanted) const {
+Expected<PoincareMap::End, StopReason> PoincareMap::of_one_damper(const SceneState& s,
+                                                                  Derivatives wanted) const {
   Product all(wanted == Derivatives::by_state_and_parameters);
-  VariedRun run = run_with_variation(released_from(scene_, s), engine_, all, Kept::impacts);
+  Expected<VariedRun, StopReason> run =
+      run_with_variation(released_from(scene_, s), engine_, all, Kept::impacts);
+  if (!run) return run.failure();
   PoincareImage image;
-  image.stop_reason = run.stop_reason;
-  if (image.stop_reason != StopReason::time) return {std::move(image), {}};
-  image.state = run.end;
+  image.state = run->end;
   for (std::size_t i = 0; i < 4; ++i) {
     image.by_state.emplace_back(all.by_state[i].begin(), all.by_state[i].end());
     image.by_frequency.push_back(all.by_parameters[i][0]);
     image.by_amplitude.push_back(all.by_parameters[i][1]);
   }
   std::vector<Sticking> sticking;
-  for (const std::size_t impacts : run.impacts_before_sticking) sticking.push_back({impacts, 0});
+  for (const std::size_t impacts : run->impacts_before_sticking) sticking.push_back({impacts, 0});
   image.sticking = comes_to_stick(sticking);
-  image.slowest_impact = slowest(run.impacts, sticking);
-  image.nearest_miss = run.nearest_miss;
-  image.impacts = std::move(run.impacts);
-  return {std::move(image), {run.rates_at_end.begin(), run.rates_at_end.end()}};
+  image.slowest_impact = slowest(run->impacts, sticking);
+  image.nearest_miss = run->nearest_miss;
+  image.impacts = std::move(run->impacts);
+  return End{std::move(image), {run->rates_at_end.begin(), run->rates_at_end.end()}};
 }
 
-PoincareMap::End PoincareMap::of_several(const SceneState& s, Derivatives wanted) const {
+Expected<PoincareMap::End, StopReason> PoincareMap::of_several(const SceneState& s,
+                                                               Derivatives wanted) const {
   const Run run = several_->record(s, duration());
+  if (run.stop_reason != StopReason::time) return run.stop_reason;
   PoincareImage image;
-  image.stop_reason = run.stop_reason;
-  if (image.stop_reason != StopReason::time) return {std::move(image), {}};
   image.state = state_in(*run.history, 1);
   const std::size_t n = dimensions_of(scene_);
   std::vector<ChangeOfState> columns(n, ChangeOfState(n));
@@ -188,7 +189,7 @@ PoincareMap::End PoincareMap::of_several(const SceneState& s, Derivatives wanted
   image.sticking = comes_to_stick(sticking);
   image.slowest_impact = slowest(image.impacts, sticking);
   if (has_rigid_walls(engine_)) image.least_interval = least_interval(image.impacts, duration());
-  return {std::move(image), std::move(along.rates_at_end)};
+  return End{std::move(image), std::move(along.rates_at_end)};
 }
 
 }  // namespace impact_damper

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact_damper/base/expected.hpp"
 #include "impact_damper/math/eigenvalues.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
@@ -35,9 +36,8 @@ struct OrbitImpact {
 };
 
 struct PoincareImage {
-  StopReason stop_reason = StopReason::time;  // any other: a budget ended the run, and nothing else is set
-  SceneState state{};                         // H^n(s)
-  StateMatrix by_state;                       // its derivative by s
+  SceneState state{};    // H^n(s)
+  StateMatrix by_state;  // its derivative by s
   // By omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked for.
   StateVector by_frequency, by_amplitude;
   std::vector<OrbitImpact> impacts;  // in these n half periods, not mirrored
@@ -73,8 +73,9 @@ class PoincareMap {
 
   enum class Derivatives { by_state, by_state_and_parameters };
   // s: at phase 0 of the force, of as many dampers as the scene has, which is not checked. With rigid walls a
-  // mass lies between them: y from 0 to 1, or to its clearance.
-  PoincareImage operator()(const SceneState& s, Derivatives wanted = Derivatives::by_state) const;
+  // mass lies between them: y from 0 to 1, or to its clearance. Or which budget ended the run before.
+  Expected<PoincareImage, StopReason> operator()(const SceneState& s,
+                                                 Derivatives wanted = Derivatives::by_state) const;
 
   const Scene& scene() const { return scene_; }  // with duration() as its end
   const Engine& engine() const { return engine_; }
@@ -87,8 +88,8 @@ class PoincareMap {
     PoincareImage image;
     StateVector rates;  // x', x'', then y' and y'' of each damper
   };
-  End of_one_damper(const SceneState& s, Derivatives wanted) const;
-  End of_several(const SceneState& s, Derivatives wanted) const;
+  Expected<End, StopReason> of_one_damper(const SceneState& s, Derivatives wanted) const;
+  Expected<End, StopReason> of_several(const SceneState& s, Derivatives wanted) const;
 
   Scene scene_;
   Engine engine_;

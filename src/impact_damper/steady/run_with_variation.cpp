@@ -39,8 +39,7 @@ class VariationObserver {
       run_.impacts_before_sticking.push_back(run_.impacts.size());
   }
 
-  VariedRun ended(StopReason reason, double now) {
-    run_.stop_reason = reason;
+  VariedRun ended(double now) {
     run_.end = variation_.end();
     run_.rates_at_end = variation_.rates_at_end(now);
     return std::move(run_);
@@ -68,8 +67,8 @@ class VariationObserver {
 
 }  // namespace
 
-VariedRun run_with_variation(const Scene& scene, const Engine& engine, VariationReceiver& receiver,
-                             Kept kept) {
+Expected<VariedRun, StopReason> run_with_variation(const Scene& scene, const Engine& engine,
+                                                   VariationReceiver& receiver, Kept kept) {
   require_arithmetic();
   const System<double> system(scene);  // not with_system(): there is a force
   const auto* const exact = std::get_if<Exact>(&engine);
@@ -77,7 +76,8 @@ VariedRun run_with_variation(const Scene& scene, const Engine& engine, Variation
       scene, exact ? std::optional(zeta_m<double>(scene, exact->calibration)) : std::nullopt, receiver, kept);
   const Outcome outcome = exact ? run_exact(system, scene, *exact, observer)
                                 : run_restitution(system, scene, std::get<Restitution>(engine), observer);
-  return observer.ended(outcome.stop_reason, *scene.until_time);
+  if (outcome.stop_reason != StopReason::time) return outcome.stop_reason;
+  return observer.ended(*scene.until_time);
 }
 
 }  // namespace impact_damper

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact_damper/base/expected.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
 #include "impact_damper/steady/saltation.hpp"
@@ -48,7 +49,6 @@ class VariationReceiver {
 };
 
 struct VariedRun {
-  StopReason stop_reason = StopReason::time;
   // The state in which the last motion ended, and its x', x'', y', y'' there: before what an event at that
   // very instant changes.
   State<double> end{};
@@ -65,10 +65,10 @@ struct VariedRun {
 };
 enum class Kept { end, impacts };
 
-// Runs the scene from its initial values to its stops. Not checked here: the scene is valid (problems_of),
-// has a force, an until_time and no list `dampers`, and the engine is exact or restitution, which are the
-// closed-form ones.
-VariedRun run_with_variation(const Scene& scene, const Engine& engine, VariationReceiver& receiver,
-                             Kept kept);
+// Runs the scene from its initial values to its until_time; or returns which budget ended the run before. Not
+// checked here: the scene is valid (problems_of), has a force, an until_time as its only stop and no list
+// `dampers`, and the engine is exact or restitution, which are the closed-form ones.
+Expected<VariedRun, StopReason> run_with_variation(const Scene& scene, const Engine& engine,
+                                                   VariationReceiver& receiver, Kept kept);
 
 }  // namespace impact_damper

@@ -73,13 +73,14 @@ SceneState release_of(const Scene& scene) {
 }
 
 Scene released_from(Scene scene, const SceneState& state) {
-  scene.x0 = state.x;
-  scene.v0 = state.v;
-  scene.y0 = state.y;
-  scene.w0 = state.w;
+  const auto allowed = [](double value) { return is_too_small(value) ? 0 : value; };
+  scene.x0 = allowed(state.x);
+  scene.v0 = allowed(state.v);
+  scene.y0 = allowed(state.y);
+  scene.w0 = allowed(state.w);
   for (std::size_t n = 0; n < state.dampers.size(); ++n) {
-    scene.dampers[n].y0 = state.dampers[n].y;
-    scene.dampers[n].w0 = state.dampers[n].w;
+    scene.dampers[n].y0 = allowed(state.dampers[n].y);
+    scene.dampers[n].w0 = allowed(state.dampers[n].w);
   }
   return scene;
 }
@@ -205,11 +206,12 @@ ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
       engine);
 }
 
-ForcedScene::Watched ForcedScene::pass_periods(const SceneState& state) const {
+Expected<ForcedScene::Watched, StopReason> ForcedScene::pass_periods(const SceneState& state) const {
   return run_from(state, std::int64_t(periods_at_once), std::int64_t(periods_at_once), false);
 }
 
-ForcedScene::Watched ForcedScene::watch(const SceneState& state, std::int64_t periods) const {
+Expected<ForcedScene::Watched, StopReason> ForcedScene::watch(const SceneState& state,
+                                                              std::int64_t periods) const {
   return run_from(state, periods, 2, true);
 }
 
@@ -239,19 +241,21 @@ Run ForcedScene::record(const SceneState& state, double until) const {
   return run;
 }
 
-ForcedScene::Watched ForcedScene::run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
-                                           bool measures) const {
+Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneState& state,
+                                                                 std::int64_t periods, std::int64_t states,
+                                                                 bool measures) const {
   const double end = double(periods) * period_;
   const Scene from = released(state, end);
   Record record;
   record.half_cycles = record.impacts = record.energy = measures;
   record.history = {{0, end, states + 1}};
   Recorder recorder(std::move(record), scene_.dampers.size());
-  Watched kept;
-  kept.stop_reason = run_(from, recorder).stop_reason;
+  const StopReason stop_reason = run_(from, recorder).stop_reason;
+  if (stop_reason != StopReason::time) return stop_reason;
   Run run;
   recorder.finish(run);
 
+  Watched kept;
   for (std::size_t row = 1; row < run.history->time.size(); ++row)
     kept.states[row - 1] = state_in(*run.history, row);
   if (!measures) return kept;
@@ -284,7 +288,7 @@ SteadyState ForcedScene::follow(const SceneState& state, const SteadyRule& rule,
   SteadyState steady;
   steady.state = state;
   Recurrence recurrence(rule);
-  Watched passed;
+  Expected<Watched, StopReason> passed{Watched{}};
   std::size_t next = periods_at_once;
   for (;; ++steady.transient_periods) {
     if (enough(steady.state)) return steady;
@@ -296,11 +300,13 @@ SteadyState ForcedScene::follow(const SceneState& state, const SteadyRule& rule,
     if (steady.transient_periods == rule.max_periods) return steady;
     if (next == periods_at_once) {
       passed = pass_periods(steady.state);
-      steady.stop_reason = passed.stop_reason;
-      if (steady.stop_reason != StopReason::time) return steady;
+      if (!passed) {
+        steady.stop_reason = passed.failure();
+        return steady;
+      }
       next = 0;
     }
-    steady.state = passed.states[next++];
+    steady.state = passed->states[next++];
   }
 }
 
@@ -338,14 +344,16 @@ void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) 
   const std::int64_t m = *steady.period;
   steady.measured_periods = m;
   // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
-  const Watched watched = watch(steady.state, 2 * m);
-  steady.stop_reason = watched.stop_reason;
-  if (steady.stop_reason != StopReason::time) return;
-  steady.impacts = watched.impacts_until_half_way;
-  steady.impacts_by_damper = watched.by_damper_until_half_way;
-  steady.means = means_of(watched, steady.state, 2 * m);
+  const auto watched = watch(steady.state, 2 * m);
+  if (!watched) {
+    steady.stop_reason = watched.failure();
+    return;
+  }
+  steady.impacts = watched->impacts_until_half_way;
+  steady.impacts_by_damper = watched->by_damper_until_half_way;
+  steady.means = means_of(*watched, steady.state, 2 * m);
   if (m % 2 == 1) {
-    const Watched half = watch(steady.state, m);
+    const Watched half = *watch(steady.state, m);  // no budget ended twice as many
     const double near = 100 * rule.tolerance * size_of(steady.state);
     steady.symmetric = distance(mirrored(half.states[0], scene_), steady.state) <= near;
   }
@@ -360,17 +368,19 @@ void ForcedScene::measure_blocks(SteadyState& steady, const SteadyRule& rule) co
     // Blocks differ by one period where their number does not divide that of the periods.
     const std::int64_t periods =
         rule.mean_periods * (block + 1) / blocks - rule.mean_periods * block / blocks;
-    const Watched watched = watch(steady.state, periods);
-    steady.stop_reason = watched.stop_reason;
-    if (steady.stop_reason != StopReason::time) return;
-    means.push_back(means_of(watched, steady.state, periods));
-    steady.impacts_by_damper.resize(watched.by_damper.size());
-    for (const std::size_t wall : {0, 1}) {
-      steady.impacts[wall] += watched.impacts[wall];
-      for (std::size_t n = 0; n < watched.by_damper.size(); ++n)
-        steady.impacts_by_damper[n][wall] += watched.by_damper[n][wall];
+    const auto watched = watch(steady.state, periods);
+    if (!watched) {
+      steady.stop_reason = watched.failure();
+      return;
     }
-    steady.state = watched.states[1];
+    means.push_back(means_of(*watched, steady.state, periods));
+    steady.impacts_by_damper.resize(watched->by_damper.size());
+    for (const std::size_t wall : {0, 1}) {
+      steady.impacts[wall] += watched->impacts[wall];
+      for (std::size_t n = 0; n < watched->by_damper.size(); ++n)
+        steady.impacts_by_damper[n][wall] += watched->by_damper[n][wall];
+    }
+    steady.state = watched->states[1];
     const SteadyMeans& now = means.back();
     const double weight = double(periods) / double(rule.mean_periods);
     mean.amplitude = std::max(mean.amplitude, now.amplitude);

@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact_damper/base/expected.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/motion/state.hpp"
@@ -117,9 +118,9 @@ class ForcedScene {
   void measure(SteadyState& steady, const SteadyRule& rule) const;
 
   static constexpr std::size_t periods_at_once = 8;
-  // A run of some periods of the force.
+  // A run of some periods of the force. Each of these functions returns this, or which budget ended the run
+  // before.
   struct Watched {
-    StopReason stop_reason = StopReason::time;
     std::array<SceneState, periods_at_once> states{};  // after each period, or half way and at the end
     ImpactCounts impacts{}, impacts_until_half_way{};
     std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // of each of several
@@ -128,9 +129,9 @@ class ForcedScene {
   };
   // The states at phase 0 after each of the next periods, and no amplitude or energy. Fewer runs cut fewer
   // flights in two.
-  Watched pass_periods(const SceneState& state) const;
+  Expected<Watched, StopReason> pass_periods(const SceneState& state) const;
   // All but the states after each period.
-  Watched watch(const SceneState& state, std::int64_t periods) const;
+  Expected<Watched, StopReason> watch(const SceneState& state, std::int64_t periods) const;
   // The run from phase 0 until a time, with its impacts and contacts, a sample at its beginning and one at
   // its end.
   Run record(const SceneState& state, double until) const;
@@ -139,7 +140,8 @@ class ForcedScene {
  private:
   Scene released(const SceneState& state, double until) const;
   // So many equally spaced states, the last one at the end.
-  Watched run_from(const SceneState& state, std::int64_t periods, std::int64_t states, bool measures) const;
+  Expected<Watched, StopReason> run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
+                                         bool measures) const;
   SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
   void measure_periodic(SteadyState& steady, const SteadyRule& rule) const;
   void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
@@ -153,7 +155,7 @@ class ForcedScene {
 
 // The state in a row of a history.
 SceneState state_in(const History& history, std::size_t row);
-// A scene's initial state, and the scene with another one.
+// A scene's initial state, and the scene with another one, in which 0 stands for what is_too_small().
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);
 
