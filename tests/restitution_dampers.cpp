@@ -299,6 +299,24 @@ TEST_CASE("of masses that bounce together none is left behind to bounce for ever
   CHECK(run.stop_reason == StopReason::time);
 }
 
+TEST_CASE("a mass that chatters beside those that stick comes to rest under the acceleration of all of them") {
+  // The wall meets it at 0. From then on it bounces on 1 + 10, and each bounce kicks the other off for a time
+  // that is short; with a constant force this is a geometric sum, and x'' hardly changes.
+  const double nu = 1e-6, e = 0.6, other = 10, w = 1e-4, x0 = 6;
+  Scene scene;
+  scene.x0 = x0, scene.until_time = 0.01;
+  scene.dampers = {{.mass_ratio = nu, .restitution = e, .y0 = 1, .w0 = w},
+                   {.mass_ratio = other, .restitution = 0, .y0 = 1}};
+  const double kept = e - (1 + e) * nu / (1 + nu) * other / (1 + other), acceleration = x0 / (1 + other);
+  const double rest = 2 * kept * w / (acceleration * (1 - kept));
+  for (const double tolerance : {1e-8, 1e-11}) {
+    const Run run = simulate(scene, Restitution{.accumulation_tolerance = tolerance}, {.contacts = true});
+    const auto chattered = std::ranges::find(run.contacts->damper, 0) - run.contacts->damper.begin();
+    REQUIRE(std::ranges::count(run.contacts->damper, 0) == 1);
+    CHECK(std::abs(run.contacts->begin[std::size_t(chattered)] - rest) < 1e-10);
+  }
+}
+
 TEST_CASE("half cycles of many dampers take no more memory than those of one may") {
   Scene scene;
   scene.until_time = 1;

@@ -268,3 +268,15 @@ TEST_CASE("scenes in which the exact engine was wrong once") {
   stiff.wall_stiffness = 150'000, soft.wall_stiffness = 50;
   agrees(-4, {stiff, soft}, 0.1);
 }
+
+TEST_CASE("slow bounces keep the digits of their distance while another mass presses its wall") {
+  Scene scene;
+  scene.x0 = -1, scene.damping_ratio = 1, scene.until_time = 0.1;
+  scene.dampers = {{.mass_ratio = 1e-6, .restitution = 1, .clearance = 0.5, .wall_stiffness = 100},
+                   {.mass_ratio = 1e-6, .restitution = 0.6, .clearance = 1, .wall_stiffness = 12.5}};
+  const Comparison result = compare(scene, {.walls = Walls::compliant, .growth = 20});
+  CHECK(result.until == 0.1);
+  CHECK(result.impacts > 100);
+  CHECK(result.differences.size() == 0);
+  if (!result.differences.empty()) MESSAGE(result.differences[0]);
+}

@@ -1,10 +1,10 @@
 // The program of the oracle for several dampers.
 //
-//   impact-damper-several [--walls rigid|compliant] [--kind random|round] [--seed N] [--count M]
+//   impact-damper-several [--walls rigid|compliant] [--kind random|round|aimed] [--seed N] [--count M]
 //   [--begin-tolerance T] [--growth G]
 //                         [--scene FILE] [--failures K] [--verbose 1]
 //
-// compares the scenes of seeds N to N + M - 1, of both kinds if none is given, or the scene of FILE, with
+// compares the scenes of seeds N to N + M - 1, of all kinds if none is given, or the scene of FILE, with
 // what the restitution engine, or with compliant walls the exact one, makes of them. Prints the first scene
 // that differs, with all that does, and a line of totals. Exit code 0: all agrees; 1: a scene differs, or
 // less than half of the time could be compared; 2: usage.
@@ -24,7 +24,7 @@ namespace {
 using namespace impact_damper;
 
 struct Options {
-  std::vector<std::string> kinds{"random", "round"};
+  std::vector<std::string> kinds{"random", "round", "aimed"};
   std::int64_t first = 1, count = 100;
   std::optional<Scene> scene;
   std::int64_t most_failures = 1;
@@ -40,6 +40,13 @@ void show(const std::string& name, const Scene& scene, const Comparison& result)
   std::cout.flush();
 }
 
+Scene scene_of(const std::string& kind, Walls walls, std::uint64_t seed) {
+  const bool rigid = walls == Walls::rigid;
+  if (kind == "random") return rigid ? random_scene(seed) : random_compliant_scene(seed);
+  if (kind == "round") return rigid ? round_scene(seed) : round_compliant_scene(seed);
+  return rigid ? aimed_scene(seed) : aimed_compliant_scene(seed);
+}
+
 int compare_all(const Options& options) {
   std::int64_t failures = 0;
   bool little = false;
@@ -49,10 +56,7 @@ int compare_all(const Options& options) {
     double share = 0;
     for (std::int64_t i = 0; i < options.count && failures < options.most_failures; ++i) {
       const auto seed = std::uint64_t(options.first + i);
-      const bool random = kind == "random";
-      const Scene scene = options.tolerances.walls == Walls::rigid
-                              ? (random ? random_scene(seed) : round_scene(seed))
-                              : (random ? random_compliant_scene(seed) : round_compliant_scene(seed));
+      const Scene scene = scene_of(kind, options.tolerances.walls, seed);
       const Comparison result = compare(scene, options.tolerances);
       if (options.verbose && !result.ended_by.empty())
         std::cout << kind << " seed " << seed << ": compared until " << oracle::text(result.until, 8)
@@ -99,7 +103,7 @@ int compare_one(const Options& options) {
 
 int usage(const std::string& what) {
   std::cerr << "impact-damper-several: " << what
-            << "\nusage: impact-damper-several [--walls rigid|compliant] [--kind random|round] [--seed N] "
+            << "\nusage: impact-damper-several [--walls rigid|compliant] [--kind random|round|aimed] [--seed N] "
                "[--count M] [--failures K]"
                " [--begin-tolerance T] [--growth G] [--scene FILE]\n";
   return 2;
@@ -113,7 +117,7 @@ int run(const std::vector<std::string>& words) {
     const std::string& value = words[i + 1];
     const std::optional<std::int64_t> whole = parse_integer(value);
     const std::optional<double> number = parse_number(value);
-    if (word == "--kind" && (value == "random" || value == "round"))
+    if (word == "--kind" && (value == "random" || value == "round" || value == "aimed"))
       options.kinds = {value};
     else if (word == "--walls" && (value == "rigid" || value == "compliant"))
       options.tolerances.walls = value == "rigid" ? Walls::rigid : Walls::compliant;

@@ -137,6 +137,93 @@ Scene round_compliant_scene(std::uint64_t seed) {
   return scene;
 }
 
+namespace {
+
+// Of both walls: no impact for long, so that amplitudes are equal; or a release with x'' = 0 for those at
+// rest on a wall.
+Scene quiet_scene(reference::Random& random) {
+  Scene scene;
+  scene.until_time = random.uniform(3, 20);
+  const bool vanishes = random.chance(0.5);
+  if (vanishes) {
+    scene.damping_ratio = 0.125 * double(random.bits() % 5);
+    scene.v0 = random.sign() * double(1 + random.bits() % 3);
+    scene.x0 = -2 * scene.damping_ratio * scene.v0;
+    if (random.chance(0.5)) scene.force_amplitude = random.uniform(-2, 2), scene.force_frequency = 0.75;
+  } else {
+    scene.damping_ratio = 0;
+    scene.x0 = random.uniform(-0.5, 0.5), scene.v0 = random.chance(0.5) ? 0 : random.uniform(-0.5, 0.5);
+  }
+  for (int i = 1 + int(random.bits() % 4); i > 0; --i) {
+    SceneDamper damper;
+    damper.mass_ratio = random.log_uniform(1e-4, 0.5);
+    damper.restitution = random.uniform(0, 0.9);
+    damper.clearance = random.uniform(3, 5);
+    damper.y0 = !vanishes ? random.uniform(1, 2) : random.chance(0.5) ? damper.clearance : 0;
+    if (!vanishes && random.chance(0.3)) damper.w0 = random.uniform(-0.1, 0.1);
+    damper.wall_stiffness = random.log_uniform(100, 1e5);
+    scene.dampers.push_back(damper);
+  }
+  return scene;
+}
+
+// At the wall to which x'' presses, from rest or nearly so.
+Scene pressing_scene(reference::Random& random) {
+  Scene scene;
+  const bool right = random.chance(0.5);
+  scene.x0 = (right ? 1 : -1) * random.log_uniform(0.1, 10);
+  if (random.chance(0.3)) scene.v0 = random.log_uniform(1e-6, 0.1) * random.sign();
+  scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-3, 2);
+  const int count = 2 + int(random.bits() % 3);
+  for (int i = 0; i < count; ++i) {
+    SceneDamper damper;
+    damper.clearance = random.log_uniform(0.3, 3);
+    damper.y0 = right ? damper.clearance : 0;
+    scene.dampers.push_back(damper);
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene aimed_scene(std::uint64_t seed) {
+  reference::Random random(seed);
+  if (random.chance(0.3)) return quiet_scene(random);
+  // Chattering beside those that stick, masses of all sizes.
+  Scene scene = pressing_scene(random);
+  scene.until_time = random.log_uniform(0.01, 1);
+  // Of several heavy ones each impact throws the others off: what is below rounding of x then grows.
+  const bool heavy = random.chance(0.4);
+  if (heavy) scene.dampers.resize(2);
+  for (SceneDamper& each : scene.dampers) {
+    each.mass_ratio = heavy ? random.log_uniform(0.1, 20) : random.log_uniform(1e-6, 0.3);
+    each.restitution = random.chance(0.2) ? 0 : random.uniform(0, random.chance(0.2) ? 0.9 : 0.8);
+    if (random.chance(0.6)) each.w0 = random.log_uniform(1e-7, 1e-3) * random.sign();
+  }
+  return scene;
+}
+
+Scene aimed_compliant_scene(std::uint64_t seed) {
+  reference::Random random(seed);
+  if (random.chance(0.3)) return quiet_scene(random);
+  Scene scene = pressing_scene(random);
+  // Pressing together with wall frequencies far apart, or beside one that bounces without loss.
+  const bool bounces = random.chance(0.5), equal = random.chance(0.3);
+  scene.until_time = bounces ? random.log_uniform(0.02, 0.1) : random.log_uniform(0.05, 2);
+  for (SceneDamper& each : scene.dampers) {
+    each.mass_ratio = random.log_uniform(1e-7, 0.1);
+    const double frequency = !bounces                        ? random.log_uniform(30, 2e4)
+                             : &each == scene.dampers.data() ? random.log_uniform(3e3, 2e4)
+                                                             : random.log_uniform(300, 3e3);
+    each.wall_stiffness = equal && &each != scene.dampers.data()
+                              ? scene.dampers[0].wall_stiffness
+                              : std::max(1e-3, frequency * frequency * each.mass_ratio);
+    each.restitution = random.uniform(0, 0.8);
+  }
+  if (bounces) scene.dampers[0].restitution = 1;
+  return scene;
+}
+
 std::string text_of(const Scene& scene) {
   std::ostringstream text;
   text.precision(17);

@@ -15,6 +15,11 @@ impact_damper::Scene round_scene(std::uint64_t seed);
 impact_damper::Scene random_compliant_scene(std::uint64_t seed);
 impact_damper::Scene round_compliant_scene(std::uint64_t seed);
 
+// Where the engines have been wrong: chattering beside masses that stick, walls of very different frequencies
+// pressed at once, slow bounces beside a pressed wall, no impact for long, and x'' = 0 at the release.
+impact_damper::Scene aimed_scene(std::uint64_t seed);
+impact_damper::Scene aimed_compliant_scene(std::uint64_t seed);
+
 // As it stands in a scene file.
 std::string text_of(const impact_damper::Scene& scene);
 

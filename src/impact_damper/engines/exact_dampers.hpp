@@ -239,8 +239,11 @@ class ExactOfDampers {
         return Jet<Real>{masses_.clearance[j] - gap.g, -gap.g1, -gap.g2, gap.third};
       };
       const Jet<Real> whole = near(x.whole, true), main = near(x.main, false);
-      return std::array{LocalEnclosure<Real>{whole, main, x.rest},
-                        LocalEnclosure<Real>{far(whole), far(main), x.rest}};
+      // The main part has the digits of x, not those of the distance, which may be far smaller.
+      const Real rest = x.rest + 4 * std::numeric_limits<Real>::epsilon() *
+                                     (absolute(x.main.g) + absolute(x_) + absolute(v_) * t);
+      return std::array{LocalEnclosure<Real>{whole, main, rest},
+                        LocalEnclosure<Real>{far(whole), far(main), rest}};
     };
     const auto met =
         first_root<Real>(gaps, Real(0), just_after(until), tracker_.search(), contact.resolution());

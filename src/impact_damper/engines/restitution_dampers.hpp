@@ -229,7 +229,7 @@ class RestitutionOfDampers {
     const Real a = absolute(now.force) / mass_;
     const Real span = tracker_.search().span;
     if (!(a > 0)) return false;
-    const Real all_lose = find_chattering(a, now.side);
+    const OnSide all = find_chattering(a, now.side);
     if (chattering_.empty()) return false;
     Real m3{0}, m4{0};
     bool has_bounds = false;
@@ -245,7 +245,8 @@ class RestitutionOfDampers {
              (m3 + m4 * duration + 2 * system_.zeta * a / mass_) * duration <= tolerance * a;
     };
     std::erase_if(chattering_, [&](Chattering& each) {
-      each.lasts = duration_of(each, all_lose, a);
+      each.settles = settling_of(each.index, all, absolute(now.force));
+      each.lasts = duration_of(each);
       return !(8 * each.moves <= epsilon * (absolute(x_) + absolute(v_) * each.lasts)) ||
              !ends_soon(each.lasts);
     });
@@ -254,23 +255,33 @@ class RestitutionOfDampers {
     std::sort(chattering_.begin(), chattering_.end(), [](const Chattering& one, const Chattering& other) {
       return one.lasts < other.lasts || (one.lasts == other.lasts && one.index < other.index);
     });
-    const std::optional<Joining> found = most_that_join(a, ends_soon);
+    const std::optional<Joining> found = most_that_join(all, absolute(now.force), ends_soon);
     if (!found) return false;
     join(Real(found->momentum / (mass_ + found->mass)), now.side, a);
     return true;
   }
+  // The acceleration with which one comes back to its wall, and the part of its speed that each bounce takes.
+  struct Settling {
+    Real a, lost;
+    Real per_speed() const { return 2 / (a * lost); }  // how long bounces of the speed 1 last
+  };
   struct Chattering {
     std::size_t index;
     Real speed;  // with which it comes back to its wall
     Real moves;  // by how much x at most
-    Real lasts;
+    Settling settles{};
+    Real lasts{0};
+  };
+  // Of those that chatter or stick on one side: their masses, and what they lose each time that another one
+  // kicks them off their walls.
+  struct OnSide {
+    Real mass{0}, loses{0};
   };
   // Puts into chattering_ all on `side` that fly no farther from their walls than moves x by rounding, where
-  // x has the acceleration a. Returns what these, and those that stick there, lose each time that one kicks
-  // the others off their walls.
-  Real find_chattering(const Real& a, const Real& side) {
+  // x has the acceleration a. Returns these and those that stick there.
+  OnSide find_chattering(const Real& a, const Real& side) {
     chattering_.clear();
-    Real all_lose{0};
+    OnSide all;
     const Real moves_little = std::numeric_limits<Real>::epsilon() * (absolute(x_) + absolute(v_)) / 8,
                per_moves = 2 * a * mass_;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -281,19 +292,27 @@ class RestitutionOfDampers {
       if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != side) continue;
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
-      all_lose += loses(i);
+      all.mass += masses_.nu[i];
+      all.loses += loses(i);
       if (masses_.held[i]) continue;
-      chattering_.push_back({i, square_root(square), moves, Real(0)});
+      chattering_.push_back({i, square_root(square), moves});
     }
-    return all_lose;
+    return all;
   }
-  // How long it chatters (M17.6), where all of find_chattering() lose all_lose.
-  Real duration_of(const Chattering& one, const Real& all_lose, const Real& a) const {
-    const std::size_t i = one.index;
-    const Real share = masses_.nu[i] / (mass_ + masses_.nu[i]);
-    const Real lost = (1 - masses_.e[i]) + 2 * share * (all_lose - loses(i)) / mass_;
-    const Real more = lost < 1 ? Real(2 * (1 - lost) / lost) : Real(0);
-    return (masses_.u1[i] + one.speed + more * one.speed) / a;
+  // Of the i-th while all others on its side are at rest, most of the time: not the state of one moment, in
+  // which each that has just been kicked off its wall flies. `force`: on all of them and the primary mass.
+  Settling settling_of(std::size_t i, const OnSide& all, const Real& force) const {
+    const Real &nu = masses_.nu[i], &e = masses_.e[i], joined = 1 + (all.mass - nu);
+    const Real lost = (1 - e) + (1 + e) * (nu / (1 + nu)) * ((all.loses - loses(i)) / joined);
+    return {force / joined, lost < 1 ? lost : Real(1)};
+  }
+  // How long it chatters then (M17.6).
+  Real duration_of(const Chattering& one) const {
+    const auto& [a, lost] = one.settles;
+    const Real &u = masses_.u[one.index], &u1 = masses_.u1[one.index];
+    const Real speed = square_root(Real(u1 * u1 + 2 * a * (u > 0 ? u : Real(0))));
+    const Real more = 2 * (1 - lost) / lost;
+    return (u1 + speed + more * speed) / a;
   }
   // All of chattering_ stick from now on, and x' has gained that much.
   void join(const Real& gained, const Real& side, const Real& a) {
@@ -324,12 +343,23 @@ class RestitutionOfDampers {
   }
   // What the first of chattering_ amount to.
   struct Joining {
-    Real mass{0}, momentum{0}, kick{0}, moves{0}, duration{0};
+    Real mass{0}, momentum{0}, kick{0}, moves{0};
+    Real kicks{0};     // what all their kicks together add to another's speed
+    Real duration{0};  // (M17.21)
   };
   // Leaves in chattering_ as many of its first as can join.
   template <class EndsSoon>
-  std::optional<Joining> most_that_join(const Real& a, EndsSoon&& ends_soon) {
+  std::optional<Joining> most_that_join(const OnSide& everyone, const Real& on_all, EndsSoon&& ends_soon) {
+    Real slowest{0};  // of those that are kicked
+    for (std::size_t i = 0; some_rest_ && i < masses_.size(); ++i) {
+      if (!masses_.held[i]) continue;
+      const Real per_speed = settling_of(i, everyone, on_all).per_speed();
+      if (slowest < per_speed) slowest = per_speed;
+    }
+    const Real a = on_all / mass_, heavy = (1 + everyone.mass) * (1 + everyone.mass);
+    const bool alone = !some_rest_ && everyone.mass == masses_.nu[chattering_.front().index];
     joining_.assign(1, {});
+    Real longest{0};
     for (const Chattering& each : chattering_) {
       const std::size_t i = each.index;
       Joining all = joining_.back();
@@ -337,17 +367,21 @@ class RestitutionOfDampers {
       all.momentum += masses_.nu[i] * masses_.w(i);
       all.kick += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
       all.moves += each.moves;
-      all.duration += each.lasts;
+      all.kicks += masses_.nu[i] / (1 + masses_.nu[i]) * (1 + masses_.e[i]) * each.speed / each.settles.lost;
+      if (longest < each.lasts) longest = each.lasts;
+      const Real of_others = slowest, own = each.settles.per_speed();
+      if (slowest < own) slowest = own;
+      all.duration = longest + all.kicks * (joining_.size() == 1 ? of_others : slowest) * heavy;
       joining_.push_back(all);
     }
     Real most{0};                     // a bound on |x''|
     std::optional<Real> others_meet;  // a wall, not before this time: who is left out
     for (std::size_t count = chattering_.size(); count > 0; --count) {
       const Joining& all = joining_[count];
-      if (limit_holds(all, a, ends_soon)) {
+      if ((alone || all.duration <= options_.accumulation_tolerance) && limit_holds(all, a, ends_soon)) {
         if (!others_meet) {
-          const Real until = 2 * joining_.back().duration, longest = tracker_.search().span;
-          const Real span = until < longest ? until : longest;
+          const Real until = 2 * all.duration, most_span = tracker_.search().span;
+          const Real span = until < most_span ? until : most_span;
           most = ForcedMotion<Real, Force>(oscillator(), force(), tracker_.now(), x_, v_).bound(2, span);
           others_meet = first_meeting(most, span, count);
         }
