@@ -50,7 +50,7 @@ std::optional<std::int64_t> Arguments::whole_number(const std::string& option, N
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
   const std::optional<std::int64_t> value = parse_integer(*given_text);
-  if (value && range.allows(static_cast<double>(*value))) return value;
+  if (value && range.allows(*value)) return value;
   reject(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
   return std::nullopt;
 }

@@ -83,10 +83,24 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+// -1, 0 or 1 as `value` is below, equal to or above `limit`. Rounding `value` to a double keeps the order
+// with another one, so that only where it becomes `limit` itself the integers are compared.
+int order(std::int64_t value, double limit) {
+  const auto rounded = static_cast<double>(value);
+  if (rounded != limit || rounded == 0x1p63) return rounded > limit ? 1 : -1;
+  const auto exact = static_cast<std::int64_t>(limit);
+  return (value > exact) - (value < exact);
+}
+
 }  // namespace
 
 bool NumberRange::allows(double value) const {
   return (least_is_allowed ? value >= least : value > least) && value <= most;
+}
+
+bool NumberRange::allows(std::int64_t value) const {
+  const int above_least = order(value, least);
+  return (least_is_allowed ? above_least >= 0 : above_least > 0) && order(value, most) <= 0;
 }
 
 std::string NumberRange::describe(std::string_view kind) const {

@@ -1,6 +1,7 @@
 // The words in which bad input is rejected, the same for files and command lines.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ struct NumberRange {
   bool least_is_allowed = true;
 
   bool allows(double value) const;
+  bool allows(std::int64_t value) const;              // exactly: above 2^53 not every integer is a double
   std::string describe(std::string_view kind) const;  // "a number" -> "a number >= 0 and <= 1"
 };
 constexpr NumberRange within(double least, double most) { return {least, most}; }

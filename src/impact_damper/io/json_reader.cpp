@@ -72,7 +72,7 @@ bool read_into(std::int64_t& target, const Json& value, const NumberRange& range
     return false;
   }
   const auto number = value.get<std::int64_t>();
-  if (!range.allows(static_cast<double>(number))) return false;
+  if (!range.allows(number)) return false;
   target = number;
   return true;
 }
