@@ -184,6 +184,11 @@ bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
   }
   Builder builder(text, root, problems);
   return Json::sax_parse(text, &builder);
+  // Which words the parser has for it depends on its version.
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    problems.add({}, "is empty, must be JSON");
+    return false;
+  }
 }
 
 }  // namespace impact_damper
