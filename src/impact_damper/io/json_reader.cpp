@@ -244,6 +244,10 @@ std::vector<std::string> ObjectReader::keys() {
   return found;
 }
 
+void ObjectReader::suggest(std::string_view key) {
+  if (object_) problems_->suggest(opened_, key);
+}
+
 bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {
   reject(key, "must be " + wanted + ", got " + described(given));
   return false;
