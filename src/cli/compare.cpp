@@ -207,10 +207,10 @@ Command compare_command() {
       .description =
           "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it."};
   command.options = {
-      {"--measured", "FILE",
-       "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, or\nacceleration "
-       "a_m_per_s2, a_mm_per_s2 or a_g"},
-      {"--scene", "FILE", "the scene, in units and without a force"},
+      input_option("--measured", "FILE",
+                   "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, or\nacceleration "
+                   "a_m_per_s2, a_mm_per_s2 or a_g"),
+      input_option("--scene", "FILE", "the scene, in units and without a force"),
       {"--fit", "LIST",
        "what is fitted, with commas between: restitution, damping_ratio, clearance\n(these are the default), "
        "secondary_mass; or none"},

@@ -387,8 +387,8 @@ Command map_command() {
       .description =
           "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point."};
   command.options = {
-      {"TABLE", "FILE",
-       "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"},
+      input_option("TABLE", "FILE",
+                   "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"),
       {"--x", "NAME", "the number of the grid along the horizontal axis"},
       {"--y", "NAME", "the one along the vertical axis"},
       {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},

@@ -111,8 +111,9 @@ void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalo
           FigureSweeps& sweeps) {
   if (figure.plan.empty()) return;
   for_figure(figure, [&] {
-    sweeps[figure.plan] = read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
-                                           read_plan(catalogue_file.parent_path() / figure.plan));
+    sweeps[figure.plan] =
+        read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
+                         read_plan(catalogue_file.parent_path() / figure.plan, find_named_file));
   });
 }
 
@@ -190,11 +191,11 @@ int make_tables(Arguments& arguments) {
 Command series_command() {
   Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
   command.options = {
-      {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
-      {"--runs", "FOLDER",
-       "folder of the runs, must be given: SCENE.json of each scene, with\n"
-       "the members of the ensembles that figures show (run --members),\n"
-       "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"},
+      input_option("--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of the runs, must be given: SCENE.json of each scene, with\n"
+                   "the members of the ensembles that figures show (run --members),\n"
+                   "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"),
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

@@ -18,6 +18,7 @@
 #include "interruption.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
+#include "project_files.hpp"
 #include "text_table.hpp"
 #include "vary.hpp"
 
@@ -146,7 +147,7 @@ Plan plan_of(Arguments& arguments) {
     if (const std::string name = long_name(option.name); arguments.given(name))
       arguments.reject(name, "cannot be given beside a plan, which says it");
   arguments.finish();
-  return read_plan(*file);
+  return read_plan(*file, find_named_file);
 }
 
 struct Part {
@@ -333,7 +334,7 @@ Command sweep_command() {
                       "Simulate a scene with many other numbers, and keep what is asked for of each run as "
                       "one table."};
   command.options = {
-      {"PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"},
+      input_option("PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"),
       {"--list-quantities", "", "print what can be kept, with its units, and exit", "Sweep",
        Option::Takes::nothing},
       {"--dry-run", "",
@@ -368,7 +369,7 @@ Command merge_command() {
   Command command{
       .name = "merge",
       .description = "Join the parts that sweep --part has made into the table that one sweep makes."};
-  command.options = {{"PART", "FILE", "the parts, in any order"},
+  command.options = {input_option("PART", "FILE", "the parts, in any order"),
                      {"-o,--output", "FILE",
                       "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}};
   command.takes_more = true;

@@ -364,19 +364,19 @@ Command verify_command() {
   Command command{.name = "verify",
                   .description = "Hold the runs against everything the paper reports, claim by claim."};
   command.options = {
-      {"--claims", "FILE", "what the paper reports; default data/claims.json"},
-      {"--runs", "FOLDER",
-       "folder of run files, NAME.json of each scene, further run and\n"
-       "response, with the other members of its ensemble (run --members);\n"
-       "default build/runs/exact"},
+      input_option("--claims", "FILE", "what the paper reports; default data/claims.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of run files, NAME.json of each scene, further run and\n"
+                   "response, with the other members of its ensemble (run --members);\n"
+                   "default build/runs/exact"),
       scenes_option(),
       {.name = "--power",
        .help =
            "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
        .takes = Option::Takes::nothing},
-      {"--catalogue", "FILE",
-       "lists the further runs; default figures/catalogue.json. If given, the\n"
-       "claims that its figures rest on must exist"},
+      input_option("--catalogue", "FILE",
+                   "lists the further runs; default figures/catalogue.json. If given, the\n"
+                   "claims that its figures rest on must exist"),
       {"--members", "N",
        "use the first N of each ensemble, the run file itself among them;\n"
        "1 to 100, default 16; --power simulates them"},
