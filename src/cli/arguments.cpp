@@ -68,38 +68,6 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
   return std::nullopt;
 }
 
-std::string_view name_of(Format format) {
-  switch (format) {
-    case Format::json:
-      return "json";
-    case Format::gnuplot:
-      return "gnuplot";
-    case Format::csv:
-      return "csv";
-  }
-  return "";
-}
-
-Format format_of(Arguments& arguments, const std::optional<std::string>& output,
-                 std::initializer_list<Format> offered) {
-  const Format format = arguments.choice("--format", offered, *offered.begin());
-  const std::string ending = output ? std::filesystem::path(*output).extension().string() : "";
-  if (ending == ".csv" && format != Format::csv) {
-    arguments.reject("--output", "must not end in .csv for the format " + std::string(name_of(format)) +
-                                     "; --format csv writes CSV; got " + in_quotes(*output));
-  } else if (ending == ".json" && format != Format::json) {
-    arguments.reject("--output", "must not end in .json for the format " + std::string(name_of(format)) +
-                                     ", got " + in_quotes(*output));
-  }
-  return format;
-}
-
-void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output,
-                     const std::string& what) {
-  if (output && std::filesystem::path(*output).extension() == ".csv")
-    arguments.reject("--output", "must not end in .csv: it is " + what + ", got " + in_quotes(*output));
-}
-
 void Arguments::reject(const std::string& option, const std::string& what) {
   problems_.push_back({option, what});
 }

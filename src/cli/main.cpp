@@ -131,6 +131,9 @@ cli::Command whole_program() {
       "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
       "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
       "is.\n\n"
+      "What a command writes has the ending of its format (.json, .csv, .dat, .html, .svg, .md, .h5) or "
+      "none.\n"
+      "As the name of a file to write, - is standard output, in place of what else is printed there.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content "
       "is\n"
       "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.";

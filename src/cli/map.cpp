@@ -11,7 +11,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/sweeps/sweep_table.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -346,16 +346,14 @@ int make_map(Arguments& arguments) {
   const auto file = arguments.file("TABLE"), output = arguments.file("--output");
   if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
   if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
-  if (output && !output->ends_with(".svg"))
-    arguments.reject("--output", "must end in .svg, got " + in_quotes(*output));
+  reject_other_endings(arguments, "--output", output, {Format::svg});
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
   arguments.finish();  // before the table is read, which says what else is valid
   const SweepDescription description = read_sweep_description(*file);
   const MapQuestion question = question_of(arguments, description.plan);
   arguments.finish();
-  require_writable(*output);
+  prepare_output(output);
   require_gnuplot();
-  if_interrupted_say(left_as_it_was(*output));
   MapMaker maker(description.plan, question);
   read_sweep_rows(*file, description, [&](std::span<const std::string> row) { maker.add(row); });
   const Map map = maker.finish();
@@ -374,8 +372,8 @@ int make_map(Arguments& arguments) {
     DrawingBoard board;
     svg = board.draw(drawing_of(named, map));
   }
-  write_file(*output, svg);
-  write_standard_output(summary_of(named, map));
+  write_output(output, svg);
+  if (!is_standard_output(output)) write_standard_output(summary_of(named, map));
   return 0;
 }
 

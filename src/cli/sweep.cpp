@@ -16,9 +16,10 @@
 #include "impact_damper/sweeps/plan_file.hpp"
 #include "impact_damper/sweeps/share_file.hpp"
 #include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
-#include "scene_arguments.hpp"
 #include "project_files.hpp"
+#include "scene_arguments.hpp"
 #include "text_table.hpp"
 #include "vary.hpp"
 
@@ -178,10 +179,13 @@ std::string program_identity() {
 }
 
 void require_known_format(Arguments& arguments, const std::optional<std::string>& output) {
+  reject_other_endings(arguments, "--output", output, {Format::csv, Format::hdf5});
+  if (is_standard_output(output))
+    arguments.reject("--output", "must be a file, beside which a description of it is written, got \"-\"");
   if (output && is_hdf5(*output) && !has_hdf5())
     arguments.reject("--output",
-                     "ends in .h5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
-                     "with another name the table is CSV");
+                     "asks for HDF5, but the program was built without its library (Debian: libhdf5-dev); "
+                     "named *.csv the table is CSV");
 }
 
 // For reading: "42 s", "17 min", "3.5 h".
