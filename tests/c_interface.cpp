@@ -110,6 +110,23 @@ std::string error_of(const char* scene, const char* engine, const impact_damper_
 
 }  // namespace
 
+TEST_CASE("a number too small for a double is zero in C as on the command line, one too large is rejected") {
+  impact_damper_run *tiny = nullptr, *zero = nullptr;
+  for (const auto& [scene, run] : {std::pair(R"({"x0": 1e-400, "v0": 1, "until_time": 8})", &tiny),
+                                   std::pair(R"({"x0": 0, "v0": 1, "until_time": 8})", &zero)})
+    REQUIRE(impact_damper_simulate(scene, "exact", nullptr, run, nullptr, 0) == IMPACT_DAMPER_DONE);
+  std::size_t rows = 0, wanted = 0;
+  const double *of_tiny = impact_damper_column(tiny, "impacts/time", &rows),
+               *of_zero = impact_damper_column(zero, "impacts/time", &wanted);
+  CHECK(wanted > 0);
+  CHECK(std::vector(of_tiny, of_tiny + rows) == std::vector(of_zero, of_zero + wanted));
+  impact_damper_free(tiny);
+  impact_damper_free(zero);
+  CHECK(error_of(R"({"x0": 1e400, "until_time": 8})", "exact").starts_with("scene: line 1, column 12: "));
+  CHECK(error_of(R"({"x0": 1, "until_time": 8})", R"({"name": "cem", "time_step": 1e-400})") ==
+        error_of(R"({"x0": 1, "until_time": 8})", R"({"name": "cem", "time_step": 0})"));
+}
+
 TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
   const auto run_of = [](const char* scene) {
     impact_damper_run* run = nullptr;

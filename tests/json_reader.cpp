@@ -196,12 +196,13 @@ TEST_CASE("what is not JSON is rejected with line and column") {
     REQUIRE(found.size() == 1);
     return found[0];
   };
-  CHECK(only("{\n  \"a\": nan}").starts_with("f.json: line 2, column 9: syntax error"));
-  CHECK(only("").starts_with("f.json: line 1, column 1: syntax error"));
-  CHECK(only("{} {}").starts_with("f.json: line 1, column 4: syntax error"));
-  CHECK(only("{\"a\": 1e999}").starts_with("f.json: line 1, column 11: number overflow"));
-  CHECK(only("{\"a\": 1,}").starts_with("f.json: line 1, column 9: syntax error"));
-  CHECK(only("{\"a\": -}").find("invalid number") != std::string::npos);
+  // What stands behind the place is the library's, and differs by its version.
+  CHECK(only("{\n  \"a\": nan}").starts_with("f.json: line 2, column 9: "));
+  CHECK(only("{} {}").starts_with("f.json: line 1, column 4: "));
+  CHECK(only("{\"a\": 1e999}").starts_with("f.json: line 1, column 11: "));
+  CHECK(only("{\"a\": 1,}").starts_with("f.json: line 1, column 9: "));
+  CHECK(only("{\"a\": -}").starts_with("f.json: line 1, column 8: "));
+  for (const char* nothing : {"", " ", "\r\n\t\n"}) CHECK(only(nothing) == "f.json: is empty, must be JSON");
   CHECK(only("{\"a\": \"\n\"}").find('\n') == std::string::npos);
   CHECK(only("[1]") == "f.json: must be an object, got an array");
 }
@@ -238,6 +239,39 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(nearest("exciting_freq", {"exciting_force", "exciting_frequency"}) == "exciting_frequency");
   CHECK(!nearest("q", {"x"}));
   CHECK(!nearest("q1", known));  // no letter of it is right
+}
+
+TEST_CASE("capitals decide which word was meant only between words that are equally near without them") {
+  const std::vector<std::string_view> known{"v0", "x0", "y0", "mass_ratio", "restitution"};
+  CHECK(nearest("X0", known) == "x0");
+  CHECK(nearest("Y0", known) == "y0");
+  CHECK(nearest("X", known) == "x0");
+  CHECK(nearest("MASS-RATIO", known) == "mass_ratio");
+  CHECK(nearest("Restitutoin", known) == "restitution");
+  CHECK(nearest("RESTI", known) == "restitution");
+  CHECK(nearest("RATIO", known) == "mass_ratio");
+  CHECK(nearest("Ab", {"ab", "AB", "Abc"}) == "ab");
+  CHECK(nearest("aB", {"Ab", "aBc", "ab"}) == "ab");
+  CHECK(nearest("Q0", {"q0", "Q0"}) == "Q0");
+}
+
+TEST_CASE("a limit of integers is exact, also where a double would round") {
+  const double limit = 0x1p53;
+  const auto read = [](const std::string& number, NumberRange range) {
+    std::int64_t value = 7;
+    return problems("{\"a\": " + number + "}", [&](ObjectReader& root) { root.required("a", value, range); })
+        .empty();
+  };
+  CHECK(read("9007199254740992", within(0, limit)));
+  CHECK(!read("9007199254740993", within(0, limit)));
+  CHECK(read("-9007199254740992", within(-limit, 0)));
+  CHECK(!read("-9007199254740993", within(-limit, 0)));
+  CHECK(!read("9007199254740992", above(limit)));
+  CHECK(read("9007199254740993", above(limit)));
+  CHECK(read("9223372036854775807", NumberRange{}));
+  CHECK(read("9223372036854775807", within(0, 0x1p63)));
+  CHECK(!read("9223372036854775807", within(0, 9223372036854774784.0)));  // the double below 2^63
+  CHECK(read("-9223372036854775808", within(-0x1p63, 0)));
 }
 
 TEST_CASE("a symbol, or a part of a name, leads to the name") {

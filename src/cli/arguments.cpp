@@ -50,7 +50,7 @@ std::optional<std::int64_t> Arguments::whole_number(const std::string& option, N
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
   const std::optional<std::int64_t> value = parse_integer(*given_text);
-  if (value && range.allows(static_cast<double>(*value))) return value;
+  if (value && range.allows(*value)) return value;
   reject(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
   return std::nullopt;
 }
@@ -66,38 +66,6 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
   }
   reject(option, "must be one of " + list + ", got " + in_quotes(*given_text));
   return std::nullopt;
-}
-
-std::string_view name_of(Format format) {
-  switch (format) {
-    case Format::json:
-      return "json";
-    case Format::gnuplot:
-      return "gnuplot";
-    case Format::csv:
-      return "csv";
-  }
-  return "";
-}
-
-Format format_of(Arguments& arguments, const std::optional<std::string>& output,
-                 std::initializer_list<Format> offered) {
-  const Format format = arguments.choice("--format", offered, *offered.begin());
-  const std::string ending = output ? std::filesystem::path(*output).extension().string() : "";
-  if (ending == ".csv" && format != Format::csv) {
-    arguments.reject("--output", "must not end in .csv for the format " + std::string(name_of(format)) +
-                                     "; --format csv writes CSV; got " + in_quotes(*output));
-  } else if (ending == ".json" && format != Format::json) {
-    arguments.reject("--output", "must not end in .json for the format " + std::string(name_of(format)) +
-                                     ", got " + in_quotes(*output));
-  }
-  return format;
-}
-
-void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output,
-                     const std::string& what) {
-  if (output && std::filesystem::path(*output).extension() == ".csv")
-    arguments.reject("--output", "must not end in .csv: it is " + what + ", got " + in_quotes(*output));
 }
 
 void Arguments::reject(const std::string& option, const std::string& what) {

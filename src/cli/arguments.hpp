@@ -67,16 +67,6 @@ class Arguments {
   std::vector<Problem> problems_;
 };
 
-// --format: in which form a result is written.
-enum class Format { json, gnuplot, csv };
-std::string_view name_of(Format format);
-// Which of `offered` --format names, the first of them if it is not given. A name of an output that ends in
-// ".csv" or ".json" for what is another format is rejected.
-Format format_of(Arguments& arguments, const std::optional<std::string>& output,
-                 std::initializer_list<Format> offered);
-// The same for a command whose output has one form: `what` it writes, "the verdicts as JSON".
-void reject_csv_name(Arguments& arguments, const std::optional<std::string>& output, const std::string& what);
-
 // --threads N, of every command that simulates more than one scene.
 Threads threads_of(Arguments& arguments);
 

@@ -64,7 +64,7 @@ constexpr std::array<Reader, 10> readers{
      {"run", [](const std::string& file, const fs::path& scenes) { check_run(file, scenes); }},
      {"response",
       [](const std::string& file, const fs::path&) { require_consistent(read_response(file), file); }},
-     {"plan", [](const std::string& file, const fs::path&) { read_plan(file); }},
+     {"plan", [](const std::string& file, const fs::path&) { read_plan(file, find_named_file); }},
      {"sweep", [](const std::string& file, const fs::path&) { check_sweep(file); }},
      {"design", [](const std::string& file, const fs::path&) { check_digest(file, "design"); }},
      {"comparison", [](const std::string& file, const fs::path&) { check_digest(file, "comparison"); }},
@@ -116,7 +116,7 @@ Command check_command() {
   Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
   command.options = {
       {"KIND", "scene|run|response|plan|sweep|design|comparison|catalogue|claims|manifest", "what they are"},
-      {"FILE", "", "one or several"},
+      input_option("FILE", "", "one or several"),
       scenes_option()};
   command.takes_more = true;
   command.footer =

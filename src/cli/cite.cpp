@@ -195,7 +195,8 @@ Command cite_command() {
   command.options = {
       {"--figure", "NUMBER", "what figure NUMBER of the manifest was made from, with which\ncommands"},
       {"--stamp", "TEXT", "the same for the figure that carries this in its lower right corner"},
-      {"--manifest", "FILE", "what the figures were made from; default data/reference/manifest.json"}};
+      input_option("--manifest", "FILE",
+                   "what the figures were made from; default data/reference/manifest.json")};
   command.footer =
       "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers "
       "(SWHID) of "

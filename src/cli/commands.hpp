@@ -14,7 +14,8 @@
 namespace impact_damper::cli {
 
 struct Option {
-  enum class Takes { value, repeated_value, nothing };
+  // input: the name of a file or folder that is read; the act gets the place where it is (find_named_file).
+  enum class Takes { value, repeated_value, input, nothing };
 
   std::string name{};  // "--runs", "-o,--output"; of a positional argument without dashes, "FILE"
   std::string type{};  // of the value, "FILE", or the words it is one of, "json|csv"
@@ -23,12 +24,15 @@ struct Option {
   Takes takes = Takes::value;
 };
 using Options = std::vector<Option>;
+inline Option input_option(const char* name, const char* type, const char* help) {
+  return {name, type, help, {}, Option::Takes::input};
+}
 
 struct Command {
   std::string name{}, description{};
   Options options{};
   std::string footer{};     // below the options in --help
-  bool takes_more = false;  // arguments behind those that are named: Arguments::more()
+  bool takes_more = false;  // more inputs behind the arguments that are named: Arguments::more()
   // 0, or 1 if a check failed. Throws UsageError (exit code 2), InputError (3), NumericalError (4), IoError
   // (5).
   std::function<int(Arguments&)> act{};

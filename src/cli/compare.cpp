@@ -8,7 +8,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/measured/comparison.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
 #include "text_table.hpp"
@@ -160,7 +160,7 @@ int compare(Arguments& arguments) {
   options.fit.threads = threads_of(arguments);
   const Engine engine = engine_of(arguments);
   const auto output = arguments.file("--output"), figures = arguments.file("--figures");
-  reject_csv_name(arguments, output, "the comparison as JSON");
+  reject_other_endings(arguments, "--output", output, {Format::json});
   arguments.reject_overwriting("--output", output, {scene_name.value_or(""), measured.value_or("")});
   if (figures && !fs::is_directory(*figures))
     arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
@@ -173,10 +173,7 @@ int compare(Arguments& arguments) {
   if (file.scene.force_amplitude != 0)
     throw InputError(
         std::vector{*scene_name + ": /exciting_force: must be 0 or left out, only free decays are compared"});
-  if (output) {
-    require_writable(*output);
-    if_interrupted_say(left_as_it_was(*output));
-  }
+  prepare_output(output);
   if (figures) require_gnuplot();
   const MeasuredRecord record = read_measured_record(*measured);
   ProgressOnStderr progress("compare");
@@ -194,8 +191,8 @@ int compare(Arguments& arguments) {
       write_file(fs::path(*figures) / (drawing.name + ".svg"), board.draw(drawing));
     }
   }
-  if (output) write_file(*output, comparison_text(comparison));
-  write_standard_output(summary_of(comparison));
+  if (output) write_output(output, comparison_text(comparison));
+  if (!is_standard_output(output)) write_standard_output(summary_of(comparison));
   return 0;
 }
 
@@ -207,10 +204,10 @@ Command compare_command() {
       .description =
           "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it."};
   command.options = {
-      {"--measured", "FILE",
-       "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, or\nacceleration "
-       "a_m_per_s2, a_mm_per_s2 or a_g"},
-      {"--scene", "FILE", "the scene, in units and without a force"},
+      input_option("--measured", "FILE",
+                   "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, or\nacceleration "
+                   "a_m_per_s2, a_mm_per_s2 or a_g"),
+      input_option("--scene", "FILE", "the scene, in units and without a force"),
       {"--fit", "LIST",
        "what is fitted, with commas between: restitution, damping_ratio, clearance\n(these are the default), "
        "secondary_mass; or none"},

@@ -12,7 +12,7 @@
 #include "impact_damper/sweeps/damper_set_design.hpp"
 #include "impact_damper/sweeps/design_file.hpp"
 #include "impact_damper/sweeps/lightest_design.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
 #include "text_table.hpp"
@@ -221,12 +221,12 @@ int design(Arguments& arguments) {
   const auto output = arguments.file("--output"), plan = arguments.file("--write-plan");
   for (const auto& [option, file] : {std::pair("--output", output), std::pair("--write-plan", plan)})
     arguments.reject_overwriting(option, file, {arguments.text("--scene").value_or("")});
-  reject_csv_name(arguments, output, "the designs as JSON");
+  for (const auto& [option, file] : {std::pair("--output", output), std::pair("--write-plan", plan)})
+    reject_other_endings(arguments, option, file, {Format::json});
+  reject_same_output(arguments, "--write-plan", plan, "--output", output);
   arguments.finish();
   if (const auto problems = problems_of(asked.question); !problems.empty()) reject_question(problems);
-  for (const auto& file : {output, plan})
-    if (file) require_writable(*file);
-  if (output) if_interrupted_say(left_as_it_was(*output));
+  for (const auto& file : {plan, output}) prepare_output(file);
 
   DesignAnswer answer;
   {
@@ -236,9 +236,9 @@ int design(Arguments& arguments) {
     });
   }
   if (plan && !answer.designs.empty())
-    write_file(*plan, plan_text(check_plan(asked.question, answer.designs.front().design)));
-  if (output) write_file(*output, design_text(asked.question, answer, asked.dimensionless));
-  write_standard_output(text_of(asked, answer));
+    write_output(plan, plan_text(check_plan(asked.question, answer.designs.front().design)));
+  if (output) write_output(output, design_text(asked.question, answer, asked.dimensionless));
+  if (!is_standard_output(output) && !is_standard_output(plan)) write_standard_output(text_of(asked, answer));
   return answer.met && answer.designs.front().check.confirmed ? 0 : 1;
 }
 

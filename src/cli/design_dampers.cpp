@@ -9,7 +9,7 @@
 #include "impact_damper/io/json_writer.hpp"
 #include "impact_damper/sweeps/damper_set_design.hpp"
 #include "impact_damper/sweeps/lightest_design.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
 #include "text_table.hpp"
@@ -178,20 +178,17 @@ int design_dampers(Arguments& arguments) {
   const Threads threads = threads_of(arguments);
   const auto output = arguments.file("--output");
   arguments.reject_overwriting("--output", output, {arguments.text("--scene").value_or("")});
-  reject_csv_name(arguments, output, "the scene as JSON");
+  reject_other_endings(arguments, "--output", output, {Format::json});
   arguments.finish();
   if (const auto problems = problems_of(asked.question); !problems.empty()) reject_question(problems);
-  if (output) {
-    require_writable(*output);
-    if_interrupted_say(left_as_it_was(*output));
-  }
+  prepare_output(output);
   DamperSet set;
   {
     ProgressOnStderr progress("design");
     set = best_damper_set(asked.question, threads, [&](const std::string& doing) { progress(doing); });
   }
-  if (output) write_file(*output, scene_file_text(asked, set));
-  write_standard_output(text_of(asked, set));
+  if (output) write_output(output, scene_file_text(asked, set));
+  if (!is_standard_output(output)) write_standard_output(text_of(asked, set));
   return 0;
 }
 

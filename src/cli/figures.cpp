@@ -39,7 +39,7 @@ int list_figures(const std::string& file) {
 Command figures_command() {
   Command command{.name = "figures",
                   .description = "List the figures: table, script, scenes and title of each."};
-  command.options = {{"CATALOGUE", "", "default figures/catalogue.json"}};
+  command.options = {input_option("CATALOGUE", "", "default figures/catalogue.json")};
   command.footer =
       "Tables are made by impact-damper series, pictures by figures/draw; make figures does it all.\n\n"
       "Example:\n"

@@ -52,6 +52,7 @@ void if_interrupted_say(const std::string& text) {
 }
 
 std::string left_as_it_was(const std::string& file) {
+  if (file == "-") return "nothing is written";
   std::error_code none;
   return file + (std::filesystem::exists(file, none) ? " is as it was" : " is not written");
 }

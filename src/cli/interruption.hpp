@@ -14,7 +14,7 @@ void end_cleanly();
 // What that line says after "interrupted: ". Commands renew it as they go on.
 void if_interrupted_say(const std::string& text);
 
-// The same for what a file's writing leaves: it is kept as it was, or not there.
+// The same for what a file's writing leaves: it is kept as it was, or not there. Of "-": nothing is written.
 std::string left_as_it_was(const std::string& file);
 
 }  // namespace impact_damper::cli

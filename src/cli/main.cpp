@@ -21,6 +21,7 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "interruption.hpp"
+#include "project_files.hpp"
 
 namespace {
 
@@ -82,10 +83,17 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
 }
 
 // What the parser found for one subcommand.
-cli::Arguments found_for(const CLI::App& command) {
+cli::Arguments found_for(const CLI::App& parsed, const cli::Command& command) {
   std::map<std::string, std::vector<std::string>> options;
-  for (const CLI::Option* option : command.get_options()) options[option->get_name()] = option->results();
-  return {std::move(options), command.remaining()};
+  for (const CLI::Option* option : parsed.get_options()) options[option->get_name()] = option->results();
+  std::vector<std::string> more = parsed.remaining();
+  const auto find = [](std::vector<std::string>& names) {
+    for (std::string& name : names) name = cli::find_named_file(name).value_or(name);
+  };
+  for (const cli::Option& option : command.options)
+    if (option.takes == cli::Option::Takes::input) find(options.at(option.name));
+  find(more);
+  return {std::move(options), std::move(more)};
 }
 
 // Options without a value that took the option behind them for it (--x0 --y0 1).
@@ -123,6 +131,9 @@ cli::Command whole_program() {
       "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
       "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
       "is.\n\n"
+      "What a command writes has the ending of its format (.json, .csv, .dat, .html, .svg, .md, .h5) or "
+      "none.\n"
+      "As the name of a file to write, - is standard output, in place of what else is printed there.\n\n"
       "Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content "
       "is\n"
       "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.";
@@ -191,7 +202,7 @@ int main(int argc, char** argv) {
     for (const cli::Command& command : commands) {
       if (command_of().get_name() != command.name) continue;
       require_arithmetic();  // tables and verdicts are computed as well, without an engine
-      cli::Arguments arguments = found_for(command_of());
+      cli::Arguments arguments = found_for(command_of(), command);
       return command.act(arguments);
     }
     throw cli::UsageError({Problem{"", "a subcommand must be given, see impact-damper --help"}});

@@ -12,7 +12,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/sweeps/sweep_table.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -347,16 +347,14 @@ int make_map(Arguments& arguments) {
   const auto file = arguments.file("TABLE"), output = arguments.file("--output");
   if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
   if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
-  if (output && !output->ends_with(".svg"))
-    arguments.reject("--output", "must end in .svg, got " + in_quotes(*output));
+  reject_other_endings(arguments, "--output", output, {Format::svg});
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
   arguments.finish();  // before the table is read, which says what else is valid
   const SweepDescription description = read_sweep_description(*file);
   const MapQuestion question = question_of(arguments, description.plan);
   arguments.finish();
-  require_writable(*output);
+  prepare_output(output);
   require_gnuplot();
-  if_interrupted_say(left_as_it_was(*output));
   MapMaker maker(description.plan, question);
   read_sweep_rows(*file, description, [&](std::span<const std::string> row) { maker.add(row); });
   const Map map = maker.finish();
@@ -375,8 +373,8 @@ int make_map(Arguments& arguments) {
     DrawingBoard board;
     svg = board.draw(drawing_of(named, map));
   }
-  write_file(*output, svg);
-  write_standard_output(summary_of(named, map));
+  write_output(output, svg);
+  if (!is_standard_output(output)) write_standard_output(summary_of(named, map));
   return 0;
 }
 
@@ -388,8 +386,8 @@ Command map_command() {
       .description =
           "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point."};
   command.options = {
-      {"TABLE", "FILE",
-       "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"},
+      input_option("TABLE", "FILE",
+                   "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"),
       {"--x", "NAME", "the number of the grid along the horizontal axis"},
       {"--y", "NAME", "the one along the vertical axis"},
       {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},

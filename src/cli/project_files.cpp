@@ -21,4 +21,11 @@ std::string project_file(const std::string& name) {
   return name;
 }
 
+std::optional<std::string> find_named_file(const std::string& name) {
+  std::error_code none;
+  const std::string found = project_file(name);
+  const bool is_of_project = name.starts_with("data/") || name.starts_with("figures/");
+  return is_of_project && fs::exists(found, none) ? std::optional(found) : std::nullopt;
+}
+
 }  // namespace impact_damper::cli

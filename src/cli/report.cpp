@@ -7,7 +7,7 @@
 #include "embedded.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/report/page.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
 
@@ -36,16 +36,13 @@ int report(Arguments& arguments) {
   const auto output = arguments.file("--output"), figures = arguments.file("--figures");
   const std::string scene_name = arguments.text("--scene").value_or("");
   arguments.reject_overwriting("--output", output, {scene_name});
-  reject_csv_name(arguments, output, "a page of HTML; impact-damper run --format csv writes CSV");
+  reject_other_endings(arguments, "--output", output, {Format::html});
   if (figures && !fs::is_directory(*figures))
     arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
   const bool without_figures = arguments.flag("--without-figures");
   if (without_figures && figures) arguments.reject("--figures", "must not be given with --without-figures");
   arguments.finish();
-  if (output) {
-    require_writable(*output);
-    if_interrupted_say(left_as_it_was(*output));
-  }
+  prepare_output(output);
   if (!without_figures) require_gnuplot(", or give --without-figures");
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 
@@ -68,11 +65,7 @@ int report(Arguments& arguments) {
   const std::string page = page_of(findings, drawings, svgs);
   if (figures)
     for (const auto& [name, svg] : svgs) write_file(fs::path(*figures) / (name + ".svg"), svg);
-  if (output) {
-    write_file(*output, page);
-  } else {
-    write_standard_output(page);
-  }
+  write_output(output, page);
   return 0;
 }
 

@@ -7,10 +7,9 @@
 
 #include "commands.hpp"
 #include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/steady/response_file.hpp"
 #include "impact_damper/steady/variation_of_dampers.hpp"
-#include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
 #include "vary.hpp"
@@ -518,20 +517,12 @@ int respond(Arguments& arguments) {
   asked.threads = threads_of(arguments);
   asked.quiet = arguments.flag("--quiet");
   arguments.finish();
-  if (output) {
-    require_writable(*output);
-    if_interrupted_say(left_as_it_was(*output));
-  }
+  prepare_output(output);
   if (!asked.quiet) warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
   if (in_si) asked.units = si_units_of(*asked.file.scales);
 
-  const std::string text =
-      saying_options([&] { return text_of(asked); }, arguments.text("--scene").value_or(""));
-  if (output) {
-    write_file(*output, text);
-  } else {
-    write_standard_output(text);
-  }
+  write_output(output,
+               saying_options([&] { return text_of(asked); }, arguments.text("--scene").value_or("")));
   return 0;
 }
 

@@ -15,6 +15,7 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 #include "interruption.hpp"
+#include "output.hpp"
 #include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
@@ -175,7 +176,7 @@ int run_scene(Arguments& arguments) {
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, double(most_members))).value_or(1);
   ensemble.threads = threads_of(arguments);
-  if (ensemble.members > 1 && !arguments.given("--output"))
+  if (ensemble.members > 1 && (!file || is_standard_output(file)))
     arguments.reject("--members", "needs --output FILE: the members are files beside it");
   if (ensemble.members > 1 && format == Format::csv)
     arguments.reject("--members", "is for run files, --format json");
@@ -183,10 +184,7 @@ int run_scene(Arguments& arguments) {
     arguments.reject_overwriting("--output", member_file(*file, member).string(),
                                  {arguments.text("--scene").value_or("")});
   arguments.finish();
-  if (file) {
-    require_writable(*file);
-    if_interrupted_say(left_as_it_was(*file));
-  }
+  prepare_output(file);
   warn_of_cautions(program, scene, scales);
   const Run result = saying_options([&] { return simulate(scene, engine, record); },
                                     arguments.text("--scene").value_or(""), scales);
@@ -195,12 +193,7 @@ int run_scene(Arguments& arguments) {
   if (ensemble.members > 1) run_members(*file, result, record, scales, ensemble);
   std::optional<SiUnits> units;
   if (in_si) units = si_units_of(*scales);
-  const std::string text = format == Format::csv ? run_csv(result, units) : run_text(result, scales);
-  if (file) {
-    write_file(*file, text);
-  } else {
-    write_standard_output(text);
-  }
+  write_output(file, format == Format::csv ? run_csv(result, units) : run_text(result, scales));
   return 0;
 }
 

@@ -261,7 +261,8 @@ Option threads_option() {
 }
 
 Option scenes_option() {
-  return {"--scenes", "FOLDER", "folder of the scenes that runs are named after; default data/scenes"};
+  return input_option("--scenes", "FOLDER",
+                      "folder of the scenes that runs are named after; default data/scenes");
 }
 
 Options scene_options(Stops stops) {
@@ -269,9 +270,11 @@ Options scene_options(Stops stops) {
   const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
     options.push_back({name, type, help, "Scene"});
   };
-  add("--scene", "FILE",
+  options.push_back(input_option(
+      "--scene", "FILE",
       "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the options below replace "
-      "its numbers and are always\ndimensionless");
+      "its numbers and are always\ndimensionless"));
+  options.back().group = "Scene";
   const Scene defaults;
   for (const SceneField& field : scene_fields) {
     add(option_of(field.name), "X",

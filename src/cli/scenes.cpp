@@ -58,7 +58,7 @@ int list_scenes(const fs::path& folder) {
 
 Command scenes_command() {
   Command command{.name = "scenes", .description = "List the scenes of a folder, each with its numbers."};
-  command.options = {{"FOLDER", "", "folder of scene files (*.json); default data/scenes"}};
+  command.options = {input_option("FOLDER", "", "folder of scene files (*.json); default data/scenes")};
   command.footer =
       "Columns are the keys of a dimensionless scene file; a scene in units is listed as what it makes\n"
       "(impact-damper run --help). With a list of dampers \"-\" stands for the numbers that each has.\n\n"

@@ -11,6 +11,7 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
 #include "interruption.hpp"
+#include "output.hpp"
 #include "project_files.hpp"
 
 namespace impact_damper::cli {
@@ -111,8 +112,9 @@ void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalo
           FigureSweeps& sweeps) {
   if (figure.plan.empty()) return;
   for_figure(figure, [&] {
-    sweeps[figure.plan] = read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
-                                           read_plan(catalogue_file.parent_path() / figure.plan));
+    sweeps[figure.plan] =
+        read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
+                         read_plan(catalogue_file.parent_path() / figure.plan, find_named_file));
   });
 }
 
@@ -127,7 +129,8 @@ int make_tables(Arguments& arguments) {
       arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
   const Catalogue catalogue = read_catalogue(catalogue_file);
   const std::vector<const Figure*> figures = chosen(catalogue, arguments);
-  const bool into_folder = output && fs::is_directory(*output);
+  const bool on_standard_output = !output || is_standard_output(output);
+  const bool into_folder = !on_standard_output && fs::is_directory(*output);
   if (!into_folder && figures.size() != 1) {
     arguments.reject("--output", "must be an existing folder if more than one table is made, got " +
                                      (output ? in_quotes(*output) : "none"));
@@ -150,13 +153,12 @@ int make_tables(Arguments& arguments) {
   }
   arguments.reject_overwriting("--output", output, inputs);
   arguments.finish();
-  if (output && !into_folder) require_writable(*output);
 
   const auto place_of = [&](const Figure& figure) {
     return into_folder ? fs::path(*output) / (file_stem(figure) + (format == Format::csv ? ".csv" : ".dat"))
                        : fs::path(*output);
   };
-  if (output) {
+  if (!on_standard_output) {
     for (const Figure* figure : figures) require_writable(place_of(*figure));
   }
 
@@ -165,7 +167,7 @@ int make_tables(Arguments& arguments) {
   FigureSweeps sweeps;
   std::size_t made = 0;
   for (const Figure* figure : figures) {
-    if (output) {
+    if (!on_standard_output) {
       if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
                          " tables are left; " + left_as_it_was(place_of(*figure)));
     }
@@ -176,11 +178,7 @@ int make_tables(Arguments& arguments) {
     const bool draws_further = !runs_of(*figure).empty();
     const Table table = figure_table(*figure, draws_further ? further : runs, responses, sweeps);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
-    if (!output) {
-      write_standard_output(text);
-    } else {
-      write_file(place_of(*figure), text);
-    }
+    write_output(on_standard_output ? output : place_of(*figure).string(), text);
   }
   return 0;
 }
@@ -190,11 +188,11 @@ int make_tables(Arguments& arguments) {
 Command series_command() {
   Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
   command.options = {
-      {"--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"},
-      {"--runs", "FOLDER",
-       "folder of the runs, must be given: SCENE.json of each scene, with\n"
-       "the members of the ensembles that figures show (run --members),\n"
-       "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"},
+      input_option("--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of the runs, must be given: SCENE.json of each scene, with\n"
+                   "the members of the ensembles that figures show (run --members),\n"
+                   "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"),
       scenes_option(),
       {.name = "--figure",
        .type = "NUMBER",

@@ -16,7 +16,9 @@
 #include "impact_damper/sweeps/plan_file.hpp"
 #include "impact_damper/sweeps/share_file.hpp"
 #include "interruption.hpp"
+#include "output.hpp"
 #include "progress.hpp"
+#include "project_files.hpp"
 #include "scene_arguments.hpp"
 #include "text_table.hpp"
 #include "vary.hpp"
@@ -146,7 +148,7 @@ Plan plan_of(Arguments& arguments) {
     if (const std::string name = long_name(option.name); arguments.given(name))
       arguments.reject(name, "cannot be given beside a plan, which says it");
   arguments.finish();
-  return read_plan(*file);
+  return read_plan(*file, find_named_file);
 }
 
 struct Part {
@@ -177,10 +179,13 @@ std::string program_identity() {
 }
 
 void require_known_format(Arguments& arguments, const std::optional<std::string>& output) {
+  reject_other_endings(arguments, "--output", output, {Format::csv, Format::hdf5});
+  if (is_standard_output(output))
+    arguments.reject("--output", "must be a file, beside which a description of it is written, got \"-\"");
   if (output && is_hdf5(*output) && !has_hdf5())
     arguments.reject("--output",
-                     "ends in .h5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
-                     "with another name the table is CSV");
+                     "asks for HDF5, but the program was built without its library (Debian: libhdf5-dev); "
+                     "named *.csv the table is CSV");
 }
 
 // For reading: "42 s", "17 min", "3.5 h".
@@ -333,7 +338,7 @@ Command sweep_command() {
                       "Simulate a scene with many other numbers, and keep what is asked for of each run as "
                       "one table."};
   command.options = {
-      {"PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"},
+      input_option("PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"),
       {"--list-quantities", "", "print what can be kept, with its units, and exit", "Sweep",
        Option::Takes::nothing},
       {"--dry-run", "",
@@ -368,7 +373,7 @@ Command merge_command() {
   Command command{
       .name = "merge",
       .description = "Join the parts that sweep --part has made into the table that one sweep makes."};
-  command.options = {{"PART", "FILE", "the parts, in any order"},
+  command.options = {input_option("PART", "FILE", "the parts, in any order"),
                      {"-o,--output", "FILE",
                       "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}};
   command.takes_more = true;

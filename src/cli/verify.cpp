@@ -23,6 +23,7 @@
 #include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/reproduction/words.hpp"
 #include "interruption.hpp"
+#include "output.hpp"
 #include "power_table.hpp"
 #include "project_files.hpp"
 
@@ -277,9 +278,10 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::s
     told = now;
     std::cerr << "verify: " << done << " of " << searches << " searches" << std::endl;
   });
-  if (json_file) write_file(*json_file, json_text(table));
-  if (markdown_file) write_file(*markdown_file, markdown_text(table));
-  write_standard_output(table_text(table));
+  if (json_file) write_output(json_file, json_text(table));
+  if (markdown_file) write_output(markdown_file, markdown_text(table));
+  if (!is_standard_output(json_file) && !is_standard_output(markdown_file))
+    write_standard_output(table_text(table));
   return 0;
 }
 
@@ -295,10 +297,7 @@ int verify(Arguments& arguments) {
       arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
   const auto verdicts_file = arguments.file("--output"), markdown_file = arguments.file("--markdown");
   const bool power = arguments.flag("--power");
-  reject_csv_name(arguments, verdicts_file, "the verdicts as JSON");
-  const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
-  if (verdicts_file && markdown_file && place(*verdicts_file) == place(*markdown_file))
-    arguments.reject("--markdown", "must be another file than --output, got " + in_quotes(*markdown_file));
+  reject_same_output(arguments, "--markdown", markdown_file, "--output", verdicts_file);
   arguments.finish();
 
   const ClaimsFile read = read_claims_file(claims_file);
@@ -318,11 +317,12 @@ int verify(Arguments& arguments) {
         inputs.push_back(member_file(run, member));
     }
   for (const std::string& name : names.responses) inputs.push_back(folders.file_of(name));
+  reject_other_endings(arguments, "--output", verdicts_file, {Format::json});
+  reject_other_endings(arguments, "--markdown", markdown_file, {Format::markdown});
   arguments.reject_overwriting("--output", verdicts_file, inputs);
   arguments.reject_overwriting("--markdown", markdown_file, inputs);
   arguments.finish();
-  for (const auto& file : {verdicts_file, markdown_file})
-    if (file) require_writable(*file);
+  for (const auto& file : {markdown_file, verdicts_file}) prepare_output(file);
 
   std::map<std::string, Response> responses = checked(folders, names, catalogue);
   if (power)
@@ -357,10 +357,11 @@ int verify(Arguments& arguments) {
   }
   const std::string engine = runs.engine();
   for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
-  if (verdicts_file) write_file(*verdicts_file, verdicts_text(all, read.open));
-  if (markdown_file) write_file(*markdown_file, markdown_text(all, read.open, engine));
-  write_standard_output(table_text(all, read.open) + "\n" +
-                        (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
+  if (verdicts_file) write_output(verdicts_file, verdicts_text(all, read.open));
+  if (markdown_file) write_output(markdown_file, markdown_text(all, read.open, engine));
+  if (!is_standard_output(verdicts_file) && !is_standard_output(markdown_file))
+    write_standard_output(table_text(all, read.open) + "\n" +
+                          (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
   return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
 }
 
@@ -370,19 +371,19 @@ Command verify_command() {
   Command command{.name = "verify",
                   .description = "Hold the runs against everything the paper reports, claim by claim."};
   command.options = {
-      {"--claims", "FILE", "what the paper reports; default data/claims.json"},
-      {"--runs", "FOLDER",
-       "folder of run files, NAME.json of each scene, further run and\n"
-       "response, with the other members of its ensemble (run --members);\n"
-       "default build/runs/exact"},
+      input_option("--claims", "FILE", "what the paper reports; default data/claims.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of run files, NAME.json of each scene, further run and\n"
+                   "response, with the other members of its ensemble (run --members);\n"
+                   "default build/runs/exact"),
       scenes_option(),
       {.name = "--power",
        .help =
            "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
        .takes = Option::Takes::nothing},
-      {"--catalogue", "FILE",
-       "lists the further runs; default figures/catalogue.json. If given, the\n"
-       "claims that its figures rest on must exist"},
+      input_option("--catalogue", "FILE",
+                   "lists the further runs; default figures/catalogue.json. If given, the\n"
+                   "claims that its figures rest on must exist"),
       {"--members", "N",
        "use the first N of each ensemble, the run file itself among them;\n"
        "1 to 100, default 16; --power simulates them"},

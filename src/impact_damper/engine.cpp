@@ -18,7 +18,7 @@ void check(const OptionInfo& option, const Value& value, std::vector<Problem>& p
   if constexpr (std::is_same_v<Value, std::optional<double>>) {
     if (value) check(option, *value, problems);
   } else if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::int64_t>) {
-    if (option.range.allows(static_cast<double>(value))) return;
+    if (option.range.allows(value)) return;
     const bool bounded = std::is_integral_v<Value> || option.range.most < NumberRange{}.most;
     problems.push_back(
         {std::string(option.name),

@@ -79,7 +79,7 @@ def faults_of(source, words, code, warned, said):
     faults = []
     if done.returncode != code:
         faults.append(f"exit code {done.returncode} instead of {code}")
-    output = re.search("-o ([a-z.]+)", words) if code == 0 else None
+    output = re.search("-o ([A-Za-z0-9][A-Za-z0-9.-]*)", words) if code == 0 else None
     if code == 0:
         place = err if warned else out
         if err and not warned and not (warned is None and ": warning: " in err):

@@ -146,7 +146,7 @@ for name, words in basins.items():
         place = [axis["from"] + (axis["to"] - axis["from"]) * i / (axis["count"] - 1)
                  for axis, i in ((first, n % first["count"]), (second, n // first["count"]))]
         demand(all(math.isclose(float(a), b, rel_tol=1e-12, abs_tol=1e-12) for a, b in zip(row, place)), f"{name}.csv: {row}")
-        demand((int(row[2]) if row[2] else -1) == attractor[n], f"{name}.csv: {row}")
+        demand(row[2] == str(attractor[n]), f"{name}.csv: {row}")
     demand(len(rows) == len(attractor), f"{name}.csv: {len(rows)} rows")
 starts = json.loads((folder / "starts.json").read_text())
 demand([axis["from"] for axis in starts["axes"]] == [-2, 1 / 160], f"starts: {starts['axes']}")

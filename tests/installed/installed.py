@@ -53,10 +53,30 @@ def finds_its_files():
     demand(done.returncode in (0, 1) and f"\nengine exact, {claims} claims: " in done.stdout, done.stderr + done.stdout)
 
 
+def finds_what_is_named():
+    """data/... as an argument, of every command and from a plan: the very results of the source folder."""
+    mast, wind, plan = "data/examples/mast.json", "data/examples/mast_in_wind.json", "data/examples/mast_plan.json"
+    for arguments in (["run", "--scene", mast], ["check", "scene", mast, wind], ["check", "plan", plan],
+                      ["report", "--scene", mast, "--members", "1", "--without-figures"], ["scenes", "data/examples/../scenes"],
+                      ["response", "lyapunov", "--scene", wind, "--periods", "10", "--discard", "0"],
+                      ["design", "--scene", mast, "--dampers", "1", "--to", "10"], ["figures", "figures/catalogue.json"],
+                      ["series", "--catalogue", "figures/catalogue.json", "--scenes", "data/scenes", "--runs", RUNS, "--figure", "7"]):
+        found = run(PROGRAM, *arguments).replace(f"{SHARE}/", "")
+        demand(found == run(BUILT, *arguments, folder=SOURCE), f"{arguments} differs")
+    demand("data/examples/mast.csv: cannot be read: No such file" in
+           run(PROGRAM, "compare", "--scene", mast, "--measured", "data/examples/mast.csv", code=5), "what is nowhere has its name")
+    (FOLDER / "plan.json").write_text((SOURCE / plan).read_text().replace('"mast.json"', f'"{mast}"'))
+    demand(run(PROGRAM, "check", "plan", "plan.json") == "plan.json: valid\n", "a plan that names a scene")
+
+
 def the_current_folder_comes_first():
     own = FOLDER / "own"
     (own / "data/scenes").mkdir(parents=True)
     (own / "data/scenes/mine.json").write_text('{"until_time": 5}')
+    (own / "data/examples").mkdir()
+    (own / "data/examples/mast.json").write_text('{"until_time": 5, "x0": 1.25}')
+    demand('"x0": 1.25,' in run(PROGRAM, "run", "--scene", "data/examples/mast.json", folder=own), "the current folder's own mast")
+    run(PROGRAM, "check", "scene", "examples/mast.json", folder=own, code=5)
     lines = run(PROGRAM, "scenes", folder=own).splitlines()
     demand(len(lines) == 2 and lines[1].startswith("mine "), lines)
     demand("nu2-e06" in run(PROGRAM, "figures", folder=own), "what the current folder lacks is found with the program")
@@ -167,6 +187,7 @@ def shells_complete_every_option():
 shutil.rmtree(FOLDER, ignore_errors=True)
 FOLDER.mkdir(parents=True)
 finds_its_files()
+finds_what_is_named()
 the_current_folder_comes_first()
 a_link_and_a_copy()
 headers_include_what_is_installed()

@@ -48,6 +48,13 @@ TEST_CASE("quotes, a byte order mark, CRLF and empty lines are what RFC 4180 and
   CHECK(record.value[63] == 126);
 }
 
+TEST_CASE("a plus sign and a number too small for a double are read as elsewhere") {
+  const auto record = parse_measured_record("r.csv", "t_s,x_mm\n-1,+1e-400\n+0.25,+3\n" + rows(64));
+  CHECK(record.value[0] == 0);
+  CHECK(record.time[1] == 0.25);
+  CHECK(record.value[1] == 3);
+}
+
 TEST_CASE("an empty cell is a missing sample") {
   const auto record = parse_measured_record("r.csv", "t_s,x_mm\n-1,\n" + rows(64));
   CHECK(record.time.size() == 64);

@@ -137,7 +137,9 @@ class Module(unittest.TestCase):
         self.assertIn("mass_ratio", lines[6].split(":", 1)[1])
 
     def test_each_wrong_argument_is_a_value_error(self):
-        for arguments, word in (({}, "until_time"), ({"mass": 40, "until_seconds": 1}, "stiffness"),
+        for arguments, word in (({}, "until_time"), ({"X0": 3, "until_time": 5}, 'X0: unknown key, did you mean "x0"?'),
+                                ({"x0": 3, "clearence": 4, "until_time": 5}, 'clearence: unknown key, did you mean "clearance"?'),
+                                ({"x0": "+3", "until_time": 5}, 'x0: must be a number, got the string "+3"'), ({"mass": 40, "until_seconds": 1}, "stiffness"),
                                 ({"mass": 40, "x0": 1, "until_time": 5}, "either in units or dimensionless"),
                                 ({"until_time": 5, "engine": "exakt"}, "exact, restitution or cem, got exakt"),
                                 ({"until_time": 5, "engine": {"name": "exact", "time_step": 1}}, "engine: /time_step: unknown"),

@@ -110,6 +110,22 @@ TEST_CASE("what follows an altered byte is made anew") {
   }
 }
 
+TEST_CASE(
+    "a share whose lines have got other ends, or its head other blanks, is altered, not of another plan") {
+  const Folder folder;
+  const fs::path table = folder.path / "t.csv", file = made(table, 1, 1);
+  const std::string whole = read_text(file);
+  std::string other_ends, other_blanks = whole;
+  for (const char c : whole) other_ends += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  other_blanks.insert(2, " ");
+  for (const std::string& text : {other_ends, other_blanks}) {
+    put(file, text);
+    CHECK_THROWS_WITH_AS(ShareWriter(file, head_of()), doctest::Contains("is altered"), InputError);
+    CHECK_THROWS_WITH_AS(join_shares({file}, table), doctest::Contains("is altered"), InputError);
+    CHECK(read_text(file) == text);
+  }
+}
+
 TEST_CASE("a share of another plan, part or program is not gone on with") {
   const Folder folder;
   const fs::path file = made(folder.path / "t.csv", 1, 1);

@@ -37,7 +37,7 @@ ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
 SCENES = [(scene, engine) for folder, engines in (("data/scenes", CLOSED_FORM), ("tests/same_bits/scenes", ALL))
           for scene in sorted((SOURCE / folder).glob("*.json")) for engine in engines]
 WINDOW = {"begin": 0, "end": 30, "count": 301}
-WRONG = ["{", "[]", '{"mass_ratio": -1}', '{"x0": 1, "until_time": 1, "foo": 2}', '{"x0": "Übung", "until_time": 1}',
+WRONG = ["{", "[]", '{"mass_ratio": -1}', '{"x0": 1, "until_time": 1, "foo": 2}', '{"X0": 1, "until_time": 1}', '{"x0": "Übung", "until_time": 1}',
          '{"x0": 1, "until_time": 1e400}']
 
 

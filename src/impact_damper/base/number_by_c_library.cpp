@@ -157,10 +157,7 @@ std::errc read(std::string_view text, double& value) {
   if (!is_decimal(text)) return std::errc::invalid_argument;
   const std::string ended(text);
   const double read = std::strtod(ended.c_str(), nullptr);
-  // Out of range is what is larger than all numbers, and what is not zero and read as zero.
-  const bool has_digit =
-      ended.substr(0, ended.find_first_of("eE")).find_first_of("123456789") != std::string::npos;
-  if (std::isinf(read) || (read == 0 && has_digit)) return std::errc::result_out_of_range;
+  if (std::isinf(read)) return std::errc::result_out_of_range;
   value = read;
   return {};
 }

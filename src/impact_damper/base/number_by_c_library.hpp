@@ -15,8 +15,9 @@ std::string shortest_text(double value);
 // What std::to_chars(value, std::chars_format::general, digits) writes.
 std::string rounded_text(double value, int digits);
 
-// What std::from_chars does with the whole of `text`: not {} if it is no number, or one out of range, or if
-// something follows it. Then `value` is left as it was.
+// What std::from_chars does with the whole of `text`, except that a number too small for a double is read as
+// zero: not {} if it is no number, or one too large, or if something follows it. Then `value` is left as it
+// was.
 std::errc read(std::string_view text, double& value);
 
 }  // namespace impact_damper::by_c_library

@@ -1,7 +1,9 @@
 #include "impact_damper/base/number_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 #include "impact_damper/base/number_by_c_library.hpp"
@@ -13,10 +15,38 @@ template <typename Number>
 std::errc read(std::string_view text, Number& value) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop != end ? std::errc::invalid_argument : error;
+  return error != std::errc::invalid_argument && stop != end ? std::errc::invalid_argument : error;
+}
+
+// What charconv takes no plus sign in.
+std::string_view without_plus(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  return text;
+}
+
+// Of a decimal number that is out of the range of double: whether it is too small, by the power of ten of its
+// first digit that is not zero.
+bool is_too_small(std::string_view text) {
+  const std::size_t end = std::min(text.find_first_of("eE"), text.size());
+  const auto point = static_cast<std::int64_t>(std::min(text.find('.'), end)),
+             first = static_cast<std::int64_t>(text.find_first_of("123456789"));
+  std::int64_t exponent = 0;
+  if (end < text.size()) {
+    text = without_plus(text.substr(end + 1));
+    constexpr std::int64_t beyond_any_length = std::numeric_limits<std::int64_t>::max() / 2;
+    if (read(text, exponent) != std::errc{})
+      exponent = text.starts_with('-') ? -beyond_any_length : beyond_any_length;
+  }
+  return point - first + exponent < 0;
 }
 
 #ifdef __cpp_lib_to_chars  // <charconv> knows double
+std::errc read(std::string_view text, double& value) {
+  const std::errc error = read<double>(text, value);
+  if (error != std::errc::result_out_of_range || !is_too_small(text)) return error;
+  value = text.starts_with('-') ? -0.0 : 0.0;
+  return {};
+}
 template <typename... Form>
 std::string written(double value, Form... form) {
   char text[40];
@@ -33,7 +63,7 @@ std::string written(double value, std::chars_format, int digits) {
 template <typename Number>
 std::optional<Number> parse_whole(std::string_view text) {
   Number value{};
-  if (read(text, value) != std::errc{}) return std::nullopt;
+  if (read(without_plus(text), value) != std::errc{}) return std::nullopt;
   return value;
 }
 

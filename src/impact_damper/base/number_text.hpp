@@ -17,8 +17,9 @@ void append_number(std::string& text, std::int64_t value);
 // `value` to so many significant digits, for reading: "0.0788", "1.23e+06".
 std::string rounded_text(double value, int digits);
 
-// The finite number that the whole of `text` spells: no spaces, no leading '+', no "nan" or "inf", no
-// overflow, nothing behind it. Otherwise absent.
+// The finite number that the whole of `text` spells, rounded to nearest, which is zero for 1e-400 as for any
+// reader of JSON: no spaces, no "nan" or "inf", no overflow, nothing behind it. Otherwise absent. A plus sign
+// may stand before it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 

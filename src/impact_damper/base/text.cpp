@@ -83,10 +83,24 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+// -1, 0 or 1 as `value` is below, equal to or above `limit`. Rounding `value` to a double keeps the order
+// with another one, so that only where it becomes `limit` itself the integers are compared.
+int order(std::int64_t value, double limit) {
+  const auto rounded = static_cast<double>(value);
+  if (rounded != limit || rounded == 0x1p63) return rounded > limit ? 1 : -1;
+  const auto exact = static_cast<std::int64_t>(limit);
+  return (value > exact) - (value < exact);
+}
+
 }  // namespace
 
 bool NumberRange::allows(double value) const {
   return (least_is_allowed ? value >= least : value > least) && value <= most;
+}
+
+bool NumberRange::allows(std::int64_t value) const {
+  const int above_least = order(value, least);
+  return (least_is_allowed ? above_least >= 0 : above_least > 0) && order(value, most) <= 0;
 }
 
 std::string NumberRange::describe(std::string_view kind) const {
@@ -122,33 +136,41 @@ std::string listed(const std::vector<std::string_view>& words, std::string_view 
   return text;
 }
 
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
   if (word.size() > 100) return std::nullopt;
-  const std::string asked = bare(word);
+  const std::string as_given = bare(word), asked = in_lower_case(as_given);
   if (asked.empty()) return std::nullopt;
   for (const auto& [symbol, name] : symbols) {
-    if (asked != symbol) continue;
+    if (as_given != symbol) continue;
     for (const std::string_view candidate : known)
       if (bare(candidate) == name) return candidate;
   }
   // A name that was broken off.
   if (asked.size() >= 4)
     for (const std::string_view candidate : known)
-      if (bare(candidate).starts_with(asked)) return candidate;
+      if (in_lower_case(bare(candidate)).starts_with(asked)) return candidate;
   std::optional<std::string_view> found;
   // Two slips, or one in every three letters of a long word, but no more than half of a short one; farther
   // words are not what was meant.
-  std::size_t best = std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1;
+  std::pair<std::size_t, std::size_t> best{
+      std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1, 0};
   for (const std::string_view candidate : known) {
     const std::string name = bare(candidate);
-    const std::size_t distance = edit_distance(asked, name);
-    if (distance >= best || distance >= name.size()) continue;
+    const std::pair distance{edit_distance(asked, in_lower_case(name)), edit_distance(as_given, name)};
+    if (distance >= best || distance.first >= name.size()) continue;
     best = distance;
     found = candidate;
   }
   if (found || asked.size() < 3) return found;
   for (const std::string_view candidate : known)
-    if (begins_a_part(asked, bare(candidate))) return candidate;
+    if (begins_a_part(asked, in_lower_case(bare(candidate)))) return candidate;
   return std::nullopt;
 }
 

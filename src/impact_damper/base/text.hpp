@@ -1,6 +1,7 @@
 // The words in which bad input is rejected, the same for files and command lines.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ struct NumberRange {
   bool least_is_allowed = true;
 
   bool allows(double value) const;
+  bool allows(std::int64_t value) const;              // exactly: above 2^53 not every integer is a double
   std::string describe(std::string_view kind) const;  // "a number" -> "a number >= 0 and <= 1"
 };
 constexpr NumberRange within(double least, double most) { return {least, most}; }
@@ -29,9 +31,12 @@ std::string in_quotes(std::string_view text);  // cut, between double quotes
 // "a", "a or b", "a, b or c"; `last` is the word before the final item, here "or".
 std::string listed(const std::vector<std::string_view>& words, std::string_view last);
 
+std::string in_lower_case(std::string_view text);  // ASCII
+
 // The word of `known` that was meant by `word`: what the symbol `word` stands for (nu: mass_ratio), else the
 // nearest if it is near enough, else the first of which `word` begins a part (force: exciting_force). Options
-// and keys count as the same, "--mass-ratio" as "mass_ratio". Absent if there is none.
+// and keys count as the same, "--mass-ratio" as "mass_ratio"; capitals decide only between words that are
+// equally near without them. Absent if there is none.
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace impact_damper

@@ -164,10 +164,12 @@ void JsonProblems::throw_if_any() const {
 void JsonProblems::throw_if_any_or_unknown() const {
   JsonProblems all = *this;
   for (const Opened& opened : opened_) {
-    const std::vector<std::string_view> known(opened.known.begin(), opened.known.end());
+    const std::vector<std::string_view> known(opened.known.begin(), opened.known.end()),
+        suggested(opened.suggested.begin(), opened.suggested.end());
     for (const auto& item : opened.object->items()) {
       if (opened.known.contains(item.key())) continue;
-      const auto meant = nearest(item.key(), known);
+      auto meant = nearest(item.key(), known);
+      if (!meant) meant = nearest(item.key(), suggested);
       all.add(opened.pointer + '/' + json_token(item.key()),
               meant ? "unknown key, did you mean \"" + std::string(*meant) + "\"?"
                     : "unknown key, allowed are: " + list(known));
@@ -180,6 +182,11 @@ bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
   // The parser takes it for the end of the text, whatever stands behind it.
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
     problems.add({}, place_in(text, nul + 1) + ": a NUL, allowed in no JSON text");
+    return false;
+  }
+  // Which words the parser has for it depends on its version.
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    problems.add({}, "is empty, must be JSON");
     return false;
   }
   Builder builder(text, root, problems);

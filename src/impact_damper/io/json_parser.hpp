@@ -26,6 +26,7 @@ class JsonProblems {
   // The index of the known keys of `object`.
   std::size_t open(const std::string& pointer, const nlohmann::json& object);
   void know(std::size_t opened, std::string_view key) { opened_[opened].known.emplace(key); }
+  void suggest(std::size_t opened, std::string_view key) { opened_[opened].suggested.emplace(key); }
 
   // Throw InputError.
   void throw_if_any() const;
@@ -35,7 +36,7 @@ class JsonProblems {
   struct Opened {
     std::string pointer;
     const nlohmann::json* object;
-    std::set<std::string, std::less<>> known;
+    std::set<std::string, std::less<>> known, suggested;
   };
 
   std::string file_;

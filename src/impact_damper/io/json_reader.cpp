@@ -72,7 +72,7 @@ bool read_into(std::int64_t& target, const Json& value, const NumberRange& range
     return false;
   }
   const auto number = value.get<std::int64_t>();
-  if (!range.allows(static_cast<double>(number))) return false;
+  if (!range.allows(number)) return false;
   target = number;
   return true;
 }
@@ -242,6 +242,10 @@ std::vector<std::string> ObjectReader::keys() {
     found.push_back(item.key());
   }
   return found;
+}
+
+void ObjectReader::suggest(std::string_view key) {
+  if (object_) problems_->suggest(opened_, key);
 }
 
 bool ObjectReader::wrong(std::string_view key, const std::string& wanted, const Json& given) {

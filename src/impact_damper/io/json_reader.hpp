@@ -112,6 +112,9 @@ class ObjectReader {
   bool has(std::string_view key);          // makes it known
   bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
 
+  // A key that is not known, but that another may be meant by: an object of a related kind has it.
+  void suggest(std::string_view key);
+
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
   // is allowed and what was given. For checks that the reader cannot do.
   void reject(std::string_view key, std::string_view what);

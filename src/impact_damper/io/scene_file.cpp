@@ -130,6 +130,8 @@ SceneFile read_scene_object(ObjectReader& object, DamperList dampers) {
   SceneFile file;
   if (rejects_dampers(object, dampers)) return file;
   object.optional("description", file.description);
+  for (const UnitField& field : unit_fields) object.suggest(field.name);
+  for (const SceneField& field : scene_fields) object.suggest(field.name);
   const auto [in_units, without_units] = given_keys(object);
   if (in_units.empty()) {
     file.scene = read_scene_fields(object, dampers);

@@ -474,7 +474,7 @@ std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
     CsvRow row(text, units);
     row.number(first.value(std::int64_t(n) % first.count), of_first);
     row.number(second.value(std::int64_t(n) / first.count), of_second);
-    row.word(basin.attractor[n] == undecided ? "" : std::to_string(basin.attractor[n]));
+    row.word(std::to_string(basin.attractor[n]));
   }
   return text;
 }

@@ -1,11 +1,13 @@
 #include "impact_damper/sweeps/hdf5_table.hpp"
 
+#include <algorithm>
+
 #include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/text.hpp"
 
 #ifdef IMPACT_DAMPER_HDF5
 #include <H5Cpp.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -17,7 +19,9 @@
 
 namespace impact_damper {
 
-bool is_hdf5(const std::filesystem::path& table) { return table.extension() == ".h5"; }
+bool is_hdf5(const std::filesystem::path& table) {
+  return std::ranges::count(hdf5_endings, in_lower_case(table.extension().string())) > 0;
+}
 
 #ifndef IMPACT_DAMPER_HDF5
 

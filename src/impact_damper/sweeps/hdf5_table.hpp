@@ -3,6 +3,7 @@
 // no such number. Only where the program was built with the HDF5 library.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -11,7 +12,8 @@
 
 namespace impact_damper {
 
-bool is_hdf5(const std::filesystem::path& table);  // by its name: .h5
+inline constexpr std::array<std::string_view, 3> hdf5_endings{".h5", ".hdf5", ".hdf"};
+bool is_hdf5(const std::filesystem::path& table);  // by the ending of its name, in capitals or not
 bool has_hdf5();                                   // whether the program was built with the library
 
 class Hdf5Table {

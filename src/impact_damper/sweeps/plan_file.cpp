@@ -115,13 +115,16 @@ void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
   }
 }
 
-SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folder) {
+SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folder, const FindFile& find) {
   if (object.has("scene_file")) {
     std::string name;
     const bool both = object.has("scene");
     if (both) object.reject("scene", "either it or scene_file must be given, got both");
     if (!object.required("scene_file", name, some_text) || both) return {};
-    return read_scene_file(folder / name, DamperList::allowed);
+    const std::filesystem::path beside = folder / name;
+    std::error_code none;
+    const auto elsewhere = find && !std::filesystem::exists(beside, none) ? find(name) : std::nullopt;
+    return read_scene_file(elsewhere.value_or(beside.string()), DamperList::allowed);
   }
   if (!object.has("scene")) {
     object.reject("scene", "it or scene_file must be given");
@@ -131,9 +134,9 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
   return read_scene_object(scene, DamperList::allowed);
 }
 
-Plan finished(JsonDocument document, const std::filesystem::path& folder) {
+Plan finished(JsonDocument document, const std::filesystem::path& folder, const FindFile& find) {
   ObjectReader object = document.root();
-  Plan plan = read_plan_object(object, folder);
+  Plan plan = read_plan_object(object, folder, find);
   document.finish();
   return plan;
 }
@@ -168,19 +171,19 @@ void write_samples(JsonWriter& out, const Samples& samples) {
 
 }  // namespace
 
-Plan read_plan(const std::filesystem::path& file) {
-  return finished(JsonDocument::read(file, plan_kind), file.parent_path());
+Plan read_plan(const std::filesystem::path& file, const FindFile& find) {
+  return finished(JsonDocument::read(file, plan_kind), file.parent_path(), find);
 }
 
 Plan parse_plan(const std::string& name, const std::string& text) {
-  return finished(JsonDocument::parse(name, text), {});
+  return finished(JsonDocument::parse(name, text), {}, {});
 }
 
-Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder) {
+Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder, const FindFile& find) {
   Plan plan;
   if (object.require("schema")) object.word("schema", {plan_schema});
   object.optional("description", plan.description);
-  plan.scene = read_scene_of(object, folder);
+  plan.scene = read_scene_of(object, folder, find);
   if (auto engine = object.optional_object("engine"))
     if (const auto read = read_engine_of_plan(*engine)) plan.engine = *read;
   const std::vector<Variable> variables = variables_of(plan.scene);

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "impact_damper/sweeps/plan.hpp"
@@ -17,15 +19,19 @@ namespace impact_damper {
 inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
 inline constexpr FileKind plan_kind{"plan", 1 << 20};
 
-// Throws IoError if `file`, or the scene file that it names beside itself, cannot be read, InputError with a
-// line for each of the first 50 problems in it.
-Plan read_plan(const std::filesystem::path& file);
+// Where a file that a plan names is, if it is not beside the plan.
+using FindFile = std::function<std::optional<std::string>(const std::string& name)>;
+
+// Throws IoError if `file`, or the scene file that it names, cannot be read, InputError with a line for each
+// of the first 50 problems in it.
+Plan read_plan(const std::filesystem::path& file, const FindFile& find = {});
 // The same of a text, whose scene stands in it.
 Plan parse_plan(const std::string& name, const std::string& text);
 
 // The same from an object that may belong to a larger document and collects the problems. A scene that it
-// names is looked for in `folder`.
-Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder = {});
+// names is looked for in `folder`, then by `find`.
+Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder = {},
+                      const FindFile& find = {});
 // Its fields, on one line. They read back as an equal plan, and equal plans give equal text.
 void write_plan_fields(JsonWriter& out, const Plan& plan);
 

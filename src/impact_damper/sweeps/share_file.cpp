@@ -52,6 +52,20 @@ ShareHead parse_head(const std::string& file, const std::string& line) {
   return head;
 }
 
+// Whether `line`, the first of a share, is as it was written, but for the ends of lines and other blanks that
+// a reader of JSON passes over.
+bool is_altered(const std::string& file, const std::string& line) {
+  try {
+    return head_line(parse_head(file, line)) != line;
+  } catch (const InputError&) {
+    return false;  // another file
+  }
+}
+constexpr const char* altered =
+    "is altered: its lines, or their ends, are not as they were written; remove it, and the command that "
+    "made "
+    "it makes it again";
+
 std::string digest_line(std::int64_t rows, const Sha256& hash) {
   return "# " + std::to_string(rows) + ' ' + hash.digest();
 }
@@ -153,6 +167,7 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
   if (!is_cut) {
     if (line != first) {
       const bool is_of_it = line.find(in_quotes(head.program)) != std::string::npos;
+      if (is_of_it && is_altered(file.string(), line)) reject(file, altered);
       reject(file, "holds runs of another plan, part or program, with which these must not be mixed: " +
                        (is_of_it ? "the program is the same" : "this program is " + head.program) +
                        "; remove it, or choose another --output");
@@ -254,6 +269,7 @@ void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
       OpenShare share = open(file);
       const Whole whole = scan(share.stream, head, share.first, pass);
       const std::int64_t needed = rows_of_part(head.plan, head.part, head.parts).size();
+      if (!whole.complete && is_altered(file.string(), share.first)) reject(file, altered);
       if (!whole.complete)
         reject(
             file,

@@ -1,0 +1,50 @@
+"""With the name - a command writes to its standard output what it otherwise writes to a file, and nothing else.
+
+    standard_output.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+
+program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+shutil.rmtree(folder, ignore_errors=True)
+shutil.copytree(source / "tests/cli/files", folder)
+faults = []
+
+
+def call(*words):
+    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
+    if done.returncode not in (0, 1):  # 1: a check failed, and all is written
+        faults.append(f"{words}: exit code {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+forced = ["--mass-ratio", 0.1, "--force-amplitude", 0.05, "--max-periods", 50]
+short = ["--scene", "mast.json", "--to", 10]
+call("sweep", "--until-time", 20, "--vary", "x0=1,2", "--vary", "restitution=0.4,0.6", "--keep", "impacts", "-o", "map.csv")
+commands = [
+    (["run", "--until-time", 5], "--output", "run.json"),
+    (["run", "--until-time", 5, "--format", "csv"], "--output", "run.csv"),
+    (["report", "--until-time", 20, "--members", 2, "--without-figures"], "--output", "page.html"),
+    (["response", "sweep", *forced, "--vary", "force_frequency=0.9:1.1:2"], "--output", "sweep.json"),
+    (["series", "--catalogue", "figures.json", "--runs", "runs", "--figure", 8], "--output", "fig08.dat"),
+    (["design", *short, "--dampers", 1], "--output", "boxes.json"),
+    (["design", *short, "--within", 20, "--neighbours", 100], "--output", "designs.json"),
+    (["design", *short, "--within", 20, "--neighbours", 100], "--write-plan", "plan.json"),
+    (["verify", "--claims", "claims.json"], "--output", "verdicts.json"),
+    (["verify", "--claims", "claims.json"], "--markdown", "verdicts.md"),
+]
+if shutil.which("gnuplot"):
+    commands.append((["map", "map.csv", "--x", "x0", "--y", "restitution", "--z", "impacts"], "--output", "map.svg"))
+for words, option, file in commands:
+    call(*words, option, file)
+    made = (folder / file).read_text(encoding="utf-8") if (folder / file).exists() else None
+    there = sorted(folder.rglob("*"))
+    printed = call(*words, option, "-")
+    if printed != made:
+        faults.append(f"{words} {option} -: {printed[:300]!r}, not {made and made[:300]!r}")
+    if sorted(folder.rglob("*")) != there:
+        faults.append(f"{words} {option} -: files {set(folder.rglob('*')) - set(there)}")
+print("\n".join(faults))
+sys.exit(1 if faults else 0)
