@@ -4,7 +4,8 @@
     drawn.py ONE OTHER FILE...      two folders with pictures of these names; exit code 1 if any two differ
 
 Positions may differ by a pixel. gnuplot 5 and 6 join and divide lines in different ways, so a curve is compared by its
-vertices; and where a band leaves the frame they cut it at different points, so one vertex of a curve may be elsewhere.
+vertices; and where a band leaves the frame they cut it at different points, so one vertex of a curve may be elsewhere. On
+a short logarithmic axis gnuplot 6 labels more ticks, so numbers alone are no texts here: the ends of axes are compared.
 """
 import json
 import re
@@ -27,7 +28,8 @@ def drawn(picture: str) -> Drawn:
     for part in re.split(r'(?=<g id="\S*gnuplot_plot_\w+")', picture)[1:]:
         shapes = " ".join(re.findall("<(?:path|polygon|use)[^>]*>", part))
         curves[part.split('"', 2)[1]] = {(round(float(x)), round(float(y))) for x, y in re.findall(r"(-?\d+\.\d+),(-?\d+\.\d+)", shapes)}
-    return Drawn(sorted(re.sub("<[^>]*>", "", text) for text in re.findall("<text[^>]*>(.*?)</text>", picture, re.S)),
+    texts = (re.sub("<[^>]*>", "", text) for text in re.findall("<text[^>]*>(.*?)</text>", picture, re.S))
+    return Drawn(sorted(text for text in texts if not re.fullmatch(r"\s*-?[\d.]+\s*", text)),
                  [[plot["x"][:3], plot["y"][:3], plot.get("log")] for plot in plots],
                  [end for plot in plots for axis in "xy" for end in plot[axis][3:]], curves)
 
