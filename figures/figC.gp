@@ -49,8 +49,8 @@ unset ylabel
 unset logscale
 set lmargin at screen 0.02
 set rmargin at screen 0.98
-set tmargin at screen 0.070
-set bmargin at screen 0.008
+set tmargin at screen 0.080
+set bmargin at screen 0.004
 set key inside center center maxrows 4 Left reverse width 2 font ",12"
 set xrange [0:1]
 set yrange [0:1]
