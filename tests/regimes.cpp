@@ -100,7 +100,9 @@ TEST_CASE("an impact missed in a chaotic range is no failure if regular impactin
 }
 
 TEST_CASE("impact failure is for good where no three half cycles bring three impacts any more") {
-  const ImpactFailure failure = impact_failure(rows_with_impacts({1, 1, 0, 1, 1, 1, 1, 0, 1, 0, 0, 1, 0, 0}));
+  const Run run = rows_with_impacts({1, 1, 0, 1, 1, 1, 1, 0, 1, 0, 0, 1, 0, 0});
+  const ImpactFailure failure = impact_failure(run);
+  CHECK(failure_row(run) == 2);
   CHECK(row_of(failure.first_missed) == 2u);
   CHECK(row_of(failure.for_good) == 7u);
   CHECK(row_of(impact_failure(rows_with_impacts({1, 0})).for_good) == std::nullopt);

@@ -143,6 +143,44 @@ std::string table_of(const DesignQuestion& question, const DesignAnswer& answer,
   return aligned(rows);
 }
 
+std::string verdict_on(const DesignQuestion& question, const DesignCheck& check) {
+  if (check.confirmed) return "The first is the lightest, and is confirmed by its neighbours.\n";
+  if (check.rejected)
+    return "The first is the lightest of the search, but is not confirmed: too few of its neighbours are in "
+           "time.\n";
+  const std::int64_t least = least_neighbours_of(question.share);
+  return "The first is the lightest of the search. " + std::to_string(question.neighbours) +
+         " neighbours are too few to tell whether " + percent(question.share, 3) + " are in time:\n" +
+         (question.neighbours < least ? "give at least --neighbours " + std::to_string(least)
+                                      : "the interval holds both, give more --neighbours") +
+         ".\n";
+}
+
+// For which walls the forces of the table are.
+std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
+  if (!answer.designs.front().check.largest_wall_force) return "";
+  const SceneInUnits& scene = asked.question.scene;
+  const double ratio = Scene{}.wall_stiffness;
+  const double stiffness = *scene.contact_stiffness;
+  const std::string text =
+      "Wall forces are those of walls of " +
+      (asked.dimensionless ? readable(stiffness / *scene.stiffness) + " K" : of_unit(stiffness, "N/m"));
+  if (stiffness != ratio * *scene.stiffness) return text + ".\n";
+  return text + ", " + readable(ratio) +
+         " times the primary stiffness: an assumption, the program's\ndefault. They go as its square root: "
+         "give " +
+         (asked.dimensionless ? "--wall-stiffness" : "contact_stiffness") + " of your own walls.\n";
+}
+
+// What there is to gain.
+std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer& answer,
+                             const DesignUnits& units) {
+  constexpr double nearly = 1.5;
+  const auto& time = answer.time_of_viscous_damping;
+  if (!time || *time > nearly * question.time) return "";
+  return "Viscous damping alone, without a secondary mass, takes " + of_unit(*time, units.time) + ".\n";
+}
+
 // Which bounds decided.
 std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer, const DesignUnits& units) {
   const Design& design = answer.designs.front().design;
@@ -180,14 +218,12 @@ std::string text_of(const Asked& asked, const DesignAnswer& answer) {
            of_unit(longest_followed * question.time, units.time) + " with each clearance.\n";
   const std::string table = table_of(question, answer, units) + '\n';
   const std::string verdict =
-      !answer.met
-          ? "No design was found. The heaviest secondary mass is soonest with this clearance, within " +
-                of_unit(answer.designs.front().time, units.time) + ".\n"
-      : answer.designs.front().check.confirmed
-          ? "The first is the lightest, and is confirmed by its neighbours.\n"
-          : "The first is the lightest of the search, but is not confirmed: too few of its neighbours are in "
-            "time.\n";
-  return head + table + verdict + advice_on(question, answer, units);
+      answer.met
+          ? verdict_on(question, answer.designs.front().check)
+          : "No design was found. The heaviest secondary mass is soonest with this clearance, within " +
+                of_unit(answer.designs.front().time, units.time) + ".\n";
+  return head + table + walls_in_words(asked, answer) + verdict + viscous_in_words(question, answer, units) +
+         advice_on(question, answer, units);
 }
 
 // Problems of the question, as those of options.
@@ -307,7 +343,7 @@ Command design_command() {
       "are within\nthe time of the line. Speed and force are the largest of all. A line is missing where "
       "there "
       "is no such design. Exit\ncode 1: no design was found, or the check of the first did not confirm "
-      "it.\n\n"
+      "it: too few neighbours are in\ntime, or they are too few to decide.\n\n"
       "Example:\n"
       "  impact-damper design --scene data/examples/mast.json --to 6 --within 10 \\\n"
       "    --tolerance restitution=0.1 --tolerance clearance=10%\n"

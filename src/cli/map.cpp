@@ -100,7 +100,7 @@ std::optional<std::size_t> quantity_of(Arguments& arguments, const Plan& plan) {
 
 // Of the numbers that are neither x nor y, the value that --where gives, or the only one.
 void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& question) {
-  std::vector<bool> is_fixed(plan.grid.size());
+  std::vector<bool> is_given(plan.grid.size());
   std::vector<std::string_view> names;
   for (const GridAxis& axis : plan.grid) names.push_back(axis.variable.name);
   for (const std::string& text : arguments.texts("--where")) {
@@ -110,15 +110,21 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
     if (!index) continue;
     const GridAxis& axis = plan.grid[*index];
     const std::string name(axis.variable.name);
+    if (is_given[*index]) arguments.reject("--where", "must give " + name + " once, got " + in_quotes(text));
+    is_given[*index] = true;
     if (*index == question.x || *index == question.y) {
       arguments.reject("--where", "must not fix " + name + ", which is an axis of the map");
       continue;
     }
     std::vector<double> values;
     for (std::int64_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
-    const auto value = equals < text.size() ? parse_number(std::string_view(text).substr(equals + 1))
-                                            : std::optional<double>();
-    if (!value || std::ranges::find(values, *value) == values.end()) {
+    const double value =
+        parse_number(std::string_view(text).substr(std::min(equals + 1, text.size()))).value_or(std::nan(""));
+    // As it was written: 0.1, where a step of the grid has come to 0.09999999999999999.
+    const double rounding = 1e-12 * std::max(std::abs(values.front()), std::abs(values.back()));
+    const auto meant =
+        std::ranges::min_element(values, {}, [&](double known) { return std::abs(known - value); });
+    if (!(std::abs(*meant - value) <= rounding)) {
       std::string known;
       constexpr std::size_t most = 12;
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -131,11 +137,10 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
       arguments.reject("--where", message + in_quotes(text));
       continue;
     }
-    question.fixed[*index] = *value;
-    is_fixed[*index] = true;
+    question.fixed[*index] = *meant;
   }
   for (std::size_t n = 0; n < plan.grid.size(); ++n) {
-    if (n == question.x || n == question.y || is_fixed[n]) continue;
+    if (n == question.x || n == question.y || is_given[n]) continue;
     if (plan.grid[n].size() == 1) {
       question.fixed[n] = plan.grid[n].value(0);
     } else {

@@ -476,6 +476,19 @@ std::string text_of(const Request& asked) {
   return {};
 }
 
+// What is wrong with a value of --vary is said of that, not of an option that was not given.
+std::string text_of_valid(const Request& asked) {
+  try {
+    return text_of(asked);
+  } catch (const InvalidArguments& error) {
+    std::vector<Problem> problems = error.problems();
+    for (Problem& each : problems)
+      for (const Axis& axis : asked.axes)
+        if (each.field == axis.number.name()) each = {"vary", each.field + " " + each.message};
+    throw InvalidArguments(std::move(problems));
+  }
+}
+
 int respond(Arguments& arguments) {
   std::vector<std::string_view> words;
   words.reserve(kinds.size());
@@ -522,7 +535,7 @@ int respond(Arguments& arguments) {
   if (in_si) asked.units = si_units_of(*asked.file.scales);
 
   write_output(output,
-               saying_options([&] { return text_of(asked); }, arguments.text("--scene").value_or("")));
+               saying_options([&] { return text_of_valid(asked); }, arguments.text("--scene").value_or("")));
   return 0;
 }
 

@@ -113,6 +113,10 @@ demand(scaled["units"]["time"] == "1/Omega_n" and close(first["secondary_mass"] 
 for key, unit in (("nominal_time", 0.05), ("largest_impact_speed", 200), ("largest_wall_force", 160)):
     demand(close(first[key] * unit, best[key], 3 if key != "nominal_time" else 9), f"dimensionless: {key}: {first[key] * unit}")
 
+# Neighbours that cannot decide, however many of them are in time, do not make a design unconfirmed.
+few = call("design", "--scene", "mast.json", "--to", 20, "--within", 5, "--secondary-mass", "6:8", "--clearance", "40:41", "--neighbours", 100, code=1)
+demand("100 neighbours are too few to tell" in few and "give at least --neighbours 381." in few and "not confirmed" not in few, f"few neighbours: {few}")
+
 # Not in time: said so, with the heaviest mass.
 said = call(*words[:6], 1.5, *words[7:], "-o", "none.json", code=1)
 none = json.loads((folder / "none.json").read_text())

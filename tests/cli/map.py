@@ -227,6 +227,9 @@ rejected('--x: must be a number of the table\'s grid: restitution, mass_ratio or
 rejected("--y: must be another number than --x", *instead("--y", x))
 rejected("--where: must be given for x0, which has 2 values: --where x0=2", *usual[:7], "-o", "none.svg")
 rejected('--where: must give x0 one of its values: 2, 5; got "x0=3"', *instead("--where", "x0=3"))
+said = call("map", *instead("--where", "x0=3"), code=2)
+demand("must be given" not in said, f"a value that is none of x0's is rejected twice: {said}")
+rejected('--where: must give x0 once, got "x0=2"', *usual, "--where", "x0=2")
 rejected("--where: must not fix mass_ratio, which is an axis of the map", *usual, "--where", "mass_ratio=0.02")
 rejected("--best: must be given: which values of amplitude_of_largest_loss_factor are the worst?",
          *instead("--z", "amplitude_of_largest_loss_factor"), "--statistic", "worst")
@@ -250,6 +253,13 @@ call("sweep", "one.json", "-o", "one.csv")
 rejected("--x: must have at least two values, restitution has one: 0.5", "one.csv", "--x", x, "--y", y, "--z", "time_to_amplitude=5", "-o", "none.svg")
 rejected("one.csv: has no point with a value of loss_factor_at_90", "one.csv", "--x", y, "--y", "w0", "--z", "loss_factor_at=90", "-o", "none.svg", code=3)
 rejected("one.csv: has only one value of time_to_amplitude_7, 0", "one.csv", "--x", y, "--y", "w0", "--z", "time_to_amplitude=7", "-o", "none.svg", code=3)
+# A value of the grid as one writes it: the second of four between 0 and 0.3 is 0.09999999999999999.
+steps = dict(square, grid=square["grid"] + [{"number": "y0", "from": 0, "to": 0.3, "count": 4}])
+(folder / "steps.json").write_text(json.dumps(steps), encoding="utf-8")
+call("sweep", "steps.json", "-o", "steps.csv")
+written, meant = (drawn("steps.csv", x, y, z, "--where", f"y0={value}") for value in ("0.1", "0.09999999999999999"))
+demand(written == meant, "0.1 and 0.09999999999999999 are not one value of the grid")
+rejected('--where: must give y0 one of its values', "steps.csv", "--x", x, "--y", y, "--z", z, "--where", "y0=0.1000001", "-o", "none.svg")
 rejected("gnuplot: cannot be found in PATH", *usual, code=5, env=dict(os.environ, PATH=str(folder)))
 
 # The lines of the regimes lie where their formulas say: M15.8.

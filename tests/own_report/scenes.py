@@ -40,6 +40,7 @@ SCENES = {
                            ["decay", "response", "phase", "begin", "best", "prediction"]),
     "overdamped": (["--damping-ratio", "3", "--until-time", "50"], {"decay": "not one whole half cycle",
                    "loss": "Without half cycles", "prediction": "no amplitude", "header": "times critically"}, ["begin"]),
+    "creeping": (["--damping-ratio", "2", "--x0", "3", "--until-time", "200"], {"header": "falls to a tenth within|times critically"}, ["phase", "begin"]),
     "plastic": (["--restitution", "0", "--until-amplitude", "0.3", "--engine", "restitution"], {"loss": "no rebound", "loads": "rigid"},
                 ["decay", "loss", "phase", "begin", "best", "prediction"]),
     "lossless": (["--restitution", "1", "--until-time", "100"], {"loss": "nothing is ever lost"},
@@ -302,6 +303,8 @@ def response(page, text, run, scales):
         else:
             check(given_up, f"{name}: {way}, there is no mark at the frequency given")
     worst = max(largest.values())
+    lead = page.words["header"].partition("At its worst frequency")[2]
+    check(lead and "on average" not in page.words["header"].partition("At its worst frequency")[0], f"{name}: the page does not open with the worst case")
     holds(page, "header", worst, "largest amplitude", pixel)
     twice = re.search(r"its largest amplitude is first ([\d.]+).*?, then ([\d.]+)", words)
     if twice:
@@ -331,12 +334,13 @@ def response(page, text, run, scales):
               if drawn["rising"][True] == drawn["falling"][True] == [] and not near(a[1], b[1], 0.06)]
     check(bool(ranges) or not differ, f"{name}: the two ways differ at {differ}, and the page does not say so")
     if ranges:
-        at = re.search(r"At ([\d.]+)\D*(?:\(([\d.]+)\D*\))? the amplitude is ([\d.]+).*? if the frequency has risen to there, and ([\d.]+)", words)
+        at = re.search(r"At ([\d.]+)\D*(?:\(([\d.]+)\D*\))? the amplitude is ([\d.]+).*? if (the frequency has risen|it has fallen) to there, and ([\d.]+)", words)
+        check(float(at[3]) > float(at[5]), f"{name}: of two motions the smaller is named first")
         frequency = float(at[1]) * x_unit
         for end in re.findall(r"(?:between|and|at) ([\d.]+).(?:Hz|Ω)", ranges[1]):
             pair = [min(every[way], key=lambda mark: abs(mark[0] - float(end) * x_unit)) for way in every]
             check(not near(pair[0][1], pair[1][1], 0.045), f"{name}: the two ways do not differ at {end}")
-        for way, told in zip(("rising", "falling"), at.groups()[2:]):
+        for way, told in zip(("rising", "falling") if "risen" in at[4] else ("falling", "rising"), (at[3], at[5])):
             there = min(every[way], key=lambda mark: abs(mark[0] - frequency))
             check(near(there[1] / y_unit, float(told), 0.01), f"{name}: {way}, the amplitude drawn at {frequency} is {there[1]}, not {told}")
 
@@ -412,7 +416,7 @@ def compare(page, text, run, scales):
         return shown
     if run["scene"]["force_amplitude"]:
         last = amplitudes[-(len(amplitudes) // 4):]
-        means = [sum(last) / len(last)] + ([min(last), max(last)] if "lies between" in page.words["decay"] else [])
+        means = [sum(last) / len(last)] + ([min(last), max(last)] if "at least" in page.words["decay"] else [])
         for value in means:
             holds(page, "decay", value * (scales[1] if scales else 1), "amplitude in the last quarter")
         check(len(means) == 3 or max(last) < 1.01 * min(last), f"{name}: the amplitudes of the last quarter are one")
@@ -420,12 +424,17 @@ def compare(page, text, run, scales):
         return shown
     if amplitudes[0] == max(amplitudes[:2]):
         for part in (0.5, 0.1, 0.01):
-            below = next((t for t, a in zip(times, amplitudes) if a < part * amplitudes[0]), None)
-            if below is None:
+            row = next((n for n, a in enumerate(amplitudes) if a < part * amplitudes[0]), None)
+            if row is None:
                 break
-            holds(page, "decay", (below - times[0]) / (2 * math.pi), f"periods to {part}")
+            below, digits = times[row], 1e-9
+            if amplitudes[row] < amplitudes[row - 1] / 10:  # no swing: the last time at which |x| is as large, among samples
+                begin, end = times[row - 1], rows["zero_crossing"][row - 1]
+                motion = json.loads(call("run", *options, "--record", "history", "--history", f"{begin!r}:{end!r}:200001").stdout)["history"]
+                below, digits = max(t for t, x in zip(motion["time"], motion["x"]) if abs(x) >= part * amplitudes[0]), 1e-3
+            holds(page, "decay", (below - times[0]) / (2 * math.pi), f"periods to {part}", digits)
             if scales:
-                holds(page, "decay", (below - times[0]) * scales[0], f"seconds to {part}")
+                holds(page, "decay", (below - times[0]) * scales[0], f"seconds to {part}", digits)
         if amplitudes[0] > amplitudes[-1]:
             holds(page, "decay", 100 * math.log(amplitudes[0] / amplitudes[-1]) / (times[-1] - times[0]), "damping ratio", 1e-7)
     if "loss" in drawn:

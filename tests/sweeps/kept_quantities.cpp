@@ -85,6 +85,74 @@ TEST_CASE("time to an amplitude and loss factor of viscous damping are those of 
   }
 }
 
+// When x, released from rest at 1 without impacts, is last as large as `level`, by the closed form.
+double last_time_of_viscous(double zeta, double level) {
+  const auto x = [&](double t) {
+    if (zeta == 1) return std::exp(-t) * (1 + t);
+    if (zeta < 1) {
+      const double omega = std::sqrt(1 - zeta * zeta);
+      return std::exp(-zeta * t) * (std::cos(omega * t) + zeta / omega * std::sin(omega * t));
+    }
+    const double root = std::sqrt(zeta * zeta - 1), slow = root - zeta, fast = -root - zeta;
+    return (slow * std::exp(fast * t) - fast * std::exp(slow * t)) / (slow - fast);
+  };
+  double before = 0, after = 100;
+  while (!(std::abs(x(after)) < level && std::abs(x(0.999 * after)) >= level) && after > 0.01) after *= 0.999;
+  before = 0.999 * after;
+  for (int i = 0; i < 100; ++i)
+    (std::abs(x((before + after) / 2)) < level ? after : before) = (before + after) / 2;
+  return after;
+}
+
+TEST_CASE("of a motion that creeps the time to an amplitude is the last at which x is as large") {
+  Scene scene = viscous_decay(0);
+  scene.x0 = 3;
+  scene.until_amplitude.reset();
+  scene.until_time = 200;
+  scene.mass_ratio = 1e-9;
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
+    for (const double zeta : {0.7, 0.9, 0.99, 1.0, 1.1, 2.0}) {
+      CAPTURE(zeta);
+      scene.damping_ratio = zeta;
+      CHECK(only(kept(scene, {"time_to_amplitude=0.3"}, engine)) ==
+            doctest::Approx(last_time_of_viscous(zeta, 0.1)).epsilon(1e-7));
+    }
+  CHECK(std::abs(last_time_of_viscous(0.9, 0.1) - 3.41) < 0.005);
+  CHECK(std::abs(last_time_of_viscous(2, 0.1) - 8.87) < 0.005);
+}
+
+TEST_CASE("with impacts a motion that creeps stays below the amplitude from that time on") {
+  Scene scene;
+  scene.x0 = 3;
+  scene.mass_ratio = 0.1;
+  scene.until_time = 40;
+  Scene of_two = scene;
+  of_two.dampers.resize(2);
+  of_two.dampers[0].mass_ratio = 0.05;
+  of_two.dampers[1].clearance = 0.7;
+  for (Scene* const each : {&scene, &of_two})
+    for (const double zeta : {0.8, 1.0, 1.5}) {
+      each->damping_ratio = zeta;
+      const double time = only(kept(*each, {"time_to_amplitude=0.3"}));
+      Record record;
+      record.half_cycles = false;
+      record.history = {{0, time, 2}, {time, 40, 40'001}};
+      const History history = *simulate(*each, Exact{}, record).history;
+      CAPTURE(zeta);
+      CHECK(std::abs(history.x[1]) == doctest::Approx(0.3).epsilon(1e-12));
+      double largest = 0;  // after that time, which is in both windows
+      for (std::size_t i = 3; i < history.x.size(); ++i) largest = std::max(largest, std::abs(history.x[i]));
+      CHECK(largest < 0.3);
+      // The end of the run must show that this was the last time.
+      each->until_time = time + 1e-3;
+      const KeptNumbers sooner = kept(*each, {"time_to_amplitude=0.3"});
+      CHECK((!sooner.numbers[0] || *sooner.numbers[0] == doctest::Approx(time).epsilon(1e-12)));
+      each->until_time = time - 1e-3;
+      CHECK_FALSE(kept(*each, {"time_to_amplitude=0.3"}).numbers[0]);
+      each->until_time = 40;
+    }
+}
+
 TEST_CASE("what is not reached is absent") {
   const KeptNumbers numbers =
       kept(paper_decay(), {"time_to_amplitude=0.01", "loss_factor_at=0.01", "loss_factor_at=7",

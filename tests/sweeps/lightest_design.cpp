@@ -129,6 +129,31 @@ TEST_CASE("a search of a design allows as many late draws as the exact binomial 
   CHECK(late_allowed_of(381, 0.99) == 0);
 }
 
+TEST_CASE("neighbours that are too few to decide neither confirm a design nor reject it") {
+  DesignQuestion question = mast();
+  question.share = 0.99;
+  question.secondary_mass = {6, 8};
+  question.neighbours = 100;
+  const auto check = [&] { return find_designs(question, 2, ignore).designs.front().check; };
+  const DesignCheck few = check();
+  CHECK(few.in_time == 100);
+  CHECK_FALSE(few.confirmed);
+  CHECK_FALSE(few.rejected);
+  CHECK(least_neighbours_of(0.99) == 381);
+  question.neighbours = least_neighbours_of(0.99);
+  CHECK(check().confirmed);
+}
+
+TEST_CASE("the time of viscous damping alone is that of its closed form") {
+  DesignQuestion question = mast();
+  question.neighbours = 1;
+  question.scene.damping_ratio = 0.02;
+  const double omega = 20 * std::sqrt(1 - 0.02 * 0.02), half = M_PI / omega;
+  // Peaks of |x| at k pi / omega, from 60 mm; the first below 20.
+  const double time = std::ceil(std::log(3.0) / (0.02 * 20 * half)) * half;
+  CHECK(*find_designs(question, 2, ignore).time_of_viscous_damping == doctest::Approx(time).epsilon(1e-6));
+}
+
 TEST_CASE("steps have three digits and both ends of the range") {
   CHECK(steps_between({1, 1.3}, 1.1) == std::vector<double>{1, 1.1, 1.21, 1.3});
   CHECK(steps_between({0.2345678, 0.25}, 1.05) == std::vector<double>{0.2345678, 0.246, 0.25});

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "impact_damper/analysis/one_of_several.hpp"
+#include "impact_damper/analysis/time_below.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -20,12 +21,6 @@ constexpr std::int64_t window_samples = 1001;
 std::optional<std::size_t> first_row(const HalfCycles& rows) {
   if (rows.amplitude.empty()) return std::nullopt;
   return rows.amplitude.size() > 1 && rows.amplitude[1] > rows.amplitude[0] ? 1 : 0;
-}
-
-std::optional<double> time_below(const HalfCycles& rows, double amplitude) {
-  const auto row = first_row_below(rows, amplitude);
-  if (!row) return std::nullopt;
-  return rows.peak_time[*row];
 }
 
 // What measure(run) is over all releases; absent where it is for one of them.
@@ -43,13 +38,12 @@ std::optional<Spread> over_all(const Findings& findings, Measure measure) {
 }
 
 void find_falls(Findings& findings) {
-  const HalfCycles& rows = *findings.run.half_cycles;
   for (const double part : {0.5, 0.1, 0.01}) {
     const double amplitude = part * *findings.first_amplitude;
-    const auto time = time_below(rows, amplitude);
+    const auto time = time_below(findings.run, amplitude);
     if (!time) return;
     findings.falls.push_back({part, amplitude, *time, over_all(findings, [&](const Run& run) {
-                                return time_below(*run.half_cycles, amplitude);
+                                return time_below(run, amplitude);
                               })});
   }
 }

@@ -26,11 +26,11 @@ struct Subject {
   Engine engine;
 };
 
-// When the amplitude first was below a part of the first one: the peak of the first half cycle that is.
+// When the amplitude first was below a part of the first one (time_below.hpp).
 struct Fall {
   double part = 0;
   double amplitude = 0;         // part times the first amplitude
-  double time = 0;              // of that peak, in units of 1/Omega_n
+  double time = 0;              // in units of 1/Omega_n
   std::optional<Spread> times;  // over the ensemble; absent where some member does not get there
 };
 

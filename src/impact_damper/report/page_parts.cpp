@@ -47,11 +47,11 @@ std::string steady_sentence(const Findings& findings) {
            count_html(std::ssize(findings.run.half_cycles->amplitude)) + " half cycles.";
   const SteadyAmplitude& steady = *findings.steady;
   const std::string least = quantities.length(steady.least), greatest = quantities.length(steady.greatest);
-  std::string text = "In the last quarter of the run the amplitude ";
+  std::string text = "In the last quarter of the run the amplitude is ";
   text += without_tags(least) == without_tags(greatest)
-              ? "is " + quantities.length(steady.mean) + ". "
-              : "lies between " + least + " and " + greatest + ", " + quantities.length(steady.mean) +
-                    " on average. ";
+              ? greatest + ". "
+              : greatest + " at most, " + quantities.length(steady.mean) + " on average and " + least +
+                    " at least. ";
   if (!steady.settled) text += "It is not settled: it still changes from quarter to quarter of the run. ";
   return text;
 }
@@ -169,10 +169,8 @@ std::string summary_html(const Findings& findings) {
   std::string text;
   if (!findings.forced())
     text = fall_in_short(findings);
-  else if (findings.steady)
-    text = "Under the exciting force the amplitude is in the end " +
-           quantities.length(findings.steady->mean) + " on average, " +
-           quantities.length(findings.steady->greatest) + " at most. " + response_in_short(findings);
+  else
+    text = response_in_short(findings);
   if (findings.best)
     text += "It is damped best at an amplitude of " + quantities.length(findings.best->amplitude) +
             ", as by " + as_viscous(findings.best->eta) + ". ";
@@ -295,11 +293,14 @@ std::string loads_html(const Findings& findings) {
         "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
         "duration as "
         "1/√<i>k</i>; the speed and the number of impacts hardly do. ";
-    if (scene.wall_stiffness == Scene{}.wall_stiffness)
-      text += "Here <i>k</i> = " + number_html(scene.wall_stiffness) + " times the primary stiffness" +
-              (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "") +
-              ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
-              (scales ? "contact_stiffness" : "wall_stiffness") + "</code>) before you use these two. ";
+    text += "Here <i>k</i> = " + number_html(scene.wall_stiffness) + " times the primary stiffness" +
+            (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "");
+    text +=
+        scene.wall_stiffness == Scene{}.wall_stiffness
+            ? ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
+                  std::string(scales ? "contact_stiffness" : "wall_stiffness") +
+                  "</code>) before you use these two. "
+            : ". ";
   } else if (findings.several()) {
     text = "What each damper has to bear is in the table of the dampers. ";
   } else if (has_rigid_walls(findings.subject.engine)) {

@@ -1,5 +1,6 @@
 // What a report's page says of a forced scene's amplitude over the frequency of the force.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "impact_damper/analysis/design.hpp"
@@ -91,12 +92,13 @@ std::string two_motions_sentences(const Findings& findings) {
                            ? ""
                            : ", and within the scatter of those that do not repeat") +
            ". A motion that neither way meets is still possible, from another release. ";
+  const bool rises = most->rising.amplitude() > most->falling.amplitude();
+  const std::array both{quantities.length(most->rising.amplitude()) + " if the frequency has risen to there",
+                        quantities.length(most->falling.amplitude()) + " if it has fallen to there"};
   std::string text = "Two steady motions are possible " + ranges_in_words(quantities, response) +
                      ": which of them appears depends on how one arrives. At " +
-                     quantities.frequency(most->frequency) + " the amplitude is " +
-                     quantities.length(most->rising.amplitude()) +
-                     " if the frequency has risen to there, and " +
-                     quantities.length(most->falling.amplitude()) + " if it has fallen. ";
+                     quantities.frequency(most->frequency) + " the amplitude is " + both[rises ? 0 : 1] +
+                     ", and " + both[rises ? 1 : 0] + ". ";
   if (std::ranges::any_of(response.points, [](const ResponsePoint& point) {
         return point.has_two_motions() && !repeats(point);
       }))
@@ -131,9 +133,9 @@ std::string method_sentences(const Findings& findings) {
             count_html(response.rule.mean_periods) + " further periods. ";
   if (changing > 0)
     text += count_html(changing) + " of these " + (changing == 1 ? "is" : "are") +
-            " not steady yet: the force puts in another power than is lost, or the amplitude has changed "
-            "from one "
-            "such time to the next. ";
+            " not steady yet, but still " + (changing == 1 ? "grows or decays" : "grow or decay") +
+            ": the force feeds in clearly more or less power than impacts and damping take out, or the "
+            "amplitude changed when the motion was followed for as long again. ";
   if (ended > 0)
     text += count_html(ended) + (ended == 1 ? " motion was" : " motions were") +
             " given up, because of too many impacts or steps in a period. ";
@@ -160,22 +162,26 @@ std::string largest_sentence(const Findings& findings) {
 std::string response_in_short(const Findings& findings) {
   const ForcedResponse& response = findings.response;
   const auto largest = response.largest();
-  if (!largest) return "";
   const Quantities quantities(findings.subject.scales);
+  std::string given;
+  if (findings.steady)
+    given = "At the frequency given, " + quantities.frequency(findings.subject.scene.force_frequency) +
+            ", the amplitude is at the end of the run " + quantities.length(findings.steady->greatest) +
+            " at most, " + quantities.length(findings.steady->mean) + " on average";
+  if (!largest) return given.empty() ? "" : given + ". ";
   const Scene& scene = findings.subject.scene;
   const double force = scene.force_amplitude, zeta = scene.damping_ratio, locked = 1 + secondary_mass(scene);
   const double amplitude = largest->motion.amplitude();
   const double worst_locked = worst_linear_response(force, locked, zeta).amplitude;
   const std::string masses = masses_of(findings);
-  std::string text =
-      "With " + masses + " locked to " + boxes_of(findings) + " it would be " +
-      amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) +
-      ". At its worst frequency, " + quantities.frequency(largest->frequency) +
-      ", the same force drives the "
-      "damped mass to " +
-      quantities.length(amplitude) + (largest->motion.changes() ? ", which is not steady yet" : "") +
-      "; with " + masses + " locked the worst is " + amplitude_or_none(quantities, worst_locked) + ". " +
-      reduction_sentence(findings);
+  std::string text = "At its worst frequency, " + quantities.frequency(largest->frequency) +
+                     ", the exciting force drives the damped mass to " + quantities.length(amplitude) +
+                     (largest->motion.changes() ? ", which is not steady yet" : "") + "; with " + masses +
+                     " locked to " + boxes_of(findings) + " the worst is " +
+                     amplitude_or_none(quantities, worst_locked) + ". " + reduction_sentence(findings);
+  if (!given.empty())
+    text += given + "; with " + masses + " locked it would be " +
+            amplitude_or_none(quantities, linear_response(force, locked, zeta, scene.force_frequency)) + ". ";
   if (!response.two_motions().empty())
     text += "Two steady motions are possible " + ranges_in_words(quantities, response) + ". ";
   return text;
@@ -194,25 +200,25 @@ std::string response_html(const Findings& findings) {
         "Every motion was given up, because of too many impacts or steps in a period of the force.");
   const double force = scene.force_amplitude, zeta = scene.damping_ratio, given = scene.force_frequency;
   HtmlTable table{
-      .caption = "Largest amplitude under the same force, at the frequency given and at the worst one",
-      .heads = {"", "at " + quantities.frequency(given), "at its worst frequency", "that is at"},
+      .caption = "Largest amplitude under the same force, at the worst frequency and at the one given",
+      .heads = {"", "at its worst frequency", "that is at", "at " + quantities.frequency(given)},
       .rows = {}};
   const auto damped = [&](const std::string& what, ArrivedMotion ResponsePoint::*way) {
     const auto worst = response.largest(way);
-    table.rows.push_back({what, amplitude_cell(quantities, response.points[response.given].*way),
-                          worst ? amplitude_cell(quantities, worst->motion) : "given up",
-                          worst ? quantities.frequency(worst->frequency) : ""});
+    table.rows.push_back({what, worst ? amplitude_cell(quantities, worst->motion) : "given up",
+                          worst ? quantities.frequency(worst->frequency) : "",
+                          amplitude_cell(quantities, response.points[response.given].*way)});
   };
   damped("with " + damper_of(findings) + ", the frequency rising", &ResponsePoint::rising);
   damped("with " + damper_of(findings) + ", the frequency falling", &ResponsePoint::falling);
   if (findings.steady)
-    table.rows.push_back({"with " + damper_of(findings) + ", at the end of this run",
-                          quantities.length(findings.steady->greatest), "", ""});
+    table.rows.push_back({"with " + damper_of(findings) + ", at the end of this run", "", "",
+                          quantities.length(findings.steady->greatest)});
   const auto linear = [&](const std::string& what, double mass) {
     const WorstResponse most = worst_linear_response(force, mass, zeta);
-    table.rows.push_back({what, amplitude_or_none(quantities, linear_response(force, mass, zeta, given)),
-                          amplitude_or_none(quantities, most.amplitude),
-                          quantities.frequency(most.frequency)});
+    table.rows.push_back({what, amplitude_or_none(quantities, most.amplitude),
+                          quantities.frequency(most.frequency),
+                          amplitude_or_none(quantities, linear_response(force, mass, zeta, given))});
   };
   linear(masses_of(findings) + " locked to " + boxes_of(findings), 1 + secondary_mass(scene));
   linear(findings.several() ? "the boxes empty" : "the box empty", 1);

@@ -6,7 +6,7 @@
 
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
-#include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/analysis/time_below.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/motion/wall.hpp"
@@ -125,12 +125,7 @@ namespace {
 
 using Number = std::optional<double>;
 
-Number time_to_amplitude(RunFindings& found, double amplitude) {
-  const HalfCycles& rows = *found.run().half_cycles;
-  const auto row = first_row_below(rows, amplitude);
-  if (!row) return std::nullopt;
-  return rows.peak_time[*row];
-}
+Number time_to_amplitude(RunFindings& found, double amplitude) { return time_below(found.run(), amplitude); }
 
 // (M15.5).
 Number loss_factor_at(RunFindings& found, double amplitude) {
@@ -257,7 +252,8 @@ using enum Better;
 constexpr std::array<Quantity, 16> quantities{{
     {.name = "time_to_amplitude",
      .dimension = time,
-     .meaning = "when the amplitude is first below A: the time of that half cycle's peak",
+     .meaning = "when the amplitude is first below A: that half cycle's peak; of a motion that creeps, the "
+                "last |x| = A",
      .at = length,
      .better = least,
      .value = time_to_amplitude},

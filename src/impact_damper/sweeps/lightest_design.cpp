@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double late_draws = 20;
 // Of the time and of the widest clearance, for which designs are looked for.
 constexpr std::array<std::pair<double, double>, 5> parts{{{1, 1}, {1, 0.5}, {1, 0.25}, {0.8, 1}, {0.6, 1}}};
 constexpr double two_pi = 6.283185307179586;
+constexpr double least_part = 1e-9;  // of the primary mass, which is as if there were no secondary mass
 constexpr double time_step = 1.05;  // in which the soonest is looked for where nothing is in time
 
 std::int64_t draws_of_search(double share) {
@@ -67,6 +69,7 @@ class Search {
         runs_(runs),
         clearances_(steps_between(question.clearance, clearance_step)),
         draws_(draws_of_search(question.share)),
+        first_draws_(draws_ / 20),
         late_allowed_(late_allowed_of(draws_, question.share)) {}
 
   // In coarse steps, then in fine ones behind the last coarse one that was not in time.
@@ -74,20 +77,20 @@ class Search {
     const double time = question_.time;
     const std::vector<double> coarse = steps_between(question_.secondary_mass, coarse_mass_step);
     const auto found = first_of(coarse, time);
-    if (!found || found->secondary_mass == coarse.front()) return found;
-    const auto place = std::ranges::find(coarse, found->secondary_mass);
-    std::vector<double> fine = steps_between({place[-1], *place}, mass_step);
+    if (!found || found->mass == 0) return design_of(coarse, found);
+    std::vector<double> fine = steps_between({coarse[found->mass - 1], coarse[found->mass]}, mass_step);
     fine.erase(fine.begin());
     fine.pop_back();
     const auto lighter = fine.empty() ? std::nullopt : first_of(fine, time);
-    return lighter ? lighter : found;
+    return lighter ? design_of(fine, lighter) : design_of(coarse, found);
   }
 
   // The shortest of the times time * time_step^n that the heaviest mass keeps.
   std::optional<FoundDesign> soonest() {
     double time = question_.time;
     while (time <= longest_followed * question_.time) {
-      if (const auto found = first_of({question_.secondary_mass.most}, time))
+      const std::vector<double> heaviest{question_.secondary_mass.most};
+      if (const auto found = design_of(heaviest, first_of(heaviest, time)))
         return FoundDesign{time, question_.clearance.most, *found, {}};
       time *= time_step;
     }
@@ -95,40 +98,77 @@ class Search {
   }
 
  private:
+  // Indices of a mass, in a list of them, and of one of the clearances.
+  struct Place {
+    std::size_t mass, clearance;
+  };
+  std::optional<Design> design_of(const std::vector<double>& masses, const std::optional<Place>& at) const {
+    return at ? std::optional(Design{masses[at->mass], clearances_[at->clearance]}) : std::nullopt;
+  }
+  // The draws of one design so far, up to the one with which too many are late.
+  struct Drawn {
+    std::vector<double> times;
+    std::int64_t late = 0;
+    double mean = 0;  // of the first of them
+  };
+
   // The lightest mass of a list that ascends for which a clearance is in time, with that of its clearances
   // that is soonest (M15.10).
-  std::optional<Design> first_of(const std::vector<double>& masses, double time) {
+  std::optional<Place> first_of(const std::vector<double>& masses, double time) {
     const Plan plan = search_plan(question_, time, masses, clearances_);
-    const auto count = std::int64_t(clearances_.size());
     for (std::size_t m = 0; m < masses.size(); ++m) {
       tell_("searched for " + rounded_text(time, 3) + " with a secondary mass of " +
             rounded_text(masses[m], 3) + ", " + std::to_string(runs_) + " runs so far");
-      std::vector<std::optional<double>> times(clearances_.size());
-      for_each_index(count, threads_, [&](std::int64_t c) {
-        times[std::size_t(c)] = time_of_most(plan, std::int64_t(m) * count + c, time);
-      });
-      std::optional<std::size_t> best;
-      for (std::size_t c = 0; c < times.size(); ++c)
-        if (times[c] && !(best && *times[*best] <= *times[c])) best = c;
-      if (best) return Design{masses[m], clearances_[*best]};
+      if (const auto best = soonest_of(plan, m * clearances_.size(), time)) return Place{m, *best};
     }
     return std::nullopt;
   }
 
-  // Within which all draws but those that may be late are down: absent as soon as more than these are late.
-  std::optional<double> time_of_most(const Plan& plan, std::int64_t candidate, double time) {
-    std::vector<double> times;
-    std::int64_t late = 0, run = 0;
-    for (; run < draws_ && late <= late_allowed_; ++run) {
-      const auto taken = made(plan, candidate * draws_ + run).numbers[0];
-      const bool in_time = taken && *taken <= time;
-      late += in_time ? 0 : 1;
-      times.push_back(in_time ? *taken : std::numeric_limits<double>::max());
+  // The clearance, of the candidates from `first` on, with the least time of most draws, if one is in time.
+  // Few draws of each show which it may be; with the time of that one the others are given up soon.
+  std::optional<std::size_t> soonest_of(const Plan& plan, std::size_t first, double time) {
+    std::vector<Drawn> drawn(clearances_.size());
+    const auto draw = [&](std::size_t c, std::int64_t draws, double latest) {
+      draw_more(plan, std::int64_t(first + c), draws, latest, drawn[c]);
+    };
+    const auto is_late = [&](const Drawn& each) { return each.late > late_allowed_; };
+    for_each_index(std::ssize(drawn), threads_, [&](std::int64_t c) {
+      Drawn& each = drawn[std::size_t(c)];
+      draw(std::size_t(c), first_draws_, time);
+      each.mean = std::accumulate(each.times.begin(), each.times.end(), 0.0) / double(each.times.size());
+    });
+    const auto likely = std::ranges::min_element(drawn, {}, [&](const Drawn& each) {
+      return is_late(each) ? std::numeric_limits<double>::infinity() : each.mean;
+    });
+    if (is_late(*likely)) return std::nullopt;
+    draw(std::size_t(likely - drawn.begin()), draws_, time);
+    const double latest = is_late(*likely) ? time : time_of_most(*likely);
+    for_each_index(std::ssize(drawn), threads_, [&](std::int64_t c) {
+      if (!is_late(drawn[std::size_t(c)])) draw(std::size_t(c), draws_, latest);
+    });
+    std::optional<std::size_t> best;
+    for (std::size_t c = 0; c < drawn.size(); ++c)
+      if (!is_late(drawn[c]) && !(best && time_of_most(drawn[*best]) <= time_of_most(drawn[c]))) best = c;
+    return best;
+  }
+
+  // Up to that number of draws in all, of which those later than `latest` are late; no more as soon as too
+  // many are.
+  void draw_more(const Plan& plan, std::int64_t candidate, std::int64_t draws, double latest, Drawn& drawn) {
+    drawn.late = std::ranges::count_if(drawn.times, [&](double taken) { return taken > latest; });
+    const std::int64_t before = std::ssize(drawn.times);
+    while (std::ssize(drawn.times) < draws && drawn.late <= late_allowed_) {
+      const auto taken = made(plan, candidate * draws_ + std::ssize(drawn.times)).numbers[0];
+      drawn.times.push_back(taken.value_or(std::numeric_limits<double>::max()));
+      drawn.late += drawn.times.back() > latest ? 1 : 0;
     }
-    runs_ += run;
-    if (late > late_allowed_) return std::nullopt;
-    const auto most = times.end() - 1 - late_allowed_;
-    std::ranges::nth_element(times, most);
+    runs_ += std::ssize(drawn.times) - before;
+  }
+
+  // Within which all draws but those that may be late are down.
+  double time_of_most(Drawn& drawn) const {
+    const auto most = drawn.times.end() - 1 - late_allowed_;
+    std::ranges::nth_element(drawn.times, most);
     return *most;
   }
 
@@ -137,7 +177,7 @@ class Search {
   const std::function<void(const std::string&)>& tell_;
   std::atomic<std::int64_t>& runs_;
   std::vector<double> clearances_;
-  std::int64_t draws_, late_allowed_;
+  std::int64_t draws_, first_draws_, late_allowed_;
 };
 
 DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, const Threads& threads) {
@@ -160,6 +200,7 @@ DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, co
   }
   check.share = interval_of_share(check.in_time, count);
   check.confirmed = check.share.low >= question.share;
+  check.rejected = check.share.high < question.share;
   std::ranges::sort(times);
   const auto within = [&](std::int64_t n) {
     const double time = times[std::size_t(n - 1)];
@@ -185,6 +226,12 @@ std::int64_t late_allowed_of(std::int64_t draws, double share) {
   std::int64_t late = -1;
   while (late + 1 <= draws && interval_of_share(draws - late - 1, draws).low >= share) ++late;
   return late;
+}
+
+std::int64_t least_neighbours_of(double share) {
+  std::int64_t draws = 1;
+  while (late_allowed_of(draws, share) < 0) ++draws;
+  return draws;
 }
 
 // (M15.11).
@@ -363,6 +410,9 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
          std::to_string(question.neighbours) + " neighbours");
     each.check = checked(question, each, threads);
   }
+  Plan empty = check_plan(question, {least_part * *question.scene.mass, question.clearance.least});
+  empty.samples.reset();
+  answer.time_of_viscous_damping = made(empty, 0).numbers[0];
   answer.draws = draws_of_search(question.share);
   answer.late_allowed = late_allowed_of(answer.draws, question.share);
   answer.runs = runs;

@@ -80,7 +80,8 @@ struct DesignCheck {
   std::optional<double> time_of_share, slowest;
   double largest_impact_speed = 0;           // of all neighbours, mm/s
   std::optional<double> largest_wall_force;  // N; absent with rigid walls and long contacts
-  bool confirmed = false;                    // share.low >= the question's
+  // share.low >= the question's, share.high < the question's; neither: the neighbours do not decide.
+  bool confirmed = false, rejected = false;
 };
 struct FoundDesign {
   double time = 0, widest = 0;  // the time and the widest clearance that the search was given
@@ -90,6 +91,8 @@ struct FoundDesign {
 struct DesignAnswer {
   std::int64_t draws = 0, late_allowed = 0;  // of a design in the search
   std::int64_t runs = 0;                     // of the search
+  // Of the primary mass alone; absent as DesignCheck::nominal_time.
+  std::optional<double> time_of_viscous_damping;
   // The lightest design, then those with half and a quarter of the widest clearance and for 0.8 and 0.6 of
   // the time, where there are such and they are others. If there is none: one, the heaviest secondary mass
   // with the clearance for which it is down soonest, `met` being false; or none, if that takes longer than
@@ -103,6 +106,8 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
 
 // Parts of it. The late draws that (M15.10) allows among `draws`; -1 if even none are too few draws.
 std::int64_t late_allowed_of(std::int64_t draws, double share);
+// The least number of draws for which these are not too few.
+std::int64_t least_neighbours_of(double share);
 // From least to most in steps of that ratio > 1, rounded to three digits, both ends as they are (M15.11).
 std::vector<double> steps_between(DesignRange range, double ratio);
 
