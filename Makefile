@@ -11,6 +11,7 @@ ifeq ($(filter $(ENGINE),exact restitution cem),)
 $(error ENGINE must be exact, restitution or cem, got $(ENGINE))
 endif
 FUZZ_SECONDS ?= 60
+COMMAND_SECONDS ?= 120
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # What the program and the figures need, and nothing else: `make bare` holds it against a bare system.
@@ -35,7 +36,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install report-page figures verify paper docs test bench bench-record bench-wasm \
-  stress stress-results check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits wasm wasm-check reference archive clean
+  stress stress-results stress-commands check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits wasm wasm-check reference archive clean
 
 help:  ## list the targets
 	@echo "impact-damper: make TARGET..."
@@ -171,6 +172,11 @@ stress:  ## what the engines must stand: a million random scenes, aimed ones, 40
 
 stress-results:  ## the same, and keep page and figures in tests/stress/
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target stress-results
+
+stress-commands:  ## random scenes of every command that simulates, under the sanitizers, for COMMAND_SECONDS=120 each
+	@$(alone) cmake --preset sanitize -B $(BUILD)/sanitize >/dev/null && \
+	cmake --build $(BUILD)/sanitize --target impact-damper && \
+	tests/stress/commands.py $(BUILD)/sanitize/src/impact-damper $(BUILD)/stress-commands --seconds $(COMMAND_SECONDS)
 
 kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "engines/observed.hpp"
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/engines/recorder.hpp"
 
 using namespace impact_damper;
 
@@ -22,8 +22,8 @@ using std::numbers::pi;
 
 template <class Real = double>
 Run simulated(const Scene& scene, const Cem& options, const Record& record) {
-  Recorder recorder(record);
-  const Outcome end = run_cem<Real>(scene, options, recorder);
+  TestObserver<Real> recorder(record);
+  const Outcome end = observed(scene, options, recorder);
   Run run{.stop_reason = end.stop_reason,
           .end_time = end.end_time,
           .scene = scene,

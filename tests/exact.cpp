@@ -1,5 +1,4 @@
-#include "impact_damper/engines/exact.hpp"
-
+// The exact engine.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "impact_damper/engines/recorder.hpp"
+#include "engines/observed.hpp"
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/system.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 
@@ -39,8 +40,8 @@ Scene without_contact(double x0, double v0 = 0) {
 
 template <class Real>
 Run exact_in(const Scene& scene, const Record& record, const Exact& options = {}) {
-  Recorder recorder(record);
-  const Outcome outcome = run_exact<Real>(scene, options, recorder);
+  TestObserver<Real> recorder(record);
+  const Outcome outcome = observed(scene, options, recorder);
   Run run{
       .stop_reason = outcome.stop_reason, .end_time = outcome.end_time, .scene = scene, .engine = options};
   recorder.finish(run);
@@ -419,21 +420,15 @@ TEST_CASE("what is recorded never changes the motion, to the last bit") {
 }
 
 // Asks for the state at the end of each half cycle, when it is told of it.
-struct AtCrossings {
-  bool wants_half_cycles() const { return true; }
-  bool wants_contacts() const { return false; }
-  bool wants_energy() const { return false; }
-  void half_cycle(double, double end, double, double) { ends.push_back(end); }
-  void impact(double, Wall, double, double) {}
-  void contact(double, double, Wall) {}
-  double next_sample() const {
+struct AtCrossings : TestObserver<double> {
+  bool wants_half_cycles() const override { return true; }
+  void half_cycle(double, double end, double, double) override { ends.push_back(end); }
+  double next_sample() const override {
     return x.size() < ends.size() ? ends[x.size()] : std::numeric_limits<double>::infinity();
   }
-  void sample(double, double now, double, double, double) { x.push_back(now); }
-  EnergyBalance& energy_balance() { return unused; }
+  void sample(double, double now, double, double, double) override { x.push_back(now); }
 
   std::vector<double> ends, x;
-  EnergyBalance unused;
 };
 
 TEST_CASE("who asks for the state at a time that was told of gets it, that of the scene's end among them") {
@@ -441,7 +436,7 @@ TEST_CASE("who asks for the state at a time that was told of gets it, that of th
   for (int cycles = 1; cycles <= 200; ++cycles) {
     AtCrossings asking;
     scene.until_time = 1000;
-    run_exact<double>(scene, Exact{.budget = {.max_half_cycles = cycles}}, asking);
+    observed(scene, Exact{.budget = {.max_half_cycles = cycles}}, asking);
     CAPTURE(cycles);
     CHECK(asking.ends.size() == std::size_t(cycles));
     REQUIRE(asking.x.size() == asking.ends.size());

@@ -11,10 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/engines/cem.hpp"
-#include "impact_damper/engines/exact.hpp"
-#include "impact_damper/engines/recorder.hpp"
-#include "impact_damper/engines/restitution.hpp"
+#include "engines/observed.hpp"
+#include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/simulate.hpp"
 #include "random_scenes.hpp"
 #include "round_scenes.hpp"
@@ -316,8 +314,8 @@ std::string mirrors(Trial& trial) {
 
 template <class Real>
 Run stepped(const Trial& trial, const Scene& scene) {
-  Recorder recorder(everything(scene));
-  const Outcome end = run_cem<Real>(scene, std::get<Cem>(trial.engine), recorder);
+  TestObserver<Real> recorder(everything(scene));
+  const Outcome end = observed(scene, trial.engine, recorder);
   Run run{.stop_reason = end.stop_reason, .end_time = end.end_time};
   recorder.finish(run);
   return run;
@@ -373,45 +371,33 @@ std::string mirrors_but_for_rounding(Trial& trial) {
 }
 
 // Wants what is set, and counts what it is told.
-struct Selective {
+struct Selective : TestObserver<double> {
+  explicit Selective(int wants)
+      : half_cycles((wants & 1) != 0), contacts((wants & 2) != 0), energy((wants & 4) != 0) {}
   bool half_cycles, contacts, energy;
   int told_half_cycles = 0, told_contacts = 0, told_energy = 0;
 
-  bool wants_half_cycles() const { return half_cycles; }
-  bool wants_contacts() const { return contacts; }
-  bool wants_energy() const { return energy; }
-  void half_cycle(double, double, double, double) { ++told_half_cycles; }
-  void impact(double, Wall, double, double) {}
-  void contact(double, double, Wall) { ++told_contacts; }
-  double next_sample() const { return absent; }
-  void sample(double, double, double, double, double) {}
-  EnergyBalance& energy_balance() {
+  bool wants_half_cycles() const override { return half_cycles; }
+  bool wants_contacts() const override { return contacts; }
+  bool wants_energy() const override { return energy; }
+  void half_cycle(double, double, double, double) override { ++told_half_cycles; }
+  void contact(double, double, Wall) override { ++told_contacts; }
+  EnergyBalance& energy_balance() override {
     ++told_energy;
-    return balance;
+    return TestObserver::energy_balance();
   }
-  EnergyBalance balance;
 };
-
-Outcome observed(const Scene& scene, const Exact& options, Selective& observer) {
-  return run_exact<double>(scene, options, observer);
-}
-Outcome observed(const Scene& scene, const Restitution& options, Selective& observer) {
-  return run_restitution<double>(scene, options, observer);
-}
-Outcome observed(const Scene& scene, const Cem& options, Selective& observer) {
-  return run_cem<double>(scene, options, observer);
-}
 
 }  // namespace
 
 TEST_CASE_TEMPLATE("an observer is told only what it wants, also where an amplitude ends the run", Choice,
                    Exact, Restitution, Cem) {
   const Scene scene{.until_time = 100, .until_amplitude = 5.9};
-  Selective all{true, true, true};
+  Selective all(7);
   const Outcome end = observed(scene, Choice{}, all);
   CHECK(end.stop_reason == StopReason::amplitude);
   for (int wants = 0; wants < 8; ++wants) {
-    Selective some{(wants & 1) != 0, (wants & 2) != 0, (wants & 4) != 0};
+    Selective some(wants);
     CAPTURE(wants);
     CHECK(observed(scene, Choice{}, some).end_time == end.end_time);
     CHECK((some.told_half_cycles > 0) == some.half_cycles);

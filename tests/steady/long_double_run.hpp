@@ -2,43 +2,25 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
-#include "impact_damper/engines/exact.hpp"
-#include "impact_damper/engines/restitution.hpp"
+#include "engines/observed.hpp"
 
 namespace long_double_run {
 
 using namespace impact_damper;
 using Number = long double;
 
-struct LastState {
-  bool wants_half_cycles() const { return false; }
-  bool wants_contacts() const { return false; }
-  bool wants_energy() const { return false; }
-  double next_sample() const { return std::numeric_limits<double>::infinity(); }
-  void half_cycle(double, double, double, double) {}
-  void impact(double, Wall, double, double) { ++impacts; }
-  void contact(double, double, Wall) {}
-  void sample(double, double, double, double, double) {}
-  EnergyBalance& energy_balance() { return unused; }
-  template <class Motion>
-  void passed(const Motion&, const Number&, const Number&, const State<Number>& state) {
-    end = {state.x, state.v, state.y, state.w};
-  }
+struct LastState : TestObserver<Number> {
+  void impact(double, Wall, double, double) override { ++impacts; }
+  void ended(const State<Number>& state) override { end = {state.x, state.v, state.y, state.w}; }
 
   std::array<Number, 4> end{};
   int impacts = 0;
-  EnergyBalance unused;
 };
 
 inline LastState run(const Scene& scene, const Engine& engine) {
   LastState last;
-  if (const auto* exact = std::get_if<Exact>(&engine)) {
-    run_exact<Number>(scene, *exact, last);
-  } else {
-    run_restitution<Number>(scene, std::get<Restitution>(engine), last);
-  }
+  observed(scene, engine, last);
   return last;
 }
 

@@ -10,8 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "impact_damper/engines/exact_dampers.hpp"
-#include "impact_damper/engines/restitution_dampers.hpp"
+#include "engines/observed.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/lyapunov.hpp"
@@ -22,39 +21,32 @@ using namespace impact_damper;
 
 namespace {
 
-using Number = long double;
-
 // What happens in a run in extended precision, and the state that it ends in.
-struct LastState {
-  static bool wants_half_cycles() { return false; }
-  static bool wants_contacts() { return true; }
-  static bool wants_energy() { return false; }
-  double next_sample() const { return end.empty() ? until : std::numeric_limits<double>::infinity(); }
-  void half_cycle(double, double, double, double) {}
-  void impact(double, Wall, double, double) {}
-  void contact(double, double, Wall) {}
-  void sample(double, double, double, double, double) {}
-  void impact(double, Wall wall, double, double, std::int32_t damper) {
+struct LastState : TestObserver<long double> {
+  explicit LastState(double time) : until(time) {}
+  bool wants_contacts() const override { return true; }
+  double next_sample() const override {
+    return end.empty() ? until : std::numeric_limits<double>::infinity();
+  }
+  void impact(double, Wall wall, double, double, std::int32_t damper) override {
     sequence.push_back(2 * damper + (wall == Wall::left));
   }
-  void contact(double, double, Wall, std::int32_t damper) { sequence.push_back(-1 - damper); }
-  void sample(double, double x, double v, std::span<const PlaceInCavity> places) {
+  void contact(double, double, Wall, std::int32_t damper) override { sequence.push_back(-1 - damper); }
+  void sample(double, double x, double v, std::span<const PlaceInCavity> places) override {
     end = {x, v};
     for (const PlaceInCavity& each : places) end.push_back(each.y), end.push_back(each.w);
   }
-  EnergyBalance& energy_balance() { return unused; }
 
   double until;
-  std::vector<double> end{};
-  std::vector<std::int32_t> sequence{};  // of all events
-  EnergyBalance unused{};
+  std::vector<double> end;
+  std::vector<std::int32_t> sequence;  // of all events
 };
 LastState last_of(const Scene& scene, const Engine& engine) {
-  LastState last{*scene.until_time};
+  LastState last(*scene.until_time);
   if (const auto* const exact = std::get_if<Exact>(&engine)) {
-    run_exact_dampers<Number>(scene, *exact, last);
+    observed_list(scene, *exact, last);
   } else {
-    run_restitution_dampers<Number>(scene, std::get<Restitution>(engine), last);
+    observed_list(scene, std::get<Restitution>(engine), last);
   }
   return last;
 }

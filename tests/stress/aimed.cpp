@@ -6,8 +6,6 @@
 
 #include "counted.hpp"
 #include "examine.hpp"
-#include "impact_damper/engines/exact.hpp"
-#include "impact_damper/engines/restitution.hpp"
 #include "impact_damper/simulate.hpp"
 #include "random_scenes.hpp"
 #include "stress.hpp"
@@ -30,12 +28,6 @@ Check about(const std::string& what, const std::string& allowed) {
 
 std::string in_full(const Scene& scene, const Engine& engine) {
   return std::string(name_of_engine(engine)) + "; {" + random_scenes::text_of(scene) + "}";
-}
-
-// Without a recorder, which would ask for half cycles wherever impacts are wanted.
-Outcome run(const Scene& scene, const Engine& engine, Watch& watch) {
-  if (const auto* exact = std::get_if<Exact>(&engine)) return run_exact<double>(scene, *exact, watch);
-  return run_restitution<double>(scene, std::get<Restitution>(engine), watch);
 }
 
 // All that any scene promises; false if something is broken, which is then a miss.
@@ -267,9 +259,9 @@ std::vector<Check> no_wall(const Options& options) {
     scene.force_amplitude = f.f0, scene.force_frequency = f.omega, scene.until_time = f.end;
     for (const Engine& engine : both) {
       ++none.cases;
-      Watch watch;
+      Watch watch;  // not simulate(), which asks for half cycles wherever impacts are wanted
       watch.sample_at = f.end;
-      const Outcome outcome = run(scene, engine, watch);
+      const Outcome outcome = observed(scene, engine, watch);
       found += watch.impacts;
       if (watch.impacts > 0 || watch.samples.empty() || outcome.stop_reason != StopReason::time) {
         none.miss(std::to_string(watch.impacts) + " impacts to t = " + full(outcome.end_time) + "; " +

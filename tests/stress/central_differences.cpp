@@ -105,7 +105,7 @@ Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
   const double closed_form = closed_form_growth(Damper::centred, zeta, 2 * by_limit);
   scene.until_time = *cem.time_step * (steps_for(closed_form) + 0.5);
   Watch watch = every_step(*cem.time_step);
-  run_cem<double>(scene, cem, watch);
+  observed(scene, cem, watch);
   return {watch.impacts == 0 ? measured_growth(column(watch, &Sample::x)) : std::nan(""), closed_form};
 }
 
@@ -127,7 +127,7 @@ Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit
   scene.y0 = pressed * (1 + (closed_form > 1 ? 1e-9 : 1e-2));
   scene.until_time = *cem.time_step * (steps_for(closed_form) + 0.5);
   Watch watch = every_step(*cem.time_step);
-  run_cem<double>(scene, cem, watch);
+  observed(scene, cem, watch);
   const std::vector<double> y = column(watch, &Sample::y);
   if (!(*std::max_element(y.begin(), y.end()) < 0)) return {std::nan(""), closed_form};
   return {measured_growth(differences(y, 4)), closed_form};

@@ -26,10 +26,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "engines/observed.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/engines/exact.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
@@ -49,31 +49,27 @@ struct HalfCycle {
 };
 
 // An observer that reads off the state at every zero crossing.
-class Crossings {
+class Crossings : public TestObserver<double> {
  public:
-  bool wants_half_cycles() const { return true; }
-  bool wants_contacts() const { return false; }
-  bool wants_energy() const { return false; }
-  void half_cycle(double, double end, double, double amplitude) { rows.push_back({end, amplitude, {}}); }
-  void impact(double, Wall, double, double) {}
-  void contact(double, double, Wall) {}
+  bool wants_half_cycles() const override { return true; }
+  void half_cycle(double, double end, double, double amplitude) override {
+    rows.push_back({end, amplitude, {}});
+  }
   // Several crossings may lie in one motion, all told of before the first sample is asked for.
-  double next_sample() const {
+  double next_sample() const override {
     return sampled_ < rows.size() ? rows[sampled_].end : std::numeric_limits<double>::infinity();
   }
-  void sample(double, double, double v, double y, double w) { rows[sampled_++].state = {v, y, w}; }
-  EnergyBalance& energy_balance() { return energy_balance_; }
+  void sample(double, double, double v, double y, double w) override { rows[sampled_++].state = {v, y, w}; }
 
   std::vector<HalfCycle> rows;
 
  private:
   std::size_t sampled_ = 0;
-  EnergyBalance energy_balance_;
 };
 
 std::vector<HalfCycle> half_cycles_of(const Scene& scene, const Exact& options = {}) {
   Crossings crossings;
-  run_exact<double>(scene, options, crossings);
+  observed(scene, options, crossings);
   return crossings.rows;
 }
 
