@@ -183,9 +183,10 @@ void require_known_format(Arguments& arguments, const std::optional<std::string>
   if (is_standard_output(output))
     arguments.reject("--output", "must be a file, beside which a description of it is written, got \"-\"");
   if (output && is_hdf5(*output) && !has_hdf5())
-    arguments.reject("--output",
-                     "asks for HDF5, but the program was built without its library (Debian: libhdf5-dev); "
-                     "named *.csv the table is CSV");
+    arguments.reject(
+        "--output",
+        "asks for HDF5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
+        "named *.csv the table is CSV");
 }
 
 // For reading: "42 s", "17 min", "3.5 h".

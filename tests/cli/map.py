@@ -233,7 +233,7 @@ rejected('--where: must give x0 once, got "x0=2"', *usual, "--where", "x0=2")
 rejected("--where: must not fix mass_ratio, which is an axis of the map", *usual, "--where", "mass_ratio=0.02")
 rejected("--best: must be given: which values of amplitude_of_largest_loss_factor are the worst?",
          *instead("--z", "amplitude_of_largest_loss_factor"), "--statistic", "worst")
-rejected('--output: must end in .svg, got "none.png"', *usual[:-1], "none.png")
+rejected('--output: must end in .svg for SVG, got "none.png"', *usual[:-1], "none.png")
 rejected("TABLE: must be given", "-o", "none.svg")
 rejected("plan.json.json: cannot be read", "plan.json", *usual[1:], code=5)
 altered = "\n".join(lines).replace(rows[3][column], rows[4][column]) + "\n"

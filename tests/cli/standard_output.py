@@ -21,7 +21,8 @@ def call(*words):
 
 
 forced = ["--mass-ratio", 0.1, "--force-amplitude", 0.05, "--max-periods", 50]
-short = ["--scene", "mast.json", "--to", 10]
+quick = ["--scene", "mast.json", "--to", 30, "--within", 5, "--share", 0.5, "--neighbours", 100, "--clearance", "20:21",
+         "--tolerance", "restitution=0.2", "--engine", "restitution"]
 call("sweep", "--until-time", 20, "--vary", "x0=1,2", "--vary", "restitution=0.4,0.6", "--keep", "impacts", "-o", "map.csv")
 commands = [
     (["run", "--until-time", 5], "--output", "run.json"),
@@ -29,9 +30,9 @@ commands = [
     (["report", "--until-time", 20, "--members", 2, "--without-figures"], "--output", "page.html"),
     (["response", "sweep", *forced, "--vary", "force_frequency=0.9:1.1:2"], "--output", "sweep.json"),
     (["series", "--catalogue", "figures.json", "--runs", "runs", "--figure", 8], "--output", "fig08.dat"),
-    (["design", *short, "--dampers", 1], "--output", "boxes.json"),
-    (["design", *short, "--within", 20, "--neighbours", 100], "--output", "designs.json"),
-    (["design", *short, "--within", 20, "--neighbours", 100], "--write-plan", "plan.json"),
+    (["design", "--scene", "mast.json", "--to", 10, "--dampers", 1], "--output", "boxes.json"),
+    (["design", *quick], "--output", "designs.json"),
+    (["design", *quick], "--write-plan", "plan.json"),
     (["verify", "--claims", "claims.json"], "--output", "verdicts.json"),
     (["verify", "--claims", "claims.json"], "--markdown", "verdicts.md"),
 ]

@@ -209,6 +209,9 @@ else:
     time.sleep(1.1)  # a time of day in the file would be another one
     call("merge", parts[2], parts[0], parts[1], "-o", "merged.h5")
     demand((folder / "merged.h5").read_bytes() == made, "HDF5 from parts: other bytes")
+    for name in ("merged.hdf5", "merged.hdf", "merged.H5"):
+        call("merge", *parts, "-o", name)
+        demand((folder / name).read_bytes() == made, f"{name}: is not HDF5")
 
 # Two at a time do not write one share.
 first = start(*words[:-1], "both.csv")
