@@ -98,17 +98,7 @@ Scene round_scene(std::uint64_t seed, bool rigid) {
     if (*each == 0) *each = 0;  // no -0
   scene.until_time = std::min(length(random, scene, 5, 25), pick({8, 12, 20, 25}));
   // Drawn last, so that a seed's other numbers do not depend on it.
-  if (random.chance(0.12)) {
-    // At rest on a wall with y'' = y''' = 0, exactly: the oracle takes rounding errors of a scene's numbers
-    // for what they say.
-    scene.force_amplitude = pick({1, -1, 0.5, -2});
-    scene.force_frequency = pick({1, 2, 0.5});
-    scene.damping_ratio = pick({0, 0, 0.5, 0.125, 1});
-    scene.v0 = scene.force_amplitude * scene.force_frequency;
-    scene.x0 = -2 * scene.damping_ratio * scene.v0 + 0.0;
-    scene.w0 = 0;
-    scene.y0 = random.chance(0.5);
-  } else if (random.chance(0.05)) {
+  if (random.chance(0.05)) {
     // No impact and no loss: all amplitudes are equal.
     scene.damping_ratio = scene.force_amplitude = scene.v0 = scene.w0 = 0;
     scene.x0 = pick({0.1, -0.1, 0.2});
