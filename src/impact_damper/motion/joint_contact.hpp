@@ -104,7 +104,7 @@ class JointContact {
   // Whether the walls that follow have the q and q' that they are told, but for rounding errors.
   bool follows(const std::vector<PushedWall<Real>>& walls, const Real& time) const {
     const std::size_t count = nu_.size();
-    Real size = rounding_size() + h_ * h_ * absolute(forcing_.amplitude * forcing_.phase(time).sin);
+    const Real size = rounding_size() + h_ * h_ * absolute(forcing_.amplitude * forcing_.phase(time).sin);
     return std::ranges::all_of(followers_, [&](const Follower& each) {
       const std::size_t i = each.index;
       const Real rounding = 64 * std::numeric_limits<Real>::epsilon() * size / each.spring;
