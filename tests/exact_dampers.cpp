@@ -95,6 +95,28 @@ TEST_CASE("several that press their walls until these ring no more leave them wh
   }
 }
 
+TEST_CASE("walls far faster than others that are pressed with them follow these, once they ring no more") {
+  Scene scene;
+  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 0.2;
+  scene.dampers = {damper(0.05, 0.6, 3, 200, 0, 0), damper(1e-6, 0.1, 4, 600, 0, 0),
+                   damper(0.02, 0.5, 2, 70, 0, 0)};
+  Scene shaken = scene;
+  shaken.force_amplitude = 3, shaken.force_frequency = 7;
+  for (const Scene& each : {scene, shaken}) {
+    const Run run = run_of(each);
+    const Reference reference(each, run.history->time);
+    const Distance far = distance(run, reference);
+    CHECK(far.x < 1e-13);
+    CHECK(far.y < 1e-12);
+    CHECK(far.residual < 1e-14);
+  }
+  // The fast wall alone would take 2e6 pieces for each unit of time. It rings for some hundreds of them.
+  scene.until_time = 20;
+  scene.dampers = {damper(0.02, 0.3, 1, 1e4, 0, 0), damper(1e-9, 0.6, 1, 1e4, 0, 0)};
+  const Run run = simulate(scene, Exact{.max_steps = 20'000}, {});
+  CHECK(run.stop_reason == StopReason::time);
+}
+
 TEST_CASE("that several press their walls is told late under a force as early") {
   // The phase of the force rounds the more the later it is: without regard to that no slow mode takes over.
   Scene scene;

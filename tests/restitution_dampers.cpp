@@ -299,7 +299,8 @@ TEST_CASE("of masses that bounce together none is left behind to bounce for ever
   CHECK(run.stop_reason == StopReason::time);
 }
 
-TEST_CASE("a mass that chatters beside those that stick comes to rest under the acceleration of all of them") {
+TEST_CASE(
+    "a mass that chatters beside those that stick comes to rest under the acceleration of all of them") {
   // The wall meets it at 0. From then on it bounces on 1 + 10, and each bounce kicks the other off for a time
   // that is short; with a constant force this is a geometric sum, and x'' hardly changes.
   const double nu = 1e-6, e = 0.6, other = 10, w = 1e-4, x0 = 6;

@@ -102,10 +102,11 @@ int compare_one(const Options& options) {
 }
 
 int usage(const std::string& what) {
-  std::cerr << "impact-damper-several: " << what
-            << "\nusage: impact-damper-several [--walls rigid|compliant] [--kind random|round|aimed] [--seed N] "
-               "[--count M] [--failures K]"
-               " [--begin-tolerance T] [--growth G] [--scene FILE]\n";
+  std::cerr
+      << "impact-damper-several: " << what
+      << "\nusage: impact-damper-several [--walls rigid|compliant] [--kind random|round|aimed] [--seed N] "
+         "[--count M] [--failures K]"
+         " [--begin-tolerance T] [--growth G] [--scene FILE]\n";
   return 2;
 }
 

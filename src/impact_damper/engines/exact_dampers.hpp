@@ -256,8 +256,7 @@ class ExactOfDampers {
     list_pushed();
     if (ring_no_more()) return press_together();
     Piece& piece = piece_;
-    if (pieces_together_ == 1) piece.set_walls(system_.zeta, system_.forcing, pushed_);
-    piece.begin(tracker_.now(), x_, v_, pushed_);
+    begin_piece();
     Search<Real>& search = tracker_.search();
     search.steps_left -= std::int64_t(in_contact_.size());
     const Real remaining = tracker_.remaining();
@@ -289,9 +288,37 @@ class ExactOfDampers {
     take_events();
   }
 
+  // Begins a piece. From time to time: with those walls that ring no more, and are much faster than the
+  // others, following these.
+  void begin_piece() {
+    const auto begin_with = [&](const Real& follow_from) {
+      piece_.set_walls(system_.zeta, system_.forcing, pushed_, follow_from);
+      piece_.begin(tracker_.now(), x_, v_, pushed_);
+    };
+    const Real nothing = std::numeric_limits<Real>::infinity();
+    if (pieces_together_ == 1) return begin_with(follow_from_ = nothing);
+    bool tried = false;
+    for (Real last{0}; pieces_together_ % soonest == 0;) {
+      Real least = follow_from_;
+      for (const PushedWall<Real>& each : pushed_)
+        if (each.stiffness > last && each.stiffness < least &&
+            Piece::may_follow(each.stiffness, system_.zeta, system_.forcing, pushed_))
+          least = each.stiffness;
+      if (!(least < follow_from_)) break;
+      begin_with(least);
+      if (piece_.follows(pushed_)) {
+        follow_from_ = least;
+        return;
+      }
+      tried = true;
+      last = least;
+    }
+    if (tried) return begin_with(follow_from_);
+    piece_.begin(tracker_.now(), x_, v_, pushed_);
+  }
   // Whether the walls of those in contact ring no more. They do for some pieces.
+  static constexpr int soonest = 16;
   bool ring_no_more() {
-    constexpr int soonest = 16;
     if (++pieces_together_ < soonest) return false;
     if (pieces_together_ == soonest) slow_mode_ = SlowMode::of(system_.zeta, system_.forcing, pushed_);
     return slow_mode_ && slow_mode_->holds(pushed_, tracker_.now(), x_, v_);
@@ -475,6 +502,7 @@ class ExactOfDampers {
   Piece piece_;
   std::optional<SlowMode> slow_mode_;  // of those in contact, after some pieces
   int pieces_together_ = 0;            // since who is in contact has changed
+  Real follow_from_{0};                // the stiffness from which on walls follow in these pieces
 };
 
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with.

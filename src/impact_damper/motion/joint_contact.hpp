@@ -3,6 +3,7 @@
 // (M17.17). No modes: a set of masses seldom comes again, and equal dampers have equal modes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -36,22 +37,36 @@ class JointContact {
     std::size_t order;  // of the derivative of x, or of a mass's distance from its wall, that it is
   };
 
-  // The walls are those of the piece that begins next.
-  void set_walls(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls) {
+  // Whether walls as stiff as that, and stiffer ones, may follow all else: they are much faster.
+  static bool may_follow(const Real& least, const Real& zeta, const Force& forcing,
+                         const std::vector<PushedWall<Real>>& walls) {
+    const auto leads = [&](const PushedWall<Real>& wall) { return wall.stiffness < least; };
+    const Real rate = rate_for(zeta, forcing, walls, least);
+    return std::ranges::any_of(walls, leads) && least > 10000 * rate * rate;
+  }
+  // The walls are those of the piece that begins next. Those of a stiffness of at least `follow_from` ring no
+  // more: they follow all else (M17.22).
+  void set_walls(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls,
+                 const Real& follow_from = std::numeric_limits<Real>::infinity()) {
     zeta_ = zeta;
     forcing_ = forcing;
-    const Real rate = rate_for(zeta, forcing, walls);
+    const Real rate = rate_for(zeta, forcing, walls, follow_from);
     length_ = Real(joint_radians) / rate;
     h_ = 1;
     while (h_ * rate > 2) h_ /= 2;
     over_h_ = 1 / h_;
-    nu_.clear();
-    spring_.clear();
-    damping_.clear();
+    for (std::vector<Real>* each : {&nu_, &spring_, &damping_}) each->clear();
+    followers_.clear();
+    mass_ = 1;
     for (const auto& [nu, stiffness, damping, q, w] : walls) {
+      const bool follows = stiffness >= follow_from;
+      if (follows) {
+        followers_.push_back({nu_.size(), h_ * h_ * stiffness, h_ * damping});
+        mass_ += nu;
+      }
       nu_.push_back(nu);
-      spring_.push_back(h_ * h_ * stiffness);
-      damping_.push_back(h_ * damping);
+      spring_.push_back(follows ? Real(0) : Real(h_ * h_ * stiffness));
+      damping_.push_back(follows ? Real(0) : Real(h_ * damping));
     }
     for (std::vector<Real>* each : {&force_, &end_q_, &end_w_, &fourth_}) each->resize(walls.size());
     q_.resize(joint_terms * walls.size());
@@ -71,26 +86,27 @@ class JointContact {
       q_[count + i] = h_ * walls[i].w;
     }
     phase_ = forcing_.phase(time);
-    const auto& [sin, cos] = phase_;
-    const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
-    Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
-    const auto& over = reciprocals<Real>;
-    for (std::size_t n = 0; n + 2 < joint_terms; ++n) {
-      const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
-      const Real *now = q_.data() + n * count, *rate = now + count;
-      Real* const after = q_.data() + (n + 2) * count;
-      for (std::size_t i = 0; i < count; ++i)
-        force_[i] = next * damping_[i] * rate[i] + spring_[i] * now[i];  // (M17.9)
-      Real sum = f_now - 2 * zeta_ * h_ * next * x[n + 1] - h_2 * x[n];
-      for (std::size_t i = 0; i < count; ++i) sum += nu_[i] * force_[i];
-      x[n + 2] = sum * both;
-      for (std::size_t i = 0; i < count; ++i) after[i] = -(sum + force_[i]) * both;
-      const Real f_after = -turn * turn * f_now * both;
-      f_now = f_next;
-      f_next = f_after;
+    pull_.fill(Real(0));
+    expand(x);
+    // What this leaves out is a ten-thousandth of itself each time.
+    for (int i = 0; i < 5 && !followers_.empty(); ++i) {
+      follow(x);
+      expand(x);
     }
+    if (!followers_.empty()) follow(x);
     for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = SimdPair<Real>{x[2 * n], x[2 * n + 1]};
     end_ = -1;
+  }
+  // Whether the walls that follow have the q and q' that they are told, but for rounding errors.
+  bool follows(const std::vector<PushedWall<Real>>& walls) const {
+    const std::size_t count = nu_.size();
+    const Real size = rounding_size() + h_ * h_ * absolute(forcing_.amplitude * phase_.sin);
+    return std::ranges::all_of(followers_, [&](const Follower& each) {
+      const std::size_t i = each.index;
+      const Real rounding = 64 * std::numeric_limits<Real>::epsilon() * size / each.spring;
+      return absolute(walls[i].q - q_[i]) <= rounding &&
+             absolute(h_ * walls[i].w - q_[count + i]) <= rounding * square_root(each.spring);
+    });
   }
 
   const Real& length() const { return length_; }
@@ -124,7 +140,10 @@ class JointContact {
         sum_ww += half * weight * (w * w);
       }
     }
-    return nu_[i] * (damping_[i] * over_h_) * sum_ww;
+    Real damping = damping_[i];
+    for (const Follower& each : followers_)
+      if (each.index == i) damping = each.damping;
+    return nu_[i] * (damping * over_h_) * sum_ww;
   }
 
   // Proves of those whose q keeps its sign until t that it does (Lemma L2); stays(i) tells.
@@ -212,9 +231,11 @@ class JointContact {
 
  private:
   // (M17.17)
-  static Real rate_for(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls) {
+  static Real rate_for(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls,
+                       const Real& follow_from) {
     Real all_k{0}, most_k{0}, all_c{0}, most_c{0};
     for (const auto& [nu, stiffness, damping, q, w] : walls) {
+      if (stiffness >= follow_from) continue;
       all_k += nu * stiffness;
       all_c += nu * damping;
       if (stiffness > most_k) most_k = stiffness;
@@ -229,9 +250,60 @@ class JointContact {
     for (std::size_t i = 0; i < nu_.size(); ++i)
       walls.push_back({nu_[i], spring_[i] * over_h_ * over_h_, damping_[i] * over_h_, q_[i],
                        over_h_ * q_[nu_.size() + i]});
+    for (const Follower& each : followers_) {
+      walls[each.index].stiffness = each.spring * over_h_ * over_h_;
+      walls[each.index].damping = each.damping * over_h_;
+    }
     const std::size_t order =
         lead_of_x<Real>(2 * zeta_, Real(1), forcing_, phase_, get(x_, 0), over_h_ * get(x_, 1), walls).order;
     return order > 0 && order + 1 < joint_terms ? order : joint_terms - 2;
+  }
+  // The terms of x from its first two, and those of each q; those of what follows come from follow().
+  void expand(std::array<Real, joint_terms>& x) {
+    const std::size_t count = nu_.size();
+    const auto& [sin, cos] = phase_;
+    const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
+    Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
+    const auto& over = reciprocals<Real>;
+    for (std::size_t n = 0; n + 2 < joint_terms; ++n) {
+      const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
+      const Real *now = q_.data() + n * count, *rate = now + count;
+      Real* const after = q_.data() + (n + 2) * count;
+      for (std::size_t i = 0; i < count; ++i)
+        force_[i] = next * damping_[i] * rate[i] + spring_[i] * now[i];  // (M17.9)
+      Real sum = f_now - 2 * zeta_ * h_ * next * x[n + 1] - h_2 * x[n];
+      for (std::size_t i = 0; i < count; ++i) sum += nu_[i] * force_[i];
+      if (!followers_.empty()) sum = (sum - pull_[n]) / mass_;
+      x[n + 2] = sum * both;
+      for (std::size_t i = 0; i < count; ++i) after[i] = -(sum + force_[i]) * both;
+      const Real f_after = -turn * turn * f_now * both;
+      f_now = f_next;
+      f_next = f_after;
+    }
+  }
+  // The terms of what follows, from those of x: K q = -(x'' + q'') - c q', from the last one down.
+  void follow(const std::array<Real, joint_terms>& x) {
+    const std::size_t count = nu_.size();
+    pull_.fill(Real(0));
+    for (const auto& [i, spring, damping] : followers_) {
+      Real next{0}, second{0};  // those of order n + 1 and n + 2
+      for (std::size_t n = joint_terms; n-- > 0;) {
+        const Real both = Real(double((n + 1) * (n + 2)));
+        pull_[n] += nu_[i] * both * second;
+        const Real bend = n + 2 < joint_terms ? Real(x[n + 2] + second) : Real(0);
+        const Real now = -(both * bend + double(n + 1) * damping * next) / spring;
+        second = next;
+        next = q_[n * count + i] = now;
+      }
+    }
+  }
+  // The sizes of what h^2 x'' at the beginning is the sum of, without the force.
+  Real rounding_size() const {
+    const std::size_t count = nu_.size();
+    Real size = h_ * h_ * absolute(get(x_, 0)) + 2 * zeta_ * h_ * absolute(get(x_, 1));
+    for (std::size_t i = 0; i < count; ++i)
+      size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
+    return size;
   }
   static Real get(const Terms& terms, std::size_t n) { return terms[n / 2][n % 2]; }
   static void set(Terms& terms, std::size_t n, const Real& value) {
@@ -292,8 +364,15 @@ class JointContact {
   // The unit of time of the series, a power of two, so that no number is rounded for it: the rounding would
   // be the same in every piece, and add up.
   Real h_{1}, over_h_{1};
-  std::vector<Real> nu_, spring_, damping_;  // of each wall; h^2 K and h c
-  std::vector<Real> q_;                      // the terms of order 0 of all walls, then those of order 1 ...
+  std::vector<Real> nu_, spring_, damping_;  // of each wall; h^2 K and h c, 0 of what follows
+  struct Follower {
+    std::size_t index;
+    Real spring, damping;
+  };
+  std::vector<Follower> followers_;
+  Real mass_{1};                          // of the primary mass and what follows
+  std::array<Real, joint_terms> pull_{};  // the terms of what q'' of these takes from h^2 mass_ x''
+  std::vector<Real> q_;                   // the terms of order 0 of all walls, then those of order 1 ...
   std::vector<Real> force_;
   Terms x_{};
   std::array<Real, joint_terms>
