@@ -21,17 +21,30 @@ class Drawn(NamedTuple):
     curves: dict    # gnuplot's name -> its vertices, those of its markers, too, in whole pixels
 
 
+def group(text: str) -> str:
+    """The element <g> that a text begins with."""
+    depth = 0
+    for tag in re.finditer("<(/?)g\\b", text):
+        depth += -1 if tag[1] else 1
+        if depth == 0:
+            return text[:tag.start()]
+    return text
+
+
+def vertices(text: str) -> set:
+    shapes = " ".join(re.findall("<(?:path|polygon|use)[^>]*>", text))
+    return {(round(float(x)), round(float(y))) for x, y in re.findall(r"(-?\d+\.\d+),(-?\d+\.\d+)", shapes)}
+
+
 def drawn(picture: str) -> Drawn:
     metadata = re.search("<metadata>(.*)</metadata>", picture, re.S)
     plots = json.loads(metadata[1])["axes"] if metadata else []
-    curves = {}
-    for part in re.split(r'(?=<g id="\S*gnuplot_plot_\w+")', picture)[1:]:
-        shapes = " ".join(re.findall("<(?:path|polygon|use)[^>]*>", part))
-        curves[part.split('"', 2)[1]] = {(round(float(x)), round(float(y))) for x, y in re.findall(r"(-?\d+\.\d+),(-?\d+\.\d+)", shapes)}
+    curves = {part.split('"', 2)[1]: vertices(part)
+              for part in map(group, re.split(r'(?=<g id="\S*gnuplot_plot_\w+")', picture)[1:])}
     texts = (re.sub("<[^>]*>", "", text) for text in re.findall("<text[^>]*>(.*?)</text>", picture, re.S))
     return Drawn(sorted(text for text in texts if not re.fullmatch(r"\s*-?[\d.]+\s*", text)),
                  [[plot["x"][:3], plot["y"][:3], plot.get("log")] for plot in plots],
-                 [end for plot in plots for axis in "xy" for end in plot[axis][3:]], curves)
+                 [end for plot in plots for axis in "xy" for end in plot[axis][3:]], curves if plots else {"schematic": vertices(picture)})
 
 
 def elsewhere(one: set, other: set) -> int:
@@ -48,10 +61,10 @@ def difference_in(name: str, one: str, other: str) -> Optional[str]:
         return f"{name}: other axes, {a.axes} and {b.axes}"
     if a.curves.keys() != b.curves.keys():
         return f"{name}: other curves, {sorted(a.curves.keys() ^ b.curves.keys())}"
-    for curve, vertices in a.curves.items():
-        count = max(elsewhere(vertices, b.curves[curve]), elsewhere(b.curves[curve], vertices))
+    for curve, points in a.curves.items():
+        count = max(elsewhere(points, b.curves[curve]), elsewhere(b.curves[curve], points))
         if count > 1:
-            return f"{name}: {curve} runs elsewhere in {count} of {len(vertices)} vertices"
+            return f"{name}: {curve} runs elsewhere in {count} of {len(points)} vertices"
     return None
 
 
