@@ -404,14 +404,14 @@ TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") 
   const double contact = pi / std::sqrt(scene.wall_stiffness * 1.1 / 0.1);
   for (const bool locate : {false, true}) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (int i = 0; i < 16; ++i) {
-      const double step = contact / 20 * std::pow(5, -i / 15.0), x = std::log(step),
+    for (int i = 0; i < 32; ++i) {
+      const double step = contact / 20 * std::pow(5, -i / 31.0), x = std::log(step),
                    y = std::log(error(step, locate));
       sx += x, sy += y, sxx += x * x, sxy += x * y;
     }
     CHECK(measured(locate ? "step_order_located" : "step_order", {{"steps_per_contact", 20}, {"factor", 5}},
                    {simulate(scene, Exact{}, {true, true, true})}) ==
-          doctest::Approx((16 * sxy - sx * sy) / (16 * sxx - sx * sx)).epsilon(1e-6));
+          doctest::Approx((32 * sxy - sx * sy) / (32 * sxx - sx * sx)).epsilon(1e-6));
   }
 }
 
