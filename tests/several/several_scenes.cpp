@@ -1,5 +1,6 @@
 #include "several_scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <sstream>

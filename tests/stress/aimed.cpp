@@ -107,7 +107,7 @@ Check grazing(const Options& options) {
 Check on_a_wall() {
   Check check =
       about("release exactly on a wall: an impact at once if and only if it moves into the wall", "all");
-  const double least = std::numeric_limits<double>::denorm_min();
+  const double least = least_magnitude;
   for (const double y0 : {0.0, 1.0}) {
     for (const double w0 : {0.0, -0.0, least, -least, epsilon, -epsilon, 1.0, -1.0, 1e8, -1e8}) {
       for (const double x0 : {0.0, least, -least, 6.0, -6.0}) {
@@ -292,7 +292,7 @@ Check crawling() {
       about("arithmetic operations for each search of an event, where nothing is easy to tell apart",
             rounded(allowed));
   Worst worst;
-  const double least = std::numeric_limits<double>::denorm_min();
+  const double least = least_magnitude;
   struct Hard {
     double x0, v0, y0, w0, e, end;
   };

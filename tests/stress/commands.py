@@ -5,7 +5,7 @@
 
 PROGRAM is best the sanitizers' (cmake --preset sanitize, target impact-damper). Each command has cases of its own for
 S seconds (default 120), or N cases, two commands at a time. A case is a function of SEED, the command and the case's
-number; the default seed is the commit, so that each commit has new ones. --only lyapunov:17 runs that case alone.
+number; the default seed is the tree of src/, so that each change of the program has new ones. --only lyapunov:17 runs that case alone.
 FOLDER holds a folder for each case that failed, with its scene.
 
 A case fails if a sanitizer reports, if the program ends by a signal, by an exit code that is not documented or without
@@ -463,9 +463,9 @@ parser.add_argument("--verbose", action="store_true", help="say why cases were n
 options = parser.parse_args()
 program = options.program
 if options.seed is None:
-    commit = subprocess.run(["git", "-C", str(SOURCE), "rev-parse", "--short=12", "HEAD"], stdout=subprocess.PIPE,
-                            stderr=subprocess.DEVNULL, text=True, check=False).stdout.strip()
-    options.seed = commit or str(time.time_ns())
+    tree = subprocess.run(["git", "-C", str(SOURCE), "rev-parse", "--short=12", "HEAD:src"], stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, text=True, check=False).stdout.strip()
+    options.seed = tree or str(time.time_ns())
 only = {}
 for word in (options.only or ",".join(COMMANDS)).split(","):
     name, _, number = word.partition(":")
