@@ -49,8 +49,9 @@ def finds_its_files():
     demand(run(PROGRAM, "check", "run", *files).count("\n") == len(files) ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")
     done = subprocess.run([PROGRAM, "verify", "--runs", RUNS, "--members", "2"], cwd=FOLDER, capture_output=True, text=True)
-    claims = len(json.loads((SHARE / "data/claims.json").read_text())["claims"])
-    demand(done.returncode in (0, 1) and f"\nengine exact, {claims} claims: " in done.stdout, done.stderr + done.stdout)
+    claims = [claim for claim in json.loads((SHARE / "data/claims.json").read_text())["claims"] if "source" not in claim]
+    demand(done.returncode in (0, 1) and f"\nengine exact, {len(claims)} claims of the paper: " in done.stdout,
+           done.stderr + done.stdout)
 
 
 def finds_what_is_named():
