@@ -97,7 +97,7 @@ TEST_CASE("several that press their walls until these ring no more leave them wh
 
 TEST_CASE("walls far faster than others that are pressed with them follow these, once they ring no more") {
   Scene scene;
-  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 0.2;
+  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 0.05;
   scene.dampers = {damper(0.05, 0.6, 3, 200, 0, 0), damper(1e-6, 0.1, 4, 600, 0, 0),
                    damper(0.02, 0.5, 2, 70, 0, 0)};
   Scene shaken = scene;
