@@ -94,12 +94,12 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
 }
 
 void reject_same_output(Arguments& arguments, const std::string& option,
-                        const std::optional<std::string>& output, const std::string& other_option,
+                        const std::optional<std::string>& file, const std::string& other_option,
                         const std::optional<std::string>& other) {
   namespace fs = std::filesystem;
-  const auto place = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file)); };
-  if (output && other && place(*output) == place(*other))
-    arguments.reject(option, "must be another file than " + other_option + ", got " + in_quotes(*output));
+  const auto place = [](const std::string& name) { return fs::weakly_canonical(fs::absolute(name)); };
+  if (file && other && place(*file) == place(*other))
+    arguments.reject(option, "must be another file than " + other_option + ", got " + in_quotes(*file));
 }
 
 bool is_standard_output(const std::optional<std::string>& output) { return output == "-"; }

@@ -24,7 +24,7 @@ void reject_other_endings(Arguments& arguments, const std::string& option,
 
 // Rejects one place for the results of two options.
 void reject_same_output(Arguments& arguments, const std::string& option,
-                        const std::optional<std::string>& output, const std::string& other_option,
+                        const std::optional<std::string>& file, const std::string& other_option,
                         const std::optional<std::string>& other);
 
 bool is_standard_output(const std::optional<std::string>& output);

@@ -357,7 +357,8 @@ class RestitutionOfDampers {
       if (slowest < per_speed) slowest = per_speed;
     }
     const Real a = on_all / mass_, heavy = (1 + everyone.mass) * (1 + everyone.mass);
-    const bool alone = !some_rest_ && everyone.mass == masses_.nu[chattering_.front().index];
+    const bool alone = !some_rest_ && !chattering_.empty() &&
+                       everyone.mass == masses_.nu[chattering_.front().index];
     joining_.assign(1, {});
     Real longest{0};
     for (const Chattering& each : chattering_) {

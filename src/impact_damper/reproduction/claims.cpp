@@ -162,7 +162,7 @@ Claim read_claim(ObjectReader& object) {
   }
   if (is_of_ours(claim.recorded) != (claim.source == Source::ours))
     object.reject("verdict",
-                  "must be \"holds\" or \"does not hold\" if, and only if, the source is \"ours\", got " +
+                  R"(must be "holds" or "does not hold" if, and only if, the source is "ours", got )" +
                       in_quotes(name_of(claim.recorded)) + " with " + in_quotes(name_of(claim.source)));
   if (!agrees(claim.recorded)) {
     require_explanation(object, "explanation", claim.explanation, names);
