@@ -9,7 +9,7 @@ number; the default seed is the tree of src/, so that each change of the program
 FOLDER holds a folder for each case that failed, with its scene.
 
 A case fails if a sanitizer reports, if the program ends by a signal, by an exit code that is not documented or without
-saying why, if it takes longer than the timeout (default 120 s), or if what it writes is not valid JSON of its published
+saying why, if it takes longer than the timeout (default 600 s), or if what it writes is not valid JSON of its published
 schema, not a table of finite numbers or not a whole page. The cases must reach what they are for: at least half of
 those of a command must be valid input.
 """
@@ -30,6 +30,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 from jsonschema import Draft7Validator, RefResolver  # Debian: python3-jsonschema
@@ -314,6 +315,7 @@ def validators():
 
 
 VALIDATORS = validators()
+VALIDATING = threading.Lock()  # a resolver of references is one thread's at a time
 
 
 def no_number(word):
@@ -362,7 +364,8 @@ def examined(text, kind):
         content = json.loads(text, parse_constant=no_number)
     except ValueError as error:
         return [str(error)]
-    return [place for error in VALIDATORS[kind].iter_errors(content) for place in places_of(error)][:3]
+    with VALIDATING:
+        return [place for error in VALIDATORS[kind].iter_errors(content) for place in places_of(error)][:3]
 
 
 def places_of(error):
@@ -456,7 +459,7 @@ parser.add_argument("program", type=lambda text: pathlib.Path(text).resolve())
 parser.add_argument("folder", type=lambda text: pathlib.Path(text).resolve())
 parser.add_argument("--seconds", type=float, default=120)
 parser.add_argument("--count", type=int)
-parser.add_argument("--timeout", type=float, default=120)
+parser.add_argument("--timeout", type=float, default=600)
 parser.add_argument("--seed")
 parser.add_argument("--only")
 parser.add_argument("--verbose", action="store_true", help="say why cases were not valid")
