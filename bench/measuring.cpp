@@ -107,7 +107,7 @@ TEST_CASE("the error is the largest difference of a row, and one row more or les
 }
 
 TEST_CASE("a spread is the median and the quartiles of a sample in any order") {
-  const Spread spread = spread_of({9, 1, 8, 2, 7, 3, 6, 4, 5});
+  const bench::Spread spread = bench::spread_of({9, 1, 8, 2, 7, 3, 6, 4, 5});
   CHECK(spread.lower == 3);
   CHECK(spread.median == 5);
   CHECK(spread.upper == 7);

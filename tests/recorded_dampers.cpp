@@ -114,7 +114,7 @@ TEST_CASE("a damper's bounce-downs lose what was left after its last impact that
   scene.dampers[0].restitution = 0.3;
   scene.dampers[1].restitution = 0.9;  // does not come to rest again
   const Run run = simulated(scene, Restitution{});
-  std::vector<DamperEnergy> expected(scene.dampers.size());
+  std::vector<DamperEnergy> sums(scene.dampers.size());
   for (std::size_t n = 0; n < run.contacts->begin.size(); ++n) {
     const std::int32_t damper = run.contacts->damper[n];
     const double begin = run.contacts->begin[n];
@@ -129,23 +129,23 @@ TEST_CASE("a damper's bounce-downs lose what was left after its last impact that
         primary += scene.dampers[std::size_t(run.contacts->damper[other])].mass_ratio;
     const SceneDamper& its = scene.dampers[std::size_t(damper)];
     const double w = its.restitution * speed, nu = its.mass_ratio;
-    ++expected[std::size_t(damper)].bounce_downs;
-    expected[std::size_t(damper)].bounce_down_loss += primary * nu / (primary + nu) * w * w / 2;
+    ++sums[std::size_t(damper)].bounce_downs;
+    sums[std::size_t(damper)].bounce_down_loss += primary * nu / (primary + nu) * w * w / 2;
   }
   std::int64_t count = 0;
   double loss = 0;
   for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
     CAPTURE(i);
     const DamperEnergy& its = run.energy->dampers[i];
-    CHECK(its.bounce_downs == expected[i].bounce_downs);
-    CHECK(std::abs(its.bounce_down_loss - expected[i].bounce_down_loss) <=
-          1e-12 * expected[i].bounce_down_loss);
+    CHECK(its.bounce_downs == sums[i].bounce_downs);
+    CHECK(std::abs(its.bounce_down_loss - sums[i].bounce_down_loss) <=
+          1e-12 * sums[i].bounce_down_loss);
     count += its.bounce_downs;
     loss += its.bounce_down_loss;
   }
   CHECK(count > 1);
   // The engine takes the limit of a chattering that the oracle follows farther.
-  const Contacts &contacts = *run.contacts, oracles = *::expected(scene, Walls::rigid).contacts;
+  const Contacts &contacts = *run.contacts, oracles = *expected(scene, Walls::rigid).contacts;
   same("contacts.begin", contacts.begin, oracles.begin, 1e-7);
   same("contacts.end", contacts.end, oracles.end, 1e-7);
   same("contacts.wall", contacts.wall, oracles.wall, 0);

@@ -20,7 +20,8 @@
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/sweeps/plan_file.hpp"
 
-namespace impact_damper {
+using namespace impact_damper;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -941,11 +942,11 @@ TEST_CASE(
   decay.run.scene.damping_ratio = 0;
   decay.others.push_back(exponential_decay(0.012, 60));
   // From two starts, each of which has a largest.
-  SweepResponse a = sweep(axis, 1, 2, 3, 4), b = sweep(axis, 2, 1, 2, 5);
+  SweepResponse a = sweep(axis, 1, 2, 3, 4), other = sweep(axis, 2, 1, 2, 5);
   a.sweeps.push_back(sweep(axis, 7, 6, 9, 1).sweeps[0]);
-  b.sweeps.push_back(sweep(axis, 1, 8, 1, 2).sweeps[0]);
+  other.sweeps.push_back(sweep(axis, 1, 8, 1, 2).sweeps[0]);
   const Table table = figure_table(figure, {{"decay", decay}},
-                                   {{"a", {"a.json", a}}, {"b", {"b.json", b}}, {"c", {"c.json", ended}}});
+                                   {{"a", {"a.json", a}}, {"b", {"b.json", other}}, {"c", {"c.json", ended}}});
   const double nu = decay.run.scene.mass_ratio, f1 = 0.002 / nu, f2 = 0.004 / nu, f3 = 0.006 / nu,
                f4 = 0.008 / nu;
   check_block(table, "rising", {{f1, f2, f1, f2, f3}, {2, 2, 7, 8, 5}});
@@ -1163,5 +1164,3 @@ TEST_CASE("several dampers are drawn by their mass, beside the sum of what each 
            "one.json: must have the restitution");
   rejected([](FigureRuns& all) { all["set"].run.half_cycles.reset(); }, "set.json: holds no half_cycles");
 }
-
-}  // namespace impact_damper

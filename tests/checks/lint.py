@@ -6,7 +6,7 @@
 BUILD is the build folder, whose compile_commands.json says how each source is compiled. clang-tidy's checks are those
 of .clang-tidy, with the reason for each that is left out; cppcheck's are below and in cppcheck.txt. Headers are
 looked at with the sources that include them. clang-tidy spends its time on the headers of others, so sources that are
-compiled as one are looked at as one.
+compiled as one are looked at as one, and so are those of ALONE, each of which takes long to compile.
 
 Exit code 1: something was found, 2: a tool or the build is missing.
 """
@@ -25,6 +25,8 @@ SOURCE = Path(__file__).resolve().parents[2]
 CPPCHECK = ["cppcheck", "--enable=warning,style,performance,portability", "--std=c++20", "--error-exitcode=1", "--quiet",
             "--inline-suppr", "--suppressions-list=tests/checks/cppcheck.txt", "--template={file}:{line}: {message} [{id}]",
             "-Isrc", "src"]
+ALONE = {"recorded": "/engines/recorded_", "singles": "/(c_interface|run_csv|run_with_variation|steady_state)[.]",
+         "application": "/(damper_set_design|hdf5_table|kept_quantities)[.]"}
 
 
 def missing(text):
@@ -33,19 +35,29 @@ def missing(text):
 
 
 def compiled(build):
-    """What is compiled as one (src/CMakeLists.txt): its name, its sources, the file that includes them, the options."""
+    """What is looked at as one: its name, its sources, the file that includes them, the options."""
     database = build / "compile_commands.json"
     if not database.exists():
         missing(f"{database} is missing: make build")
+    alone = {name: [] for name in ALONE}
     for entry in json.loads(database.read_text()):
         file = Path(entry["file"])
         sources = re.findall('#include "(.*[.]cpp)"', file.read_text()) if "Unity" in file.parts else [str(file)]
         if any(SOURCE / "src" not in Path(source).parents for source in sources):
             continue  # generated, or of the tests
         # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
-        yield file.stem, sources, file, [
-            word for word in shlex.split(entry["command"])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
-            not word.startswith("-") and "/include" in word and not word.endswith(".o")]
+        options = [word for word in shlex.split(entry["command"])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
+                   not word.startswith("-") and "/include" in word and not word.endswith(".o")]
+        name = next((name for name, pattern in ALONE.items() if re.search(pattern, entry["file"])), None)
+        if name:
+            alone[name].append((sources, options))
+        else:
+            yield file.stem, sources, file, options
+    for name, entries in alone.items():
+        sources = sum((sources for sources, _ in entries), [])
+        file = build / f"lint-{name}.cpp"
+        file.write_text("".join(f'#include "{source}"\n' for source in sources))
+        yield name, sources, file, sum((options for _, options in entries), [])
 
 
 def tidy(name, file, options):

@@ -16,6 +16,7 @@ fault. What was caught, or has its excuse, is not done again while its line in t
 
 import argparse
 import fcntl
+import functools
 import hashlib
 import json
 import os
@@ -125,6 +126,12 @@ class Tree:
         found = re.findall(r"^tests/(\w+/)?test_(\w+): CXX_EXECUTABLE", out, re.MULTILINE)
         self.binaries = {name: f"tests/{folder}test_{name}" for folder, name in found} | {"cli": "src/impact-damper"}
 
+    @functools.cached_property
+    def program(self):
+        """The program of each file with test cases (../together.cmake)."""
+        return {file: together.stem.removeprefix("together_") for together in self.build.rglob("together_*.cpp")
+                for file in re.findall(r'^#include ".*/(\w+)[.]cpp"$', together.read_text(), re.MULTILINE)}
+
     def make(self, test):
         return run(["ninja", "-j", self.jobs, self.binaries[test]], self.build, BUILD_TIMEOUT)
 
@@ -175,8 +182,8 @@ def first_failure(test, out):
         found = (re.search(r"^FAILED \d+ (.*)", out, re.MULTILINE) or  # tests/cli/command_lines.py
                  re.search(r"The following tests FAILED:\s+\d+ - (.*) \(", out))
         return found[1] if found else "cli"
-    found = re.search(r"^TEST CASE:\s+(.*)", out, re.MULTILINE)
-    return f"{test}: {found[1]}" if found else f"{test}: crashed"
+    found = re.search(r"(\w+)[.]cpp:\d+:\nTEST CASE:\s+(.*)", out)
+    return f"{found[1]}: {found[2]}" if found else f"{test}: crashed"
 
 
 def check_sound(tree, state, memory):
@@ -202,10 +209,11 @@ def examine(tree, fault, sound, before):
     """Who catches the fault: (verdict, by whom)."""
     stem = Path(fault.file).stem
     caught = (before or {}).get("by", "").split(": ")[0]
+    caught = tree.program.get(caught, caught)
 
     def cost(test):
         seconds = sound[test]["run"] + 1 + 5 * tree.includes(test, fault.file)  # linking, compiling
-        return seconds / 10 if test.startswith(stem) or stem.startswith(test) else seconds
+        return seconds / 10 if test == tree.program.get(stem) else seconds
 
     order = sorted(tree.binaries, key=lambda test: (test != caught, test == "cli", cost(test)))
     for test in order:

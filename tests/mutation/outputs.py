@@ -42,12 +42,12 @@ where, and how: [planter.hpp](planter.hpp). The first part of a name is where th
 
 
 def failing_case(program, fault, case=""):
-    """The first test case of the program that fails with the fault, or none; of all of them, or of one."""
+    """The first test case of the program (and its options) that fails with the fault, or none; of all of them, or of one."""
     # Tests of one name write files of one name: each has a folder of its own, or they fail for no fault.
     with tempfile.TemporaryDirectory() as folder:
         # A comma would divide the name into two.
         only = [f"--test-case={case.replace(',', '*')}"] if case else []
-        done = subprocess.run([program, "--abort-after=1", "--no-colors", *only], cwd=program.parent, text=True,
+        done = subprocess.run([*program, "--abort-after=1", "--no-colors", *only], cwd=program[0].parent, text=True,
                               env=os.environ | {"PLANTED_FAULT": fault, "TMPDIR": folder}, capture_output=True,
                               errors="replace", timeout=600)
     if done.returncode == 0:
@@ -82,12 +82,15 @@ def main():
     options = parser.parse_args()
 
     tests = options.build.resolve() / "tests"
-    names = [file.name.removeprefix("test_") for file in sorted(tests.glob("test_*")) if file.suffix == ""]
-    rest = [] if options.first else [name for name in names if name not in FIRST]
-    programs = {name: tests / f"test_{name}" for name in FIRST + rest if name in names}
+    # The files of a program are included by one source (../together.cmake).
+    everything = {file: [tests / together.stem.replace("together_", "test_"), f"--source-file=*/{file}.cpp"]
+                  for together in sorted(tests.glob("together_*.cpp"))
+                  for file in re.findall(r'^#include ".*/(\w+)[.]cpp"$', together.read_text(), re.MULTILINE)}
+    rest = [] if options.first else [name for name in everything if name not in FIRST]
+    programs = {name: everything[name] for name in FIRST + rest}
     before = noticed_before()
-    cases = {f"{name}: {case.strip()}" for name in names for case in subprocess.run(
-        [tests / f"test_{name}", "--list-test-cases"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()}
+    cases = {f"{name}: {case.strip()}" for name, program in everything.items() for case in subprocess.run(
+        [*program, "--list-test-cases"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()}
     gone = set(before.values()) - cases
     if gone and not options.renew:
         sys.exit(f"{PAGE} names a test that does not exist: {min(gone)}; {__file__} {options.build} --renew")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same bits: run files, tables and figures, whatever the program was built with and wherever it runs.
 
-    matrix.py BUILD [--without-clang] [--only NAMES] [--library]
+    matrix.py BUILD [--without-clang] [--only NAMES] [--brief]
 
 BUILD is the project's build folder with the program in it, by g++ -O3, whose results all others are held against. More
 programs are built below BUILD/same_bits, kept for the next time; that for WebAssembly is the one of `make wasm`. For
@@ -25,8 +25,9 @@ element method also with its other ways to step), the catalogue's responses are 
 all tables are made, and the runs in BUILD/runs/exact get their verdicts. The heap is filled with rubbish where the
 surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
 
-With --library the other builds for Linux are of the library alone, with again.cpp, in half the time: they simulate
-anew what is in the run and response files of the project's own build, and make no table, verdict or sweep.
+With --brief, in a third of the time, no surrounding is by itself, and the other builds for Linux are of the library
+alone, with again.cpp: they simulate anew what is in the run and response files of the project's own build, and make no
+table, verdict or sweep.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -306,7 +307,7 @@ def held_against(reference: Path, results: Path, all_of=True) -> list:
     return found
 
 
-def settings_of(programs: dict) -> list:
+def settings_of(programs: dict, brief: bool) -> list:
     usual, reduced = FEATURES
     at_home, all_at_once = (), tuple(SURROUNDINGS)
     cells = []
@@ -314,7 +315,7 @@ def settings_of(programs: dict) -> list:
         chosen = [(usual, at_home)] + [(reduced, all_at_once)] * (name not in RUNNERS)
         if name == OWN:
             chosen += [(usual, all_at_once), (reduced, at_home)]
-        if name == EACH_SURROUNDING_BY_ITSELF:
+        if name == EACH_SURROUNDING_BY_ITSELF and not brief:
             chosen += [(usual, all_at_once)] + [(usual, (each,)) for each in SURROUNDINGS]
         cells += [Setting(program, name, *each) for each in chosen]
     return cells
@@ -325,7 +326,7 @@ def main() -> int:
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
     parser.add_argument("--only", metavar="NAMES", help="only builds whose name begins with one of these, set apart by commas, and say so")
-    parser.add_argument("--library", action="store_true", help="other builds for Linux are of the library alone, and say so")
+    parser.add_argument("--brief", action="store_true", help="other builds for Linux are of the library alone, and no surrounding is by itself")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -349,12 +350,12 @@ def main() -> int:
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        target = {name: "again" if arguments.library and name != "WebAssembly" else "impact-damper" for name in wanted}
+        target = {name: "again" if arguments.brief and name != "WebAssembly" else "impact-damper" for name in wanted}
         made = pool.map(lambda name: build(work, name, target[name]), wanted)
     programs |= dict(zip(wanted, made))
     built = time.monotonic()
 
-    cells = settings_of(programs)
+    cells = settings_of(programs, arguments.brief)
     reference = work / "results-0"
     run_all(cells[0], places, catalogues, reference)
     wrong = {}
@@ -378,7 +379,7 @@ def main() -> int:
         list(pool.map(examine, range(1, len(cells))))
     ran = time.monotonic()
 
-    drawings = [("", ()), *(("", (each,)) for each in SURROUNDINGS), (list(FEATURES)[-1], tuple(SURROUNDINGS))]
+    drawings = [("", ()), *(("", (each,)) for each in SURROUNDINGS if not arguments.brief), (list(FEATURES)[-1], tuple(SURROUNDINGS))]
     draw_all(places, *drawings[0], reference, work / "pictures-0")
 
     def examine_drawing(number):
@@ -408,8 +409,8 @@ def main() -> int:
         print("same bits: NOT COVERED: clang++, left out by --without-clang")
     if arguments.only:
         print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")
-    if arguments.library:
-        print("same bits: NOT COVERED: tables, verdicts and sweeps by other builds for Linux, left out by --library")
+    if arguments.brief:
+        print("same bits: NOT COVERED: tables, verdicts and sweeps by other builds for Linux, surroundings by themselves, left out by --brief")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
