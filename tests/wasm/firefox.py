@@ -1,4 +1,5 @@
 """Debian's Firefox without a window, by its Marionette protocol: Debian has no driver for it."""
+import contextlib
 import json
 import shutil
 import socket
@@ -24,7 +25,8 @@ class Page:
         self.call("WebDriver:SetTimeouts", script=1_800_000)
 
     def __exit__(self, *_):
-        self.call("Marionette:Quit")
+        with contextlib.suppress(RuntimeError, ConnectionError):  # it may end before it has answered
+            self.call("Marionette:Quit")
         self.process.wait(60)
         self.socket.close()
         shutil.rmtree(self.profile.name, ignore_errors=True)
