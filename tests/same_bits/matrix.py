@@ -211,9 +211,15 @@ def run_again(setting: Setting, places: Places, reference: Path, results: Path):
         windows = ["0:150:301"] if small else below.get(own, []) if len(name.parts) == 3 else []
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         jobs.append([file, results / name, *(small or ["-"]), *windows])
-    call([*RUNNERS.get(setting.build, []), setting.program], cwd=places.folder(setting.surroundings),
-         env=places.environment(setting.features, setting.surroundings),
-         input="".join("\t".join(map(str, job)) + "\n" for job in jobs))
+    parts = os.cpu_count() if setting.build in RUNNERS else 1  # another machine's program takes minutes
+
+    def run_part(part):
+        call([*RUNNERS.get(setting.build, []), setting.program], cwd=places.folder(setting.surroundings),
+             env=places.environment(setting.features, setting.surroundings),
+             input="".join("\t".join(map(str, job)) + "\n" for job in jobs[part::parts]))
+
+    with ThreadPoolExecutor(parts) as pool:
+        list(pool.map(run_part, range(parts)))
 
 
 def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
@@ -376,7 +382,7 @@ def main() -> int:
             wrong[str(cells[number])] = found
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(examine, range(1, len(cells))))
+        list(pool.map(examine, sorted(range(1, len(cells)), key=lambda number: cells[number].build not in RUNNERS)))
     ran = time.monotonic()
 
     drawings = [("", ()), *(("", (each,)) for each in SURROUNDINGS if not arguments.brief), (list(FEATURES)[-1], tuple(SURROUNDINGS))]
