@@ -130,6 +130,18 @@ TEST_CASE("one damper is what is said of one") {
   }
 }
 
+// The fold of the widest cavity lies below the whole range, so the widest loses most everywhere.
+TEST_CASE("where the release bounds all clearances, the widest has all mass") {
+  DamperSetQuestion asked = question(4);
+  asked.to = 27;
+  asked.restitution = 0.8;
+  const DamperSet set = answer(asked);
+  REQUIRE(set.dampers.size() == 1);
+  CHECK(set.dampers[0].clearance == doctest::Approx(1.8 * asked.release).epsilon(1e-2));
+  CHECK(set.dampers[0].clearance == set.one.value().clearance);
+  CHECK(least(set.run.mean) == set.one->least);
+}
+
 TEST_CASE("more dampers damp a wide range better than one, in runs too") {
   DamperSetQuestion asked = question(5);
   asked.to = 1;

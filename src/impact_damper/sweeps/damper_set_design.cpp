@@ -70,6 +70,17 @@ std::vector<double> column_of(const Known& known, double clearance, const std::v
   return column;
 }
 
+// What bounds the clearances: none is wider than `most`, and the narrowest end lies below the clearance whose
+// fold is at `lowest`, which is the range's lower end or, if smaller, the amplitude of the widest one's fold.
+struct Bounds {
+  double fold, most, lowest;
+};
+Bounds bounds_of(const DamperSetQuestion& question) {
+  const double fold = fold_amplitude(question.restitution),
+               most = std::min(widest * question.release, question.upper / fold);
+  return {fold, most, std::min(question.to, most * fold)};
+}
+
 double rounded(double value, int digits) { return *parse_number(rounded_text(value, digits)); }
 
 std::vector<double> clearances_between(double least, double most, std::int64_t count) {
@@ -89,13 +100,12 @@ struct Clearances {
 Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count, const Known& known,
                            const std::vector<double>& edges) {
   constexpr int narrow_steps = 16, wide_steps = 12;
-  const double fold = fold_amplitude(question.restitution),
-               most = std::min(widest * question.release, question.upper / fold);
+  const auto [fold, most, lowest] = bounds_of(question);
   Clearances best;
   for (int narrow = 0; narrow < narrow_steps; ++narrow) {
-    // From where the fold is just below `to` to where it is half of it; one damper may need it wider.
-    const double c = std::min(
-        most, question.to / fold * power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
+    // From where the fold is at `lowest` to where it is half of it; one damper may need it wider.
+    const double c =
+        std::min(most, lowest / fold * power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
     for (int wide = 0; wide < (count == 1 ? 1 : wide_steps); ++wide) {
       const double end = most * power_of(0.3, double(wide) / wide_steps);
       if (count > 1 && !(end > c)) continue;
@@ -159,12 +169,13 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
 // All of a set but what is asked of sets that are off, and of one damper.
 DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads,
                        const std::function<void(const std::string& doing)>& tell) {
-  const double e = question.restitution, fold = fold_amplitude(e);
+  const double e = question.restitution;
+  const auto [fold, most, lowest] = bounds_of(question);
   DamperSet set;
   set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
   tell("what one damper does alone");
   // The narrowest clearance that is tried, at its narrowest.
-  const double from = 1.1 * question.upper * fold / (0.4 * question.to) / (1 - question.clearance_off);
+  const double from = 1.1 * question.upper * fold / (0.4 * lowest) / (1 - question.clearance_off);
   // f hardly depends on the mass; a very light one takes long.
   const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
   const auto alone = [&](double restitution) {
