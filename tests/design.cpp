@@ -27,7 +27,7 @@ Scene mast() {
 }
 
 HalfCycles rows_of(const std::vector<double>& time, const std::vector<double>& amplitude) {
-  return {time, time, amplitude, std::vector<std::int64_t>(time.size(), 1)};
+  return {time, time, amplitude, std::vector<std::int64_t>(time.size(), 1), {}};
 }
 
 // Amplitude of mass x'' + 2 zeta x' + x = f sin(omega t) after its transient, stepped through.

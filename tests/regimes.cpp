@@ -48,7 +48,8 @@ TEST_CASE("a compliant contact is stuck once it outlasts a full period, a rigid 
   const double nominal = nominal_contact_time(run.scene);
   run.contacts = Contacts{{0.1, 0.3, 1.2},
                           {0.1 + nominal, 0.3 + 1.99 * nominal, 1.2 + 2.01 * nominal},
-                          {Wall::left, Wall::right, Wall::left}};
+                          {Wall::left, Wall::right, Wall::left},
+                          {}};
   CHECK(stuck_contacts(run).begin == std::vector<double>{1.2});
   run.engine = Restitution{};
   CHECK(stuck_contacts(run).begin.size() == 3);
@@ -57,7 +58,7 @@ TEST_CASE("a compliant contact is stuck once it outlasts a full period, a rigid 
 TEST_CASE("stuck intervals are cut at the zero crossings and given in degrees") {
   Run run = rows_with_impacts({1, 1, 1, 1});
   run.engine = Restitution{};
-  run.contacts = Contacts{{0.5, 1.5, 2.25}, {0.75, 2.125, 9}, {Wall::left, Wall::right, Wall::left}};
+  run.contacts = Contacts{{0.5, 1.5, 2.25}, {0.75, 2.125, 9}, {Wall::left, Wall::right, Wall::left}, {}};
   const StuckPhases phases = stuck_phases(run);
   CHECK(phases.begin_deg == std::vector<double>{90, 0, 45, 0});
   CHECK(phases.end_deg == std::vector<double>{180, 22.5, 180, 180});

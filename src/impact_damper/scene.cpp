@@ -10,7 +10,7 @@ namespace {
 
 // This, and the least mass ratio, stiffness and frequency, keep every square, product and quotient of a
 // scene's numbers finite.
-constexpr double largest = 1e12;
+constexpr double largest_number = 1e12;
 
 }  // namespace
 
@@ -19,11 +19,14 @@ const std::array<SceneField, 10> scene_fields{{
     {"restitution", &Scene::restitution, 0.0, 1.0, "coefficient of restitution, e"},
     {"damping_ratio", &Scene::damping_ratio, 0.0, 1e6, "viscous damping ratio of the primary mass, zeta"},
     {"wall_stiffness", &Scene::wall_stiffness, 1e-6, 1e15, "wall to primary spring stiffness, k"},
-    {"x0", &Scene::x0, -largest, largest, "initial displacement of the primary mass"},
-    {"v0", &Scene::v0, -largest, largest, "initial velocity of the primary mass"},
-    {"y0", &Scene::y0, -largest, largest, "initial distance of the secondary mass from the left wall"},
-    {"w0", &Scene::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
-    {"force_amplitude", &Scene::force_amplitude, -largest, largest, "forcing amplitude f0, 0 for none"},
+    {"x0", &Scene::x0, -largest_number, largest_number, "initial displacement of the primary mass"},
+    {"v0", &Scene::v0, -largest_number, largest_number, "initial velocity of the primary mass"},
+    {"y0", &Scene::y0, -largest_number, largest_number,
+     "initial distance of the secondary mass from the left wall"},
+    {"w0", &Scene::w0, -largest_number, largest_number,
+     "initial velocity of the secondary mass in the cavity"},
+    {"force_amplitude", &Scene::force_amplitude, -largest_number, largest_number,
+     "forcing amplitude f0, 0 for none"},
     {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, "forcing frequency omega_f"},
 }};
 
@@ -32,8 +35,10 @@ const std::array<SceneDamperField, 6> scene_damper_fields{{
     {"restitution", &SceneDamper::restitution, 0.0, 1.0, "coefficient of restitution, e"},
     {"clearance", &SceneDamper::clearance, 1e-6, 1e6, "free travel of the secondary mass"},
     {"wall_stiffness", &SceneDamper::wall_stiffness, 1e-6, 1e15, "wall to primary spring stiffness, k"},
-    {"y0", &SceneDamper::y0, -largest, largest, "initial distance of the secondary mass from the left wall"},
-    {"w0", &SceneDamper::w0, -largest, largest, "initial velocity of the secondary mass in the cavity"},
+    {"y0", &SceneDamper::y0, -largest_number, largest_number,
+     "initial distance of the secondary mass from the left wall"},
+    {"w0", &SceneDamper::w0, -largest_number, largest_number,
+     "initial velocity of the secondary mass in the cavity"},
 }};
 
 std::string SceneNumber::name() const {
@@ -92,8 +97,7 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   };
   if (dampers == DamperList::rejected && !scene.dampers.empty()) {
     problems.push_back(
-        {"dampers",
-         "a list is for run, sweep, report and response: give one damper without a list"});
+        {"dampers", "a list is for run, sweep, report and response: give one damper without a list"});
     return problems;
   }
   if (scene.dampers.size() > most_dampers) {
@@ -109,7 +113,7 @@ std::vector<Problem> problems_of(const Scene& scene, DamperList dampers) {
   for (const SceneField& field : scene_fields) {
     check(field.name, scene.*field.member, {field.least, field.most});
   }
-  const NumberRange stops{0, largest, false};
+  const NumberRange stops{0, largest_number, false};
   if (scene.until_time) check("until_time", *scene.until_time, stops);
   if (scene.until_amplitude) check("until_amplitude", *scene.until_amplitude, stops);
   if (!scene.until_time && !scene.until_amplitude) {

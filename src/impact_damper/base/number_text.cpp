@@ -24,6 +24,7 @@ std::string_view without_plus(std::string_view text) {
   return text;
 }
 
+#ifdef __cpp_lib_to_chars  // <charconv> knows double
 // Of a decimal number that is out of the range of double: whether it is too small, by the power of ten of its
 // first digit that is not zero.
 bool is_too_small(std::string_view text) {
@@ -40,7 +41,6 @@ bool is_too_small(std::string_view text) {
   return point - first + exponent < 0;
 }
 
-#ifdef __cpp_lib_to_chars  // <charconv> knows double
 std::errc read(std::string_view text, double& value) {
   const std::errc error = read<double>(text, value);
   if (error != std::errc::result_out_of_range || !is_too_small(text)) return error;

@@ -149,7 +149,7 @@ void JsonProblems::add(const std::string& pointer, std::string_view what) {
 
 std::size_t JsonProblems::open(const std::string& pointer, const Json& object) {
   const auto [place, added] = index_.try_emplace(&object, opened_.size());
-  if (added) opened_.push_back({pointer, &object, {}});
+  if (added) opened_.push_back({pointer, &object});
   return place->second;
 }
 

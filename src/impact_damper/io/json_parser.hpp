@@ -36,7 +36,7 @@ class JsonProblems {
   struct Opened {
     std::string pointer;
     const nlohmann::json* object;
-    std::set<std::string, std::less<>> known, suggested;
+    std::set<std::string, std::less<>> known{}, suggested{};
   };
 
   std::string file_;
