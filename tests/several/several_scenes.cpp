@@ -140,8 +140,8 @@ Scene round_compliant_scene(std::uint64_t seed) {
 
 namespace {
 
-// Of both walls: no impact for long, so that amplitudes are equal; or a release with x'' = 0 for those at
-// rest on a wall.
+// Of both walls: no impact for long, so that amplitudes are equal; or a release with x'' = 0, at times with
+// x''' = 0, too, for those at rest on a wall.
 Scene quiet_scene(reference::Random& random) {
   Scene scene;
   scene.until_time = random.uniform(3, 20);
@@ -151,6 +151,7 @@ Scene quiet_scene(reference::Random& random) {
     scene.v0 = random.sign() * double(1 + random.bits() % 3);
     scene.x0 = -2 * scene.damping_ratio * scene.v0;
     if (random.chance(0.5)) scene.force_amplitude = random.uniform(-2, 2), scene.force_frequency = 0.75;
+    if (random.chance(0.3)) scene.force_amplitude = 2 * scene.v0, scene.force_frequency = 0.5;  // x''' = 0
   } else {
     scene.damping_ratio = 0;
     scene.x0 = random.uniform(-0.5, 0.5), scene.v0 = random.chance(0.5) ? 0 : random.uniform(-0.5, 0.5);
