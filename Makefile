@@ -155,7 +155,7 @@ bare:  ## run both commands of README.md on a bare Debian 12, or SUITE=trixie (a
 	@$(alone) SUITE=$(SUITE) tests/bare/run $(BUILD)/bare
 
 fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
-	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/sanitize
+	@$(alone) tests/fuzz/run $(FUZZ_SECONDS) $(BUILD)/count
 
 bench:  ## measure run time beside error (ten to twenty minutes), print and draw it
 	@$(alone) $(with_bench) cmake --build $(BUILD) --target bench
@@ -202,11 +202,11 @@ lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no find
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
 	@tests/checks/lint.py $(BUILD)
 
-sanitize:  ## the quick tests once more, under clang's address and undefined-behaviour sanitizers (minutes)
-	@$(alone) tests/checks/sanitize $(BUILD)/sanitize
+sanitize:  ## the quick tests once more, under clang's address and undefined-behaviour sanitizers (a quarter of an hour)
+	@$(alone) tests/checks/sanitize sanitize $(BUILD)/sanitize
 
-coverage: sanitize  ## the same; then which lines of the library they ran: at least 95 % of them
-	@$(alone) tests/checks/coverage $(BUILD)/sanitize
+coverage:  ## the same with counters; then which lines of the library they ran: at least 95 % of them (twice the time)
+	@$(alone) tests/checks/sanitize count $(BUILD)/count && tests/checks/coverage $(BUILD)/count
 
 mutation:  ## plant faults in a copy of the library, one by one: do the fast tests notice? (an hour; goes on where stopped)
 	@$(alone) nice tests/mutation/mutate.py --folder $(BUILD)/mutation
