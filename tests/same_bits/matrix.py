@@ -25,9 +25,9 @@ element method also with its other ways to step), the catalogue's responses are 
 all tables are made, and the runs in BUILD/runs/exact get their verdicts. The heap is filled with rubbish where the
 surroundings are strange, and at -O0 so are variables that nobody set: what reads them shows.
 
-With --brief, in a third of the time, no surrounding is by itself, and the other builds for Linux are of the library
-alone, with again.cpp: they simulate anew what is in the run and response files of the project's own build, and make no
-table, verdict or sweep.
+With --brief there are three builds: the project's own, clang++'s with sanitizers, which is that of `make sanitize`, and
+s390x. No surrounding is by itself, and the two others are of the library alone, with again.cpp: they simulate anew what
+is in the run and response files of the project's own build, and make no table, verdict or sweep.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -62,11 +62,14 @@ BUILDS = {
 }
 BUILDS = {name: [f"-DCMAKE_CXX_COMPILER={name.split()[0]}", "-DCMAKE_BUILD_TYPE=None", *options]
           for name, options in BUILDS.items()}
+SANITIZED = "clang++ -O2 with sanitizers"
+BUILDS[SANITIZED] = ["--preset", "sanitize"]  # as `make sanitize`
 LINUX = ["aarch64", "riscv64", "s390x"]
 BUILDS |= {name: ["--toolchain", SOURCE / "toolchains/linux.cmake", f"-DMACHINE={name}"] for name in LINUX}
 BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "toolchains/wasm.cmake", "-DCMAKE_BUILD_TYPE=MinSizeRel"]  # as `make wasm`
 # What runs the programs of other machines.
 RUNNERS = {**{name: [f"qemu-{name}"] for name in LINUX}, "WebAssembly": ["node"]}
+BRIEF = [SANITIZED, "s390x"]
 EACH_SURROUNDING_BY_ITSELF = "clang++ -O3 -march=native"
 FEATURES = {"": {}, "without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"}}
 SURROUNDINGS = ["time zone", "comma locale", "folder", "~/.gnuplot"]
@@ -132,7 +135,8 @@ def call(command, **options) -> str:
 
 
 def build(work: Path, name: str, target: str) -> Path:
-    folder = work.parent / "wasm" if name == "WebAssembly" else work / re.sub(r"[^\w+]+", "-", name)
+    folder = {"WebAssembly": work.parent / "wasm", SANITIZED: work.parent / "sanitize"}.get(
+        name, work / re.sub(r"[^\w+]+", "-", name))
     call(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", *BUILDS[name]])
     call(["cmake", "--build", folder, "--target", target, "-j1"])
     say(f"built {name}")
@@ -318,7 +322,7 @@ def settings_of(programs: dict, brief: bool) -> list:
     at_home, all_at_once = (), tuple(SURROUNDINGS)
     cells = []
     for name, program in programs.items():
-        chosen = [(usual, at_home)] + [(reduced, all_at_once)] * (name not in RUNNERS)
+        chosen = [(usual, at_home)] + [(reduced, all_at_once)] * (name not in RUNNERS and name != SANITIZED)
         if name == OWN:
             chosen += [(usual, all_at_once), (reduced, at_home)]
         if name == EACH_SURROUNDING_BY_ITSELF and not brief:
@@ -332,7 +336,7 @@ def main() -> int:
     parser.add_argument("build", type=Path)
     parser.add_argument("--without-clang", action="store_true", help="leave clang++ out, and say so")
     parser.add_argument("--only", metavar="NAMES", help="only builds whose name begins with one of these, set apart by commas, and say so")
-    parser.add_argument("--brief", action="store_true", help="other builds for Linux are of the library alone, and no surrounding is by itself")
+    parser.add_argument("--brief", action="store_true", help="two other builds, of the library alone, and no surrounding by itself")
     arguments = parser.parse_args()
     own = arguments.build.resolve() / "src" / "impact-damper"
     if not own.exists():
@@ -340,7 +344,8 @@ def main() -> int:
     runs = arguments.build.resolve() / "runs/exact"
     if not runs.exists():
         missing(f"{runs} is missing: make verify")
-    wanted = [name for name in BUILDS if not (arguments.without_clang and name.startswith("clang++")) and
+    offered = BRIEF if arguments.brief else [name for name in BUILDS if name != SANITIZED]
+    wanted = [name for name in offered if not (arguments.without_clang and name.startswith("clang++")) and
               (not arguments.only or name.startswith(tuple(arguments.only.split(","))))]
     for tool in ["cmake", "ninja", "gnuplot"] + sum(map(tools_of, wanted), []):
         if not shutil.which(tool):
@@ -356,8 +361,7 @@ def main() -> int:
     # Several builds at a time, each a step at a time: none waits for the last step of another.
     say(f"building {len(wanted)} programs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        target = {name: "again" if arguments.brief and name != "WebAssembly" else "impact-damper" for name in wanted}
-        made = pool.map(lambda name: build(work, name, target[name]), wanted)
+        made = pool.map(lambda name: build(work, name, "again" if arguments.brief else "impact-damper"), wanted)
     programs |= dict(zip(wanted, made))
     built = time.monotonic()
 
@@ -416,7 +420,8 @@ def main() -> int:
     if arguments.only:
         print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")
     if arguments.brief:
-        print("same bits: NOT COVERED: tables, verdicts and sweeps by other builds for Linux, surroundings by themselves, left out by --brief")
+        print(f"same bits: NOT COVERED: builds other than {', '.join(BRIEF)}, tables, verdicts and sweeps by these, "
+              "surroundings by themselves, left out by --brief")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
