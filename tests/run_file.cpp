@@ -256,7 +256,7 @@ TEST_CASE("each option of each engine survives the file, and one that is out of 
     for_each_option(engine, [&](const OptionInfo&, auto& value) {
       using Value = std::remove_cvref_t<decltype(value)>;
       if constexpr (std::is_enum_v<Value>) {
-        value = all_of<Value>.back();
+        value = std::data(all_of<Value>)[all_of<Value>.size() - 1];
       } else if constexpr (std::is_same_v<Value, bool>) {
         value = true;
       } else if constexpr (std::is_same_v<Value, std::int64_t>) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
@@ -43,9 +44,7 @@ class Arguments {
   // The same for an enumeration whose words name_of(value) gives.
   template <typename Enum>
   Enum choice(const std::string& option, std::initializer_list<Enum> allowed, Enum otherwise) {
-    std::vector<std::string_view> words;
-    for (const Enum value : allowed) words.push_back(name_of(value));
-    const std::optional<std::size_t> index = word(option, words);
+    const std::optional<std::size_t> index = word(option, words_of(allowed));
     return index ? allowed.begin()[*index] : otherwise;
   }
   bool offers(const std::string& option) const { return options_.contains(option); }

@@ -24,14 +24,12 @@ std::vector<FitParameter> fitted_of(Arguments& arguments) {
   if (!list) return otherwise.parameters;
   std::vector<FitParameter> parameters;
   if (*list == "none") return parameters;
-  std::vector<std::string_view> names;
-  for (const FitParameter each : all_fit_parameters()) names.push_back(name_of(each));
+  const std::vector<std::string_view> names = words_of<FitParameter>();
   for (std::size_t begin = 0; begin <= list->size();) {
     const std::size_t end = std::min(list->find(',', begin), list->size());
     const std::string_view name = std::string_view(*list).substr(begin, end - begin);
-    const auto found =
-        std::ranges::find(all_fit_parameters(), name, [](FitParameter each) { return name_of(each); });
-    if (found == all_fit_parameters().end()) {
+    const auto* const found = std::ranges::find(all_of<FitParameter>, name, name_of<FitParameter>);
+    if (found == all_of<FitParameter>.end()) {
       const auto meant = nearest(name, names);
       arguments.reject("--fit", "must be none or " + listed(names, "or") + ", with commas between, got " +
                                     in_quotes(name) +

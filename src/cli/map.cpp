@@ -161,13 +161,11 @@ MapQuestion question_of(Arguments& arguments, const Plan& plan) {
   if (x && x == y)
     arguments.reject(
         "--y", "must be another number than --x, got both times " + in_quotes(plan.grid[*x].variable.name));
-  question.statistic = arguments.choice("--statistic", {Statistic::median, Statistic::mean, Statistic::worst},
-                                        Statistic::median);
+  question.statistic = arguments.choice("--statistic", all_of<Statistic>, Statistic::median);
   if (!x || !y || !z || x == y) return question;
   question.x = *x, question.y = *y, question.z = *z;
   question.better = plan.quantities[*z].quantity->better;
-  if (arguments.given("--best"))
-    question.better = arguments.choice("--best", {Better::least, Better::greatest}, Better::least);
+  if (arguments.given("--best")) question.better = arguments.choice("--best", all_of<Better>, Better::least);
   if (question.statistic == Statistic::worst && !question.better)
     arguments.reject("--best",
                      "must be given: which values of " + plan.quantities[*z].column() + " are the worst?");

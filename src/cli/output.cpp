@@ -43,26 +43,6 @@ std::string ending_of(const std::string& file) {
 
 }  // namespace
 
-std::string_view name_of(Format format) {
-  switch (format) {
-    case Format::json:
-      return "json";
-    case Format::csv:
-      return "csv";
-    case Format::gnuplot:
-      return "gnuplot";
-    case Format::html:
-      return "html";
-    case Format::svg:
-      return "svg";
-    case Format::markdown:
-      return "markdown";
-    case Format::hdf5:
-      return "hdf5";
-  }
-  return "";
-}
-
 void reject_other_endings(Arguments& arguments, const std::string& option,
                           const std::optional<std::string>& output, std::initializer_list<Format> written) {
   const std::string ending = output ? ending_of(*output) : "";

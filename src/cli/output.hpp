@@ -7,12 +7,12 @@
 #include <string_view>
 
 #include "arguments.hpp"
+#include "impact_damper/base/enumeration.hpp"
 
 namespace impact_damper::cli {
 
 // In which form a result is written.
 enum class Format { json, csv, gnuplot, html, svg, markdown, hdf5 };
-std::string_view name_of(Format format);
 // Which of `offered` --format names, the first of them if it is not given, for `output`.
 Format format_of(Arguments& arguments, const std::optional<std::string>& output,
                  std::initializer_list<Format> offered);

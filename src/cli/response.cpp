@@ -20,21 +20,6 @@ namespace {
 constexpr const char* this_command = "impact-damper response";
 
 enum class Kind { sweep, basin, orbits, lyapunov };
-constexpr std::array kinds{Kind::sweep, Kind::basin, Kind::orbits, Kind::lyapunov};
-std::string_view name_of(Kind kind) {
-  switch (kind) {
-    case Kind::sweep:
-      return "sweep";
-    case Kind::basin:
-      return "basin";
-    case Kind::orbits:
-      return "orbits";
-    case Kind::lyapunov:
-      return "lyapunov";
-  }
-  return {};
-}
-
 // Options that not all kinds have, and those that have them.
 const std::map<std::string, std::vector<Kind>>& kinds_of_options() {
   static const std::map<std::string, std::vector<Kind>> all{
@@ -490,13 +475,11 @@ std::string text_of_valid(const Request& asked) {
 }
 
 int respond(Arguments& arguments) {
-  std::vector<std::string_view> words;
-  words.reserve(kinds.size());
-  for (const Kind kind : kinds) words.push_back(name_of(kind));
+  const std::vector<std::string_view> words = words_of<Kind>();
   const std::optional<std::size_t> word = arguments.word("WHAT", words);
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
   Request asked;
-  asked.kind = kinds[word.value_or(0)];
+  asked.kind = all_of<Kind>.begin()[word.value_or(0)];
   asked.file = scene_of(arguments, Stops::ignored, DamperList::allowed);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);

@@ -98,7 +98,7 @@ template <class Value>
 void read_option(Arguments& arguments, const OptionInfo& info, Value& value) {
   const std::string option = option_of(info.name);
   if constexpr (std::is_enum_v<Value>) {
-    if (const auto index = arguments.word(option, words_of<Value>())) value = all_of<Value>[*index];
+    if (const auto index = arguments.word(option, words_of<Value>())) value = all_of<Value>.begin()[*index];
   } else if constexpr (std::is_same_v<Value, bool>) {
     value = arguments.flag(option);
   } else if constexpr (std::is_same_v<Value, std::int64_t>) {

@@ -74,14 +74,4 @@ std::string_view name_of(Calibration calibration) {
   return {};
 }
 
-std::string_view name_of(Damper damper) {
-  switch (damper) {
-    case Damper::centred:
-      return "centred";
-    case Damper::lagged:
-      return "lagged";
-  }
-  return {};
-}
-
 }  // namespace impact_damper

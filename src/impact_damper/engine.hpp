@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper {
@@ -112,6 +113,5 @@ Calibration calibration_of(const Engine& engine);  // the default where it has n
 
 std::string_view name_of(const Engine& engine);
 std::string_view name_of(Calibration calibration);  // "fixed-wall", "two-body"
-std::string_view name_of(Damper damper);            // "centred", "lagged"
 
 }  // namespace impact_damper

@@ -34,27 +34,11 @@ struct OptionInfo {
 
 template <class Owner, class Value>
 struct EngineOption {
-  Value Owner::*member;  // double, optional of double, std::int64_t, bool, or an enumeration in all_of
+  Value Owner::*member;  // double, optional of double, std::int64_t, bool, or an enumeration
   OptionInfo info;
 };
 template <class Owner, class Value>
 EngineOption(Value Owner::*, OptionInfo) -> EngineOption<Owner, Value>;
-
-// The values of an enumeration, whose words name_of() gives.
-template <class Enum>
-inline constexpr std::array<Enum, 0> all_of{};
-template <>
-inline constexpr std::array all_of<Calibration>{Calibration::fixed_wall, Calibration::two_body};
-template <>
-inline constexpr std::array all_of<Damper>{Damper::centred, Damper::lagged};
-
-template <class Enum>
-std::vector<std::string_view> words_of() {
-  std::vector<std::string_view> words;
-  words.reserve(all_of<Enum>.size());
-  for (const Enum value : all_of<Enum>) words.push_back(name_of(value));
-  return words;
-}
 
 // A value as text, as the command line takes it; "" if there is none.
 template <class Value>

@@ -2,24 +2,6 @@
 
 namespace impact_damper {
 
-std::string_view name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::time:
-      return "time";
-    case StopReason::amplitude:
-      return "amplitude";
-    case StopReason::impact_budget:
-      return "impact_budget";
-    case StopReason::half_cycle_budget:
-      return "half_cycle_budget";
-    case StopReason::time_budget:
-      return "time_budget";
-    case StopReason::step_budget:
-      return "step_budget";
-  }
-  return {};
-}
-
 Budget budget_for(const Scene& scene, Budget budget) {
   if (!budget.max_time) {
     const bool is_fast = scene.force_amplitude != 0 && scene.force_frequency > 1;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/scene.hpp"
 
@@ -25,7 +26,6 @@ enum class StopReason {
   time_budget,        // Budget::max_time
   step_budget,        // Exact::max_steps, Restitution::max_steps or Cem::max_steps
 };
-std::string_view name_of(StopReason reason);  // the enumerator's own name
 
 // Row 0 runs from the release to the first zero crossing of x, each further row from one crossing to
 // the next. The unfinished half cycle at the end of the run has no row.

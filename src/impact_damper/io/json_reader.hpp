@@ -28,6 +28,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/io/file_kind.hpp"
@@ -78,11 +79,9 @@ class ObjectReader {
   }
 
   // One of the words name_of(value) gives for the `allowed` values.
-  template <typename Enum>
-  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
-    std::vector<std::string_view> words;
-    for (const Enum value : allowed) words.push_back(name_of(value));
-    const std::optional<std::size_t> index = word(key, words);
+  template <Enumeration Enum>
+  bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> allowed = all_of<Enum>) {
+    const std::optional<std::size_t> index = word(key, words_of(allowed));
     if (index) target = allowed.begin()[*index];
     return index || !has(key);
   }

@@ -79,7 +79,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
   if constexpr (std::is_enum_v<Value>) {
     if (!object.require(option.name)) return false;
     const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
-    if (index) value = all_of<Value>[*index];
+    if (index) value = all_of<Value>.begin()[*index];
     return index.has_value();
   } else if constexpr (std::is_same_v<Value, bool>) {
     return object.required(option.name, value);
@@ -251,9 +251,7 @@ Run read_whole(JsonDocument document, bool sealed, DamperList list) {
     run.engine = *whole;
     check_together(scene, engine, run);
   }
-  object.required("stop_reason", run.stop_reason,
-                  {StopReason::time, StopReason::amplitude, StopReason::impact_budget,
-                   StopReason::half_cycle_budget, StopReason::time_budget, StopReason::step_budget});
+  object.required("stop_reason", run.stop_reason);
   object.required("end_time", run.end_time, at_least(0));
   check_units(object);
   if (const auto section = object.optional_object("half_cycles"))

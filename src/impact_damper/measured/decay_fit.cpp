@@ -565,26 +565,8 @@ std::vector<double> log_losses(const HalfCycles& rows, double length, const std:
 
 // --- Parameters -------------------------------------------------------------------------------------------
 
-std::string_view name_of(FitParameter parameter) {
-  switch (parameter) {
-    case FitParameter::restitution:
-      return "restitution";
-    case FitParameter::damping_ratio:
-      return "damping_ratio";
-    case FitParameter::clearance:
-      return "clearance";
-    case FitParameter::secondary_mass:
-      break;
-  }
-  return "secondary_mass";
-}
 std::string_view unit_of(FitParameter parameter) {
   return parameter == FitParameter::clearance ? "mm" : parameter == FitParameter::secondary_mass ? "kg" : "";
-}
-const std::vector<FitParameter>& all_fit_parameters() {
-  static const std::vector<FitParameter> all{FitParameter::restitution, FitParameter::damping_ratio,
-                                             FitParameter::clearance, FitParameter::secondary_mass};
-  return all;
 }
 double value_of(const SceneInUnits& scene, FitParameter parameter) {
   const Scene made = dimensionless(scene);

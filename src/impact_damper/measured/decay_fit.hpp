@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/measured/reduction.hpp"
 #include "impact_damper/run.hpp"
@@ -34,9 +35,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction);
 std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins);
 
 enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
-std::string_view name_of(FitParameter parameter);  // as in a scene file
 std::string_view unit_of(FitParameter parameter);
-const std::vector<FitParameter>& all_fit_parameters();
 double value_of(const SceneInUnits& scene, FitParameter parameter);
 void set_value(SceneInUnits& scene, FitParameter parameter, double value);
 

@@ -113,9 +113,6 @@ const Unit* unit_of(const std::array<Unit, Count>& units, const std::string& hea
 
 }  // namespace
 
-std::string_view name_of(MeasuredQuantity quantity) {
-  return quantity == MeasuredQuantity::displacement ? "displacement" : "acceleration";
-}
 std::string_view unit_of(MeasuredQuantity quantity) {
   return quantity == MeasuredQuantity::displacement ? "mm" : "mm/s^2";
 }

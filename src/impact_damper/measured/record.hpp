@@ -15,12 +15,12 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/file_kind.hpp"
 
 namespace impact_damper {
 
 enum class MeasuredQuantity { displacement, acceleration };
-std::string_view name_of(MeasuredQuantity quantity);  // the enumerator's own name
 std::string_view unit_of(MeasuredQuantity quantity);  // "mm", "mm/s^2"
 
 struct MeasuredRecord {

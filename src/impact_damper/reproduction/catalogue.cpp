@@ -29,12 +29,6 @@ Scene changed(const Changes& changes, Scene scene) {
 
 constexpr TextRule a_number{1, 8, true};           // of a figure
 constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
-constexpr auto ordinates = {LossOrdinate::eta,
-                            LossOrdinate::specific,
-                            LossOrdinate::specific_secondary,
-                            LossOrdinate::amplitude_times,
-                            LossOrdinate::by_restitution,
-                            LossOrdinate::carried};
 
 Record read_record(ObjectReader& scene) {
   Record record;
@@ -373,25 +367,22 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
                     in_quotes(figure.script));
   }
   item.optional("claims", figure.claims, a_name, 100);
-  if (!item.required("table", figure.table,
-                     {TableKind::motion, TableKind::decay, TableKind::loss_factor, TableKind::phase,
-                      TableKind::response, TableKind::largest_response, TableKind::response_map,
-                      TableKind::design_charts, TableKind::damper_sets, TableKind::drawing})) {
+  if (!item.required("table", figure.table)) {
     item.keys();  // which others are known depends on the table
     return figure;
   }
   if (figure.table != TableKind::damper_sets && item.has("varied")) {
     figure.varied = Varied::mass_ratio;
-    item.required("varied", *figure.varied, {Varied::mass_ratio, Varied::damping_ratio, Varied::restitution});
+    item.required("varied", *figure.varied);
   }
   if (figure.table == TableKind::design_charts) item.required("plan", figure.plan, a_name);
   figure.curves = read_curves(item, figure.table);
   read_responses(item, figure, catalogue);
   if (figure.table == TableKind::loss_factor) {
     figure.ordinate = LossOrdinate::eta;
-    item.required("ordinate", *figure.ordinate, ordinates);
+    item.required("ordinate", *figure.ordinate);
     if (item.has("second_ordinate"))
-      item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta), ordinates);
+      item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta));
     if (item.has("range")) read_amplitudes(item, figure.range);
   }
   if (figure.table == TableKind::damper_sets) read_amplitudes(item, figure.range);
@@ -429,62 +420,6 @@ Catalogue read_whole(JsonDocument document) {
 }
 
 }  // namespace
-
-std::string_view name_of(TableKind kind) {
-  switch (kind) {
-    case TableKind::response:
-      return "response";
-    case TableKind::largest_response:
-      return "largest_response";
-    case TableKind::response_map:
-      return "response_map";
-    case TableKind::design_charts:
-      return "design_charts";
-    case TableKind::damper_sets:
-      return "damper_sets";
-    case TableKind::motion:
-      return "motion";
-    case TableKind::decay:
-      return "decay";
-    case TableKind::loss_factor:
-      return "loss_factor";
-    case TableKind::phase:
-      return "phase";
-    case TableKind::drawing:
-      return "drawing";
-  }
-  return "";
-}
-
-std::string_view name_of(LossOrdinate ordinate) {
-  switch (ordinate) {
-    case LossOrdinate::eta:
-      return "eta";
-    case LossOrdinate::specific:
-      return "specific";
-    case LossOrdinate::specific_secondary:
-      return "specific_secondary";
-    case LossOrdinate::amplitude_times:
-      return "amplitude_times";
-    case LossOrdinate::by_restitution:
-      return "by_restitution";
-    case LossOrdinate::carried:
-      return "carried";
-  }
-  return "";
-}
-
-std::string_view name_of(Varied varied) {
-  switch (varied) {
-    case Varied::mass_ratio:
-      return "mass_ratio";
-    case Varied::damping_ratio:
-      return "damping_ratio";
-    case Varied::restitution:
-      return "restitution";
-  }
-  return "";
-}
 
 Catalogue read_catalogue(const std::filesystem::path& file) {
   return read_whole(JsonDocument::read(file, catalogue_kind));

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/steady/response_file.hpp"
@@ -46,12 +47,9 @@ enum class TableKind {
   damper_sets,       // loss factor of several dampers over amplitude, beside the sum of theirs
   drawing,           // none: a schematic that no run stands behind
 };
-std::string_view name_of(TableKind kind);
-std::string_view name_of(LossOrdinate ordinate);
 
 // What the curves of a figure differ in, and so what their legend says.
 enum class Varied { mass_ratio, damping_ratio, restitution };
-std::string_view name_of(Varied varied);
 
 struct CatalogueScene {
   std::string name;  // of the scene's file, without .json

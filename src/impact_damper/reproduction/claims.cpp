@@ -74,9 +74,6 @@ MeasureCall read_measure(ObjectReader object) {
   return call;
 }
 
-constexpr auto verdicts = {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected,
-                           Verdict::derived,    Verdict::holds,          Verdict::does_not_hold};
-
 bool agrees(Verdict verdict) { return verdict == Verdict::reproduced || verdict == Verdict::holds; }
 bool is_of_ours(Verdict verdict) { return verdict == Verdict::holds || verdict == Verdict::does_not_hold; }
 
@@ -140,19 +137,19 @@ Claim read_claim(ObjectReader& object) {
   object.required("section", claim.section, some_text);
   object.required("statement", claim.statement, some_text);
   object.required("printed", claim.printed, some_text);
-  object.optional("source", claim.source, {Source::paper, Source::quoted, Source::ours});
+  object.optional("source", claim.source);
   claim.allowed = read_allowed(object);
   claim.measure = read_measure(object.required_object("measure"));
   Names names;
   read_words(object, claim, names);
   if (object.has("corrected")) claim.corrected = read_interval(object, "corrected");
-  const bool recorded = object.required("verdict", claim.recorded, verdicts);
+  const bool recorded = object.required("verdict", claim.recorded);
   if (auto engines = object.optional_object("with_engine")) {
     for (const std::string_view engine : engine_names()) {
       auto otherwise = engines->optional_object(engine);
       if (!otherwise) continue;
       Claim::Otherwise& read = claim.with_engine[std::string(engine)];
-      otherwise->required("verdict", read.recorded, verdicts);
+      otherwise->required("verdict", read.recorded);
       require_explanation(*otherwise, "explanation", read.explanation, names);
     }
   }
@@ -226,18 +223,6 @@ std::string_view name_of(Verdict verdict) {
       return "holds";
     case Verdict::does_not_hold:
       return "does not hold";
-  }
-  return {};
-}
-
-std::string_view name_of(Source source) {
-  switch (source) {
-    case Source::paper:
-      return "paper";
-    case Source::quoted:
-      return "quoted";
-    case Source::ours:
-      return "ours";
   }
   return {};
 }

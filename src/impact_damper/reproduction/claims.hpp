@@ -39,6 +39,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/reproduction/printed.hpp"
 
@@ -48,7 +49,6 @@ enum class Verdict { reproduced, not_reproduced, corrected, derived, holds, does
 std::string_view name_of(Verdict verdict);  // "not reproduced" and so on
 
 enum class Source { paper, quoted, ours };  // whose claim it is
-std::string_view name_of(Source source);
 
 // How our value is found: a name out of measures.hpp, the runs it looks at and its numbers.
 struct MeasureCall {

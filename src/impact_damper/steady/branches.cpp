@@ -183,18 +183,6 @@ std::string_view end_of(const BranchStart& start) {
   return *start.orbit == OrbitEnd::converged ? "periodic" : name_of(*start.orbit);
 }
 
-std::string_view name_of(BranchOrigin origin) {
-  switch (origin) {
-    case BranchOrigin::start:
-      return "start";
-    case BranchOrigin::event:
-      return "event";
-    case BranchOrigin::beyond:
-      return "beyond";
-  }
-  return {};
-}
-
 Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
                        const BranchRule& rule, const std::vector<SceneState>& starts, const Threads& threads,
                        const std::function<void(std::int64_t done)>& progress) {

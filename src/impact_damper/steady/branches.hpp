@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/steady/orbits.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
@@ -54,7 +55,6 @@ enum class BranchOrigin {
   event,   // a flip or a symmetry breaking, where it branches off, or where another one joins it
   beyond,  // a steady motion that simulation ends in beyond the end of another branch
 };
-std::string_view name_of(BranchOrigin origin);  // the enumerator's own name
 
 struct FollowedBranch {
   BranchOrigin origin = BranchOrigin::start;
@@ -80,7 +80,7 @@ struct Branches {
 // `progress` is called with the number of branches that are done. No result depends on the number of
 // threads. Throws InvalidArguments if scene, range or rule are not valid.
 Branches find_branches(const Scene& scene, const Engine& engine, const ParameterRange& range,
-                       const BranchRule& rule, const std::vector<SceneState>& starts,
-                       const Threads& threads, const std::function<void(std::int64_t done)>& progress);
+                       const BranchRule& rule, const std::vector<SceneState>& starts, const Threads& threads,
+                       const std::function<void(std::int64_t done)>& progress);
 
 }  // namespace impact_damper

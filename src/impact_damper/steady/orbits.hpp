@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/expected.hpp"
 #include "impact_damper/steady/multipliers.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
@@ -23,7 +24,6 @@ enum class OrbitEnd {
                    // change
   run_stopped,     // a run ended before its periods were over, by a budget
 };
-std::string_view name_of(OrbitEnd end);  // the enumerator's own name
 
 struct OrbitOptions {
   // Only among orbits that are their own mirror image half of the periods later; `periods` must be odd. An
@@ -72,7 +72,6 @@ Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, in
 
 enum class Parameter { force_frequency, force_amplitude };
 double Scene::*member_of(Parameter parameter);
-std::string_view name_of(Parameter parameter);  // the enumerator's own name, and that of the scene's field
 
 enum class BranchEventKind {
   fold,               // the branch turns back in the parameter: multiplier +1
@@ -82,7 +81,6 @@ enum class BranchEventKind {
   neimark_sacker,     // two conjugate multipliers of modulus 1
   grazing,            // an impact appears, or vanishes, with speed 0
 };
-std::string_view name_of(BranchEventKind kind);
 
 struct BranchEvent {
   BranchEventKind kind = BranchEventKind::fold;
@@ -106,7 +104,6 @@ enum class BranchEnd {
   points,          // FollowOptions::max_points
   not_an_orbit,    // the first is none for the parameter's first value, or that is beyond the range
 };
-std::string_view name_of(BranchEnd end);
 
 // Steps are measured along the branch in the space of the state and the parameter.
 struct FollowOptions {

@@ -248,13 +248,10 @@ void read_rest(ObjectReader& root, BasinResponse& response) {
 
 OrbitBranch read_branch(ObjectReader& item, std::size_t dampers) {
   OrbitBranch branch;
-  item.required("origin", branch.origin, {BranchOrigin::start, BranchOrigin::event, BranchOrigin::beyond});
+  item.required("origin", branch.origin);
   item.required("from", branch.from, counts);
   branch.event = read_index(item, "event");
-  item.required(
-      "end", branch.end,
-      {BranchEnd::range, BranchEnd::grazing, BranchEnd::closed, BranchEnd::joined, BranchEnd::coincidence,
-       BranchEnd::step_too_small, BranchEnd::unstable, BranchEnd::points, BranchEnd::not_an_orbit});
+  item.required("end", branch.end);
   std::vector<double> values;
   item.required("values", values);
   for (const double value : values) {
@@ -276,9 +273,7 @@ OrbitBranch read_branch(ObjectReader& item, std::size_t dampers) {
   }
   for (ObjectReader entry : item.required_objects("events", most_parts)) {
     OrbitEvent& event = branch.events.emplace_back();
-    entry.required("kind", event.kind,
-                   {BranchEventKind::fold, BranchEventKind::flip, BranchEventKind::symmetry_breaking,
-                    BranchEventKind::neimark_sacker, BranchEventKind::grazing});
+    entry.required("kind", event.kind);
     entry.required("value", event.value);
     entry.required("points_before", event.points_before, within(0, double(values.size())));
     event.state = read_state(entry.required_object("state"), dampers);
@@ -414,8 +409,7 @@ std::optional<Axis> read_axis(ObjectReader& object, const Scene& scene) {
 
 std::optional<ParameterRange> read_range(ObjectReader& object) {
   ParameterRange range;
-  bool all_read =
-      object.required("number", range.parameter, {Parameter::force_frequency, Parameter::force_amplitude});
+  bool all_read = object.required("number", range.parameter);
   all_read = object.required("from", range.from, above(0)) && all_read;
   all_read = object.required("to", range.to, above(0)) && all_read;
   if (all_read && range.from == range.to)

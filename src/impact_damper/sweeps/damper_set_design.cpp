@@ -100,14 +100,15 @@ struct Clearances {
 Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count, const Known& known,
                            const std::vector<double>& edges) {
   constexpr int narrow_steps = 16, wide_steps = 12;
-  const auto [fold, most, lowest] = bounds_of(question);
+  const Bounds bounds = bounds_of(question);
   Clearances best;
   for (int narrow = 0; narrow < narrow_steps; ++narrow) {
     // From where the fold is at `lowest` to where it is half of it; one damper may need it wider.
     const double c =
-        std::min(most, lowest / fold * power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
+        std::min(bounds.most, bounds.lowest / bounds.fold *
+                                  power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
     for (int wide = 0; wide < (count == 1 ? 1 : wide_steps); ++wide) {
-      const double end = most * power_of(0.3, double(wide) / wide_steps);
+      const double end = bounds.most * power_of(0.3, double(wide) / wide_steps);
       if (count > 1 && !(end > c)) continue;
       Clearances tried{clearances_between(c, end, count), {}, 0};
       for (const double clearance : tried.values)
@@ -170,12 +171,13 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
 DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads,
                        const std::function<void(const std::string& doing)>& tell) {
   const double e = question.restitution;
-  const auto [fold, most, lowest] = bounds_of(question);
+  const Bounds bounds = bounds_of(question);
   DamperSet set;
   set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
   tell("what one damper does alone");
   // The narrowest clearance that is tried, at its narrowest.
-  const double from = 1.1 * question.upper * fold / (0.4 * lowest) / (1 - question.clearance_off);
+  const double from =
+      1.1 * question.upper * bounds.fold / (0.4 * bounds.lowest) / (1 - question.clearance_off);
   // f hardly depends on the mass; a very light one takes long.
   const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
   const auto alone = [&](double restitution) {

@@ -357,16 +357,6 @@ Record record_for(std::span<const KeptQuantity> kept) {
 
 }  // namespace
 
-std::string_view name_of(Better better) {
-  switch (better) {
-    case least:
-      return "least";
-    case greatest:
-      return "greatest";
-  }
-  return "";
-}
-
 std::span<const Quantity> all_quantities() { return quantities; }
 
 std::string_view unit_of(Dimension dimension, bool in_units) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 #include "impact_damper/units.hpp"
 
@@ -39,7 +40,6 @@ enum class Experiment { run, steady, worst, lyapunov };
 
 // Which of its values one wants.
 enum class Better { least, greatest };
-std::string_view name_of(Better better);
 
 class RunFindings;  // of one run, in kept_quantities.cpp
 

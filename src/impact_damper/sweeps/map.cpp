@@ -92,18 +92,6 @@ std::optional<double> limit_of(Limit limit, double restitution) {
 
 }  // namespace
 
-std::string_view name_of(Statistic statistic) {
-  switch (statistic) {
-    case Statistic::median:
-      return "median";
-    case Statistic::mean:
-      return "mean";
-    case Statistic::worst:
-      return "worst";
-  }
-  return "";
-}
-
 double MapAxis::place(double value) const {
   return spacing == Spacing::logarithmic ? logarithm(value) : value;
 }

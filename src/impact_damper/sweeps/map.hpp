@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/sweeps/plan.hpp"
 
 namespace impact_damper {
 
 // What is told of the draws of one point of the grid.
 enum class Statistic { median, mean, worst };
-std::string_view name_of(Statistic statistic);
 
 struct MapQuestion {
   std::size_t x = 0, y = 1;  // of Plan::grid, two different ones

@@ -116,26 +116,6 @@ std::vector<Variable> variables_of(const SceneFile& scene) {
   return variables;
 }
 
-std::string_view name_of(Spacing spacing) {
-  switch (spacing) {
-    case Spacing::linear:
-      return "linear";
-    case Spacing::logarithmic:
-      return "logarithmic";
-  }
-  return "";
-}
-
-std::string_view name_of(SamplingMethod method) {
-  switch (method) {
-    case SamplingMethod::random:
-      return "random";
-    case SamplingMethod::latin_hypercube:
-      return "latin_hypercube";
-  }
-  return "";
-}
-
 double GridAxis::value(std::int64_t i) const {
   if (!values.empty()) return values[static_cast<std::size_t>(i)];
   if (i == 0) return from;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -36,7 +37,6 @@ struct Variable {
 std::vector<Variable> variables_of(const SceneFile& scene);
 
 enum class Spacing { linear, logarithmic };
-std::string_view name_of(Spacing spacing);
 
 // A number that takes several values.
 struct GridAxis {
@@ -67,7 +67,6 @@ struct SampledNumber {
 };
 
 enum class SamplingMethod { random, latin_hypercube };
-std::string_view name_of(SamplingMethod method);
 
 // Every point of the grid is given the same `count` draws, so that its neighbours are compared on equal
 // terms.

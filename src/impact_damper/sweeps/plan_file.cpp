@@ -31,7 +31,7 @@ std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Va
 void read_ends(ObjectReader& object, const NumberRange& range, double& from, double& to, Spacing& spacing) {
   const bool has_from = object.required("from", from, range), has_to = object.required("to", to, range);
   const bool both = has_from && has_to;
-  object.optional("scale", spacing, {Spacing::linear, Spacing::logarithmic});
+  object.optional("scale", spacing);
   if (both && !(from < to))
     object.reject("to", "must be > from, " + number_text(from) + ", got " + number_text(to));
   if (both && spacing == Spacing::logarithmic && !(from > 0))
@@ -77,7 +77,7 @@ Samples read_samples(ObjectReader& object, const std::vector<Variable>& variable
   Samples samples;
   object.required("count", samples.count, within(1, double(most_runs)));
   object.optional("seed", samples.seed, within(0, most_seed));
-  object.optional("method", samples.method, {SamplingMethod::random, SamplingMethod::latin_hypercube});
+  object.optional("method", samples.method);
   for (ObjectReader each : object.required_objects("numbers", most_numbers))
     if (const auto variable = read_variable(each, variables))
       samples.numbers.push_back(read_sampled(each, *variable));
