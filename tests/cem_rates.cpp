@@ -1,4 +1,6 @@
 // The component element method with two rates: no impact missed, nothing of its accuracy lost.
+#include "impact_damper/engines/cem_rates.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "impact_damper/engines/cem.hpp"
+#include "impact_damper/motion/system.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
@@ -99,7 +101,7 @@ TEST_CASE("a flight that is certified free meets no wall, in closed form or in c
     const State<double> s{uniform(-size, size), uniform(-size, size), uniform(0, 1), uniform(-2, 2)};
     const double f = system.forcing.derivatives<2>(system.forcing.phase(begin))[0];
     const double x2 = f - 2 * system.zeta * s.v - s.x;
-    const Certificate<double> sure(system.zeta, system.forcing, s, x2, large, 16 * large);
+    const Certificate<double> sure(system.zeta, system.forcing, s, x2, large, 16 * large, 1, 1);
 
     // Either so many large steps, or one that is as long as is free.
     int steps = 16;

@@ -83,8 +83,7 @@ struct Cem {
   std::optional<double> large_step;
   // The paper's stuck regime, equation (9): an impact with a relative speed below u, while the wall pushes
   // the secondary mass, joins both masses until x'' changes its sign. u > 0 and finite, divided by epsilon
-  // Omega_n. Absent, as it must be with a list of dampers: sticking is a sustained contact with the compliant
-  // wall.
+  // Omega_n. Absent: sticking is a sustained contact with the compliant wall.
   std::optional<double> stuck_speed;
   bool unstable = false;  // run even with a step beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;

@@ -141,7 +141,7 @@ class Case:
         scene["until_millimetres"] = scene["initial_displacement"] * self.uniform(0.02, 0.5)
         return scene
 
-    def engine(self, *names, steps=100_000, several=False):
+    def engine(self, *names, steps=100_000):
         """Words for one of these engines; `steps` of the component element method bound a run."""
         engine = self.one_of(*names)
         self.add("--engine", engine)
@@ -150,8 +150,10 @@ class Case:
         if engine == "cem":
             if self.chance(0.3):
                 self.add("--locate")
-            if self.chance(0.3) and not several:
+            if self.chance(0.3):
                 self.add("--stuck", "paper")
+            if self.chance(0.3):
+                self.add("--large-step", 0.05)
             if self.chance(0.2):
                 self.add("--damper", "lagged")
         # A run is short. One that would not be ends early, which is one more way to end.
@@ -163,7 +165,7 @@ class Case:
 
     def run(self, several=False):
         self.add("run")
-        scene = self.scene(self.engine(*ENGINES, several=several), self.chance(0.5), several)
+        scene = self.scene(self.engine(*ENGINES), self.chance(0.5), several)
         self.add("--scene", self.file("scene.json", scene), "--record", "half_cycles,impacts,contacts,energy,history",
                  "--history", f"0:{scene['until_time']}:101")
         if self.chance(0.2):
@@ -175,7 +177,7 @@ class Case:
 
     def report(self, several=False):
         self.add("report")
-        engine = self.engine(*ENGINES, steps=20_000, several=several)
+        engine = self.engine(*ENGINES, steps=20_000)
         scene = self.scene(engine, self.chance(0.3), several)
         scene["until_time"] = min(scene["until_time"], 20)
         self.add("--scene", self.file("scene.json", scene), "--without-figures", "--members", self.one_of(1, 2, 3))
@@ -236,7 +238,7 @@ class Case:
         self.add("sweep")
         forced = self.chance(0.4)
         several = self.chance(0.25)
-        engine = self.engine(*(ENGINES[:2] if forced else ENGINES), several=several)
+        engine = self.engine(*(ENGINES[:2] if forced else ENGINES))
         scene = self.scene(engine, forced, several)
         self.add("--scene", self.file("scene.json", scene))
         varied = ["damping_ratio=0,1e-12,0.5,1", "x0=-1,0,6", "v0=0:1:2"]

@@ -30,10 +30,6 @@ Cem resolved(const Scene& scene, Cem options) {
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
   std::vector<Problem> problems = problems_of(options);
   if (!problems.empty()) return problems;
-  if (options.stuck_speed && !scene.dampers.empty())
-    problems.push_back(
-        {"stuck_speed",
-         "is for one damper, as --stuck paper is: the masses of a list stick by pressing their walls"});
   const double h = options.time_step.value();
   const double limit = stability_limit(scene, options.damper, options.calibration);
   if (!(h <= limit || options.unstable)) {
@@ -57,16 +53,6 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
     }
   }
   return problems;
-}
-
-std::int64_t whole_steps(double steps) {
-  constexpr double many = 1e15;
-  return steps < 1 ? 1 : steps < many ? std::int64_t(std::ceil(steps)) : std::int64_t(many);
-}
-
-void fail_of_overflow(double time, double step) {
-  throw NumericalError("the component element method overflowed near time " + rounded(time) +
-                       " with time_step " + number_text(step));
 }
 
 }  // namespace impact_damper

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
+
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper {
 
@@ -43,6 +46,7 @@ double stability_limit_of_list(const Scene& scene, Damper damper, Calibration ca
 }  // namespace
 
 double fastest_contact_frequency(const Scene& scene) {
+  if (scene.dampers.size() == 1) return fastest_contact_frequency(with_alone(scene, scene.dampers.front()));
   if (!scene.dampers.empty()) return 2 / stability_limit_of_list(scene, Damper::centred, {});
   const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;
   // (1 + K (1 + nu))^2 - 4 K as a sum of squares: no cancellation for heavy or light secondary masses.
@@ -51,6 +55,8 @@ double fastest_contact_frequency(const Scene& scene) {
 }
 
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration) {
+  if (scene.dampers.size() == 1)
+    return stability_limit(with_alone(scene, scene.dampers.front()), damper, calibration);
   if (!scene.dampers.empty()) return stability_limit_of_list(scene, damper, calibration);
   const double centred = 2 / fastest_contact_frequency(scene);
   if (damper == Damper::centred) return centred;
@@ -64,6 +70,16 @@ double stability_limit(const Scene& scene, Damper damper, Calibration calibratio
     return primary >= 0 && secondary >= 0 && primary * secondary >= nu * wall * wall;
   };
   return last_of(centred, semidefinite);
+}
+
+std::int64_t whole_steps(double steps) {
+  constexpr double many = 1e15;
+  return steps < 1 ? 1 : steps < many ? std::int64_t(std::ceil(steps)) : std::int64_t(many);
+}
+
+void fail_of_overflow(double time, double step) {
+  throw NumericalError("the component element method overflowed near time " + rounded_text(time, 6) +
+                       " with time_step " + number_text(step));
 }
 
 }  // namespace impact_damper

@@ -12,6 +12,7 @@
 // h < 1/zeta would have nothing to do with the wall.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "impact_damper/engine.hpp"
@@ -93,13 +94,6 @@ CemStep<Real> cem_step_stuck(const Real& nu, const Real& zeta, const Real& h) {
   return step;
 }
 
-// A step and what it makes of the equations.
-template <class Real>
-struct Pace {
-  Real h{};
-  CemStep<Real> flight{}, contact{}, stuck{};
-};
-
 template <class Real>
 Real value_of(const Forcing<Real>& force, const Real& time) {
   return force ? force.amplitude * sin_cos(Real(force.frequency * time)).sin : Real(0);
@@ -131,6 +125,39 @@ struct ForceAtSteps {
 
   Real f = 0, df = 0, curb = 0;
 };
+
+// The parabola through three successive steps of one coordinate, about the middle one.
+template <class Real>
+struct Arc {
+  Real g, slope, bend;
+
+  Real at(const Real& t) const { return g + t * (slope + t * bend / 2); }
+  Real slope_at(const Real& t) const { return slope + t * bend; }
+  Arc times(const Real& factor) const { return {factor * g, factor * slope, factor * bend}; }
+
+  // Where in [0, h] an arc that begins at or above zero falls through it.
+  Real fall(const Real& h) const {
+    const Real square = slope * slope - 2 * bend * g;
+    const Real root = square > 0 ? square_root(square) : Real(0);
+    if (slope > 0) return bend < 0 ? std::clamp((slope + root) / -bend, Real(0), h) : h;
+    return root > slope ? std::clamp(2 * g / (root - slope), Real(0), h) : Real(0);
+  }
+  // Where in [from, to] its extremum lies, or the end nearest to it; `from` where rounding has `to` before
+  // it.
+  Real extremum(const Real& from, const Real& to) const {
+    return bend == 0 || !(from < to) ? from : std::clamp(-slope / bend, from, to);
+  }
+};
+
+[[noreturn]] void fail_of_overflow(double time, double step);
+// Rounded up, 1 at least and 1e15 at most.
+std::int64_t whole_steps(double steps);
+// The largest whole multiple of h that is at most `step`, where that is told.
+template <class Real>
+Real multiple_of(const Real& h, const Real& step) {
+  const Real steps = step / h;
+  return steps < 1e15 ? Real(std::int64_t(steps)) * h : step;
+}
 
 // The frequency of the fastest undamped mode in contact (M9.3), of a list with all its masses in contact;
 // larger than 1 and sqrt(k/nu).

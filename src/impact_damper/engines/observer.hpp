@@ -42,7 +42,7 @@ concept RunObserver = requires(T observer, const T asked, double number, Wall wa
 struct PlaceInCavity {
   double y, w;
 };
-// What the engines of several dampers (restitution_dampers.hpp, cem_dampers.hpp) ask and report besides:
+// What the engines of several dampers (exact_dampers.hpp, restitution_dampers.hpp, cem.hpp) ask and report besides:
 // which damper, by its number in the scene, from 0. Simultaneous impacts, with rigid walls by (M17.2), come
 // in the order of these numbers; one that they cause at the same time comes after them.
 template <class T>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "impact_damper/engines/cem.hpp"
-#include "impact_damper/engines/cem_dampers.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"

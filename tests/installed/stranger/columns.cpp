@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "impact_damper/engines/cem.hpp"
-#include "impact_damper/engines/cem_dampers.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
