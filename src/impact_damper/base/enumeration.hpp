@@ -28,6 +28,14 @@ consteval std::string_view enumerator() {
   return text.find(')') == text.npos ? text : "";
 }
 
+// The same with a zero behind it, for C.
+template <auto value>
+inline constexpr auto with_zero = [] {
+  std::array<char, enumerator<value>().size() + 1> text{};
+  enumerator<value>().copy(text.data(), text.size() - 1);
+  return text;
+}();
+
 template <class Enum, std::size_t from = 0>
 consteval std::size_t count_of() {
   if constexpr (enumerator<static_cast<Enum>(from)>().empty())
@@ -43,7 +51,7 @@ template <class Enum, class Indices = IndicesOf<Enum>>
 inline constexpr std::array<std::string_view, 0> names{};
 template <class Enum, std::size_t... i>
 inline constexpr std::array<std::string_view, sizeof...(i)> names<Enum, std::index_sequence<i...>>{
-    enumerator<static_cast<Enum>(i)>()...};
+    with_zero<static_cast<Enum>(i)>.data()...};
 
 }  // namespace detail
 
@@ -53,7 +61,7 @@ inline constexpr std::initializer_list<Enum> all_of{};
 template <class Enum, std::size_t... i>
 inline constexpr std::initializer_list<Enum> all_of<Enum, std::index_sequence<i...>>{static_cast<Enum>(i)...};
 
-// The enumerator's own name. An enumeration with other words has a name_of of its own.
+// The enumerator's own name, data() a text for C. An enumeration with other words has a name_of of its own.
 template <Enumeration Enum>
 constexpr std::string_view name_of(Enum value) {
   return detail::names<Enum>.at(static_cast<std::size_t>(value));
