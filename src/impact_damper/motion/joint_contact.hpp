@@ -266,6 +266,7 @@ class JointContact {
   void expand(std::array<Real, joint_terms>& x) {
     const std::size_t count = nu_.size();
     const auto& [sin, cos] = phase_;
+    // turn: the angle of the force's phase in one unit of time.
     const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
     Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
     const auto& over = reciprocals<Real>;
