@@ -170,7 +170,7 @@ double angle_of_beyond(double y, double x) {
   const double quotient = height / width;
   if (quotient > 0x1p60) return whole(1);
   if (quotient < 0x1p-60) return is_left ? whole(2) : with_sign_of(quotient, y);
-  // By a power of two into the middle of the range, if they are not there.
+  // Scaled by a power of two into the middle of the range, if the coordinates are not there.
   const double scale = height > 0x1p400 || width > 0x1p400     ? 0x1p-600
                        : height < 0x1p-400 || width < 0x1p-400 ? 0x1p600
                                                                : 1;
