@@ -86,7 +86,7 @@ class Contact {
     end.state.y = wall_;
     return end;
   }
-  // q| at t, at the right wall with the digits that y - 1 does not have.
+  // Returns |q| at t, at the right wall with the digits that y - 1 does not have.
   Real overlap(const Real& t) const { return absolute(sum_at(t).q); }
   // x, x', q and q' at t. For a short time the parts of a small q are large and cancel, so the changes since
   // the beginning are summed instead.
@@ -163,8 +163,8 @@ class Contact {
     return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
                               from, until, search, resolution());
   }
-  // x| at a turning point, x'(t) = 0. It is the height of the slow mode alone if the ringing is below
-  // rounding and moves the turning point too little to change the height (docs/mathematics.md, 7.7).
+  // Returns |x| at a turning point, x'(t) = 0. It is the height of the slow mode alone if the ringing is
+  // below rounding and moves the turning point too little to change the height (docs/mathematics.md, 7.7).
   Real height(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
     if constexpr (forced)
@@ -298,7 +298,7 @@ class Contact {
         std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
     if (from > 0) return ringing(0, from) < nothing ? std::optional(fall) : std::nullopt;
 
-    Real settling{0}, rest = ringing(0, settling);
+    Real settling{0}, rest = ringing(0, settling);  // rest: bound on the ringing from `settling` on
     for (int i = 0; i < 2; ++i) {
       if (!(rest < kept * u)) return {};
       settling = fall - fall * rest / (kept * u);

@@ -70,7 +70,7 @@ class Flight {
     return state_of(from_wall(t));
   }
 
-  // The longest time of this piece. A longer flight goes on as another piece, which begins with the state at
+  // The time after which, at the latest, the flight goes on as another piece, and the start of that piece at
   // t.
   Real length() const { return primary_.length(); }
   FlightStart<Real> start_of_rest(const Real& t) const {

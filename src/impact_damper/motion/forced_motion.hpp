@@ -184,7 +184,7 @@ class ForcedMotion {
     const Real time = oscillator_.fall(u, u1, from);
     return time < until ? std::optional(time) : std::nullopt;
   }
-  // x| at a turning point, x'(t) = 0.
+  // Returns |x| at a turning point, x'(t) = 0.
   Real height(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return absolute(at(t).x);

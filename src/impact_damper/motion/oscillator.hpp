@@ -75,8 +75,8 @@ class Oscillator {
   }
   // The time from a zero of u' to the next zero of u'' in a free motion; only where underdamped.
   const Real& turn_before() const { return turn_before_; }
-  // u| at a turning point, u' = 0, of a free motion, a time t after it began with u and u'; only where
-  // underdamped.
+  // Returns |u| at a turning point, u' = 0, of a free motion, a time t after it began with u and u'; only
+  // where underdamped.
   Real height(const Real& u, const Real& u1, const Real& t) const {
     const Real along = (u1 + a_ * u) * over_omega_, height = square_root(Real(u * u + along * along));
     return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
