@@ -211,8 +211,8 @@ class CemEngine {
     if (energy_balance_) add_powers(-h / 2, time, s);
     renew_step();
   }
-  // Adds y''' to the start of a mass at rest on a wall. The second-order start leaves y on the wall, where
-  // the error of a y'' that is zero would decide what comes next.
+  // Adds y''' = `jerk` to the start of a mass at rest on a wall, where y'' is `bend`. The second-order start
+  // leaves y on the wall, where the error of a y'' that is zero would decide what comes next.
   void lead_from_rest(std::size_t i, const Real& bend, const Real& jerk) {
     const Real h = pace_.h;
     if (3 * absolute(bend) < h * absolute(jerk)) masses_[i].now.dx += h * h * h * jerk / 6;
@@ -1036,7 +1036,7 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
   const auto rests = [&](std::size_t i) {
     return (y0[i] == 0 || y0[i] == masses_[i].clearance) && start_.w[i] == 0;
   };
-  const Real bend = -second_of_x(Real(0), start_);
+  const Real bend = -second_of_x(Real(0), start_);  // y''
   const Real jerk = start_.v - force_.amplitude * force_.frequency;
   const Lead<Real> lead =
       lead_of_x(Real(2 * zeta_), Real(1), force_, force_.phase(Real(0)), start_.x, start_.v);
