@@ -177,7 +177,7 @@ double angle_of_beyond(double y, double x) {
   const double y1 = height * scale, x1 = x * scale, width1 = width * scale;
   const double larger = y1 > width1 ? y1 : width1, smaller = y1 > width1 ? width1 : y1;
   if (smaller > larger * 0x1p-20) return with_sign_of(angle_of_upper(y1, x1), y);
-  // t = smaller/larger; to arctan t are added the rounding error of t and t^3/3.
+  // With t = smaller/larger rounded, the arc tangent of the exact quotient is t + (quotient - t) - t^3/3.
   const Quarter& from = quarters[2 * (y1 > width1) + (x < 0)];
   const double t = smaller / larger;
   const Sum product = exact_product(t, larger);

@@ -152,7 +152,7 @@ inline double angle_of_upper(double y, double x) {
   const double d_head = coarse_t - point, d_rest = t - coarse_t;
   const ArcTangent& at = arc_tangent[bits(shifted) & 0x7f];
 
-  // The rounding error of t, (smaller - t larger)/larger, from products that round nothing that counts.
+  // The exact quotient minus t, (smaller - t larger)/larger, from products that round nothing that counts.
   const double upper = from_bits(bits(larger) & ~((std::uint64_t(1) << 27) - 1)), lower = larger - upper;
   const double lacking =
       (((smaller - coarse_t * upper) - coarse_t * lower) - d_rest * upper - d_rest * lower) * per;
