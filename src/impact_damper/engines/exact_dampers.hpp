@@ -292,8 +292,8 @@ class ExactOfDampers {
     take_events();
   }
 
-  // Begins a piece of the series. Every `soonest` pieces it is tried to let more walls follow the others
-  // (M17.22): those that have stopped ringing and are much faster than the others.
+  // Begins a piece of the series. Every `soonest` pieces more walls are tried as followers (M17.22): those
+  // that have stopped ringing and are much faster than the others.
   void begin_piece() {
     const auto begin_with = [&](const Real& follow_from) {
       piece_.set_walls(system_.zeta, system_.forcing, pushed_, follow_from);

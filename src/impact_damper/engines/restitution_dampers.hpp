@@ -95,8 +95,8 @@ class RestitutionOfDampers {
     return event;
   }
 
-  // Advances all masses to `until`, or to an earlier stop. Only the primary mass's half cycles have events on
-  // the way.
+  // Advances all masses to `until`, or to an earlier stop. The only events on the way are those of the half
+  // cycles of x.
   void pass(const Motion& motion, const Real& until) {
     const auto last = next_meeting_.primary_at(motion.primary(), until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
@@ -126,7 +126,7 @@ class RestitutionOfDampers {
   }
 
   // Carries out the impacts of the masses in `meeting` (M17.2), which also push masses at rest on a wall.
-  // Returns false, and does nothing, if the run has no room for so many impacts.
+  // Returns false if these are more than the impact budget allows: the run then stops before them.
   bool impacts(std::span<const Meeting<Real>> meeting) {
     if (!tracker_.has_room_for(std::int64_t(meeting.size()))) return false;
     at_walls_.clear();
