@@ -1,5 +1,5 @@
-// The enumerators of an enumeration and their names, as files and options have them. The enumerators count
-// from 0.
+// The enumerators of an enumeration and their names, as used in files and options. The enumerators count from
+// 0.
 #pragma once
 
 #include <array>
@@ -17,10 +17,11 @@ concept Enumeration = std::is_enum_v<Type>;
 
 namespace detail {
 
-// The enumerator with this value; "" where there is none, of which the compiler shows a number behind a cast.
+// The name of the enumerator with this value; "" where there is none: the compiler then shows a number after
+// a cast.
 template <auto value>
 consteval std::string_view enumerator() {
-  std::string_view text = __PRETTY_FUNCTION__;  // "... value = impact_damper::Wall::left]", or ";" behind it
+  std::string_view text = __PRETTY_FUNCTION__;  // "... value = impact_damper::Wall::left]", or ";" after it
   constexpr std::string_view before = "value = ";
   text.remove_prefix(text.find(before) + before.size());
   text = text.substr(0, text.find_first_of(";]"));
@@ -28,7 +29,7 @@ consteval std::string_view enumerator() {
   return text.find(')') == text.npos ? text : "";
 }
 
-// The same with a zero behind it, for C.
+// The enumerator's name with a zero behind it, for C.
 template <auto value>
 inline constexpr auto with_zero = [] {
   std::array<char, enumerator<value>().size() + 1> text{};
@@ -61,7 +62,8 @@ inline constexpr std::initializer_list<Enum> all_of{};
 template <class Enum, std::size_t... i>
 inline constexpr std::initializer_list<Enum> all_of<Enum, std::index_sequence<i...>>{static_cast<Enum>(i)...};
 
-// The enumerator's own name, data() a text for C. An enumeration with other words has a name_of of its own.
+// Returns the enumerator's own name; its data() ends with a zero, for C. An enumeration with other words has
+// a name_of of its own.
 template <Enumeration Enum>
 constexpr std::string_view name_of(Enum value) {
   return detail::names<Enum>.at(static_cast<std::size_t>(value));

@@ -1,4 +1,4 @@
-// What can go wrong outside the mathematics: each kind has an exit code of its own in the program.
+// The errors outside the mathematics: each kind has an exit code of its own in the program.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace impact_damper {
 
-// What is wrong with one field of a scene, option, or entry of a file: "mass_ratio", "must be ..., got ...".
+// A problem with one field of a scene, option, or entry of a file: "mass_ratio", "must be ..., got ...".
 struct Problem {
   std::string field;  // "" if it is about the whole
   std::string message;

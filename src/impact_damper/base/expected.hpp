@@ -1,4 +1,4 @@
-// What a step that can fail returns: its result, or why there is none.
+// The result of a step that can fail, or the reason why there is none.
 #pragma once
 
 #include <utility>
@@ -6,8 +6,8 @@
 
 namespace impact_damper {
 
-// Whether there is a result has to be looked at first: reading one that is not there throws
-// std::bad_variant_access, as does asking for a failure that there was not.
+// The caller must check first whether there is a result: reading one that is not there throws
+// std::bad_variant_access, as does asking for a failure that did not happen.
 template <class Value, class Failure>
 class Expected {
  public:

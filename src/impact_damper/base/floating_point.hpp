@@ -1,11 +1,11 @@
-// What the promise of equal bits rests on, checked: double precision, every operation rounded by itself, to
-// nearest, down to the smallest number.
+// Checks the conditions for the promise of equal bits: double precision, every operation rounded by itself,
+// to nearest, down to the smallest number.
 //
-// The compiler and whatever runs in the same process can take that away: -ffast-math and its parts,
+// The compiler and code that runs in the same process can violate them: -ffast-math and its parts,
 // contraction to fused multiply-add, arithmetic in x87 registers; a rounding mode that a library left behind;
-// denormal numbers flushed to zero, as the start-up code does that g++ and clang++ link into a program built
+// denormal numbers flushed to zero, as by the start-up code that g++ and clang++ link into a program built
 // with -ffast-math, whatever its libraries were built with. What the preprocessor can see is rejected at
-// compile time, in whatever includes an engine; the rest by require_arithmetic().
+// compile time, in every source that includes an engine; the rest by require_arithmetic().
 #pragma once
 
 #include <cfloat>
@@ -13,8 +13,8 @@
 
 #include "impact_damper/base/errors.hpp"
 
-// Even code that only calls the library: inline functions of a header are compiled in many places, and the
-// linker keeps any one of them.
+// This holds for code that only calls the library, too: inline functions of a header are compiled in many
+// places, and the linker keeps any one of them.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "impact-damper: results would not have the promised bits: compile without -ffast-math and its parts"
@@ -26,7 +26,8 @@
 
 namespace impact_damper {
 
-// Which promise the arithmetic breaks and what to do about it, in one line; nullptr if none. Below 0.1 us.
+// Returns one line on which promise the arithmetic breaks and what to do about it; nullptr if none. Takes
+// less than 0.1 us.
 //
 // Inlined wherever it is called, so that it is compiled as its caller is; volatile, so that it is computed
 // where and when it runs. The numbers are chosen so that a faulty operation is off by its last bit.
@@ -57,8 +58,8 @@ namespace impact_damper {
            "parts, "
            "on x86 with -mfpmath=sse";
 
-  // 49 times its reciprocal, rounded, is not 1. More than one quotient, or no compiler thinks it worth a
-  // reciprocal.
+  // 49 times its rounded reciprocal is not 1. There are several quotients, since no compiler uses a
+  // reciprocal for one.
   const double divisor = given_divisor, twice = 2 * given_divisor, fourfold = 4 * given_divisor;
   const double first = given_divisor / divisor, second = twice / divisor, third = fourfold / divisor;
   if (first + second + third != 7)
@@ -66,8 +67,8 @@ namespace impact_damper {
   return nullptr;
 }
 
-// Throws NumericalError if broken_promise() finds one. Every engine begins with it: what a process does to
-// its processor's modes can change between two runs.
+// Throws NumericalError if broken_promise() finds one. Every engine begins with it: a process may change the
+// modes of its processor between two runs.
 [[gnu::always_inline]] inline void require_arithmetic() {
   if (const char* broken = broken_promise())
     throw NumericalError(std::string("results would not have the promised bits: ") + broken);

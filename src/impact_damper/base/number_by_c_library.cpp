@@ -35,7 +35,7 @@ double value_of(const Decimal& decimal) {
   return std::strtod(printed("0.%se%d", decimal.digits.c_str(), decimal.point).c_str(), nullptr);
 }
 
-// The neighbour with as many digits, one unit of the last digit below.
+// Returns the neighbour with as many digits, one unit of the last digit below.
 Decimal just_below(Decimal decimal) {
   std::size_t i = decimal.digits.size();
   while (i > 0 && decimal.digits[i - 1] == '0') decimal.digits[--i] = '9';
@@ -60,28 +60,28 @@ struct Rounded {
   Decimal decimal;
   bool is_far;  // reads back as another double
 };
-// The number with 15 or 16 digits, rounded from the 17 of `full`: printf and strtod are slow where long
-// double has 128 bits in software, and this needs them seldom.
+// Returns the number with 15 or 16 digits, rounded from the 17 of `full`. printf and strtod, which are slow
+// where long double has 128 bits in software, are seldom needed for this.
 Rounded rounded(const Decimal& full, double magnitude, int digits) {
   std::string padded = full.digits;
   padded.resize(most_digits, '0');
   const std::size_t count = std::size_t(digits);
   const long rest = std::strtol(padded.c_str() + count, nullptr, 10),
              unit = digits == most_digits - 1 ? 10 : 100;
-  // Half a unit: what stands behind the seventeenth digit decides.
+  // At half a unit the digits after the seventeenth decide.
   if (2 * rest == unit) return {decimal_of(magnitude, digits), false};
   Decimal decimal{padded.substr(0, count), full.point};
   if (2 * rest > unit) decimal = just_above(decimal);
   decimal.digits.resize(decimal.digits.find_last_not_of('0') + 1);
-  // What reads back as a double is no farther from it than 2^-53 of it, at most 11.2 units of the seventeenth
-  // digit, and that digit is rounded by half a unit.
+  // A decimal number that reads back as a double is no farther from it than 2^-53 of it, at most 11.2 units
+  // of the seventeenth digit, and that digit is rounded by half a unit.
   return {decimal, std::min(rest, unit - rest) > 12};
 }
 
-// Of the decimal numbers that read back as `magnitude`, those with the fewest digits; of these the nearest.
+// Returns, of the decimal numbers with the fewest digits that read back as `magnitude`, the nearest.
 Decimal shortest(double magnitude) {
-  // Up to 15 digits of a normal number come back from a double unchanged, so whatever has fewer is found with
-  // zeros behind it. A subnormal number has fewer digits.
+  // A number of up to 15 digits comes back from a normal double unchanged, so a shorter one is found with
+  // zeros at the end. A subnormal number has fewer digits.
   const bool is_subnormal = magnitude < 0x1p-1022;
   int exponent = 0;
   const bool is_power_of_two = std::frexp(magnitude, &exponent) == 0.5;
@@ -91,8 +91,8 @@ Decimal shortest(double magnitude) {
         is_subnormal ? Rounded{decimal_of(magnitude, digits), false} : rounded(all, magnitude, digits);
     const Decimal& nearest = candidate.decimal;
     if (!candidate.is_far && value_of(nearest) == magnitude) return nearest;
-    // Below a power of two doubles are twice as dense as above: the nearest may read back as another one
-    // where its neighbour, somewhat farther, does not.
+    // Below a power of two doubles are twice as dense as above: the nearest decimal may read back as another
+    // double where its neighbour, somewhat farther away, does not.
     if (!is_power_of_two) continue;
     Decimal full = nearest;
     full.digits.resize(std::size_t(digits), '0');
@@ -109,7 +109,7 @@ std::size_t skip_digits(std::string_view text, std::size_t i) {
   return i;
 }
 
-// strtod takes more: blanks, a plus sign, hexadecimal digits.
+// Whether the text is a decimal number. strtod accepts more: blanks, a plus sign, hexadecimal digits.
 bool is_decimal(std::string_view text) {
   std::size_t i = text.starts_with('-') ? 1 : 0;
   const std::size_t whole = skip_digits(text, i);
@@ -138,7 +138,7 @@ std::string shortest_text(double value) {
   const std::string sign = value < 0 ? "-" : "";
   const auto [digits, point] = shortest(std::abs(value));
   const int count = int(digits.size());
-  // Scientific where it is shorter. Both lengths follow from the exponent of the last digit.
+  // Scientific notation where it is shorter. Both lengths follow from the exponent of the last digit.
   const int last = point - count;
   const bool one = count == 1;
   if (last < -(count + 3) + one || last > 5 - one) {

@@ -1,6 +1,6 @@
-// Numbers as text and back by printf and strtod, with the very text of std::to_chars: for standard libraries
-// whose <charconv> knows integers only (LLVM's up to version 13, which WebAssembly is compiled with). Right
-// only in the locale "C", the only one there.
+// Numbers as text and back by printf and strtod, with the same text as std::to_chars, for standard libraries
+// whose <charconv> supports integers only (LLVM's up to version 13, with which WebAssembly is compiled).
+// Correct only in the locale "C", the only one there.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace impact_damper::by_c_library {
 
-// What std::to_chars(value) writes: the shortest text that reads back as `value`.
+// Returns the text of std::to_chars(value): the shortest that reads back as `value`.
 std::string shortest_text(double value);
 
-// What std::to_chars(value, std::chars_format::general, digits) writes.
+// Returns the text of std::to_chars(value, std::chars_format::general, digits).
 std::string rounded_text(double value, int digits);
 
-// What std::from_chars does with the whole of `text`, except that a number too small for a double is read as
-// zero: not {} if it is no number, or one too large, or if something follows it. Then `value` is left as it
-// was.
+// Reads the whole of `text` as std::from_chars does, except that a number too small for a double is read as
+// zero. Returns an error, and leaves `value` as it was, if the text is no number, or one too large, or if
+// something follows it.
 std::errc read(std::string_view text, double& value);
 
 }  // namespace impact_damper::by_c_library

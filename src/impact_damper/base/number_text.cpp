@@ -18,15 +18,15 @@ std::errc read(std::string_view text, Number& value) {
   return error != std::errc::invalid_argument && stop != end ? std::errc::invalid_argument : error;
 }
 
-// What charconv takes no plus sign in.
+// Removes a plus sign before the number, which charconv does not accept.
 std::string_view without_plus(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   return text;
 }
 
 #ifdef __cpp_lib_to_chars  // <charconv> knows double
-// Of a decimal number that is out of the range of double: whether it is too small, by the power of ten of its
-// first digit that is not zero.
+// Whether a decimal number that is out of the range of double is too small, by the power of ten of its first
+// digit that is not zero.
 bool is_too_small(std::string_view text) {
   const std::size_t end = std::min(text.find_first_of("eE"), text.size());
   const auto point = static_cast<std::int64_t>(std::min(text.find('.'), end)),

@@ -1,4 +1,4 @@
-// Numbers as text: the one way in and the one way out, independent of any locale.
+// Numbers as text: the only functions for reading and writing them, independent of any locale.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ std::string number_text(double value);
 void append_number(std::string& text, double value);
 void append_number(std::string& text, std::int64_t value);
 
-// `value` to so many significant digits, for reading: "0.0788", "1.23e+06".
+// Returns `value` with that many significant digits, for people: "0.0788", "1.23e+06".
 std::string rounded_text(double value, int digits);
 
-// The finite number that the whole of `text` spells, rounded to nearest, which is zero for 1e-400 as for any
-// reader of JSON: no spaces, no "nan" or "inf", no overflow, nothing behind it. Otherwise absent. A plus sign
-// may stand before it, as some instruments write.
+// Returns the finite number that the whole of `text` spells, rounded to nearest; 1e-400 is zero, as for any
+// reader of JSON. Absent for anything else: spaces, "nan" or "inf", overflow, text after the number. A plus
+// sign may precede it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 

@@ -11,7 +11,7 @@ namespace impact_damper {
 // The digest of the bytes of `text`: 64 hexadecimal digits in lower case.
 std::string sha256(std::string_view text);
 
-// The same of a text that comes in pieces.
+// Computes the digest of a text that comes in pieces.
 class Sha256 {
  public:
   void add(std::string_view text);

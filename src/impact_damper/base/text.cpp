@@ -24,7 +24,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// An option or a key without what tells the two apart: "--mass-ratio" and "mass_ratio" are "mass_ratio".
+// Returns an option or a key without the marks of either: "--mass-ratio" and "mass_ratio" are "mass_ratio".
 std::string bare(std::string_view word) {
   word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
   std::string name(word);
@@ -32,8 +32,8 @@ std::string bare(std::string_view word) {
   return name;
 }
 
-// The symbols of docs/mathematics.md, and what they are called at the interface: dimensionless first, then in
-// units.
+// The symbols of docs/mathematics.md and their names at the interface, first the dimensionless ones, then
+// those with units.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
     {{"nu", "mass_ratio"},
      {"e", "restitution"},
@@ -59,15 +59,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
      {"gap", "clearance"},
      {"h", "time_step"}}};
 
-// Whether `word` begins one of the parts of `name` that underscores divide: "force" in "exciting_force".
+// Whether `word` begins one of the parts of `name` between underscores: "force" in "exciting_force".
 bool begins_a_part(std::string_view word, std::string_view name) {
   for (std::size_t at = name.find(word); at != std::string_view::npos; at = name.find(word, at + 1))
     if (at == 0 || name[at - 1] == '_') return true;
   return false;
 }
 
-// How many bytes the UTF-8 character at the front of `text` has; 0 if none stands there. Overlong forms and
-// surrogates, which are none either, print as they are.
+// Returns the number of bytes of the UTF-8 character at the front of `text`; 0 if there is none. Overlong
+// forms and surrogates are no characters, but print as they are.
 std::size_t character_length(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t length = first < 0x80   ? 1
@@ -83,8 +83,8 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
-// -1, 0 or 1 as `value` is below, equal to or above `limit`. Rounding `value` to a double keeps the order
-// with another one, so that only where it becomes `limit` itself the integers are compared.
+// Returns -1, 0 or 1 as `value` is below, equal to or above `limit`. Rounding `value` to a double keeps its
+// order with another double, so the integers are compared only where it becomes `limit` itself.
 int order(std::int64_t value, double limit) {
   const auto rounded = static_cast<double>(value);
   if (rounded != limit || rounded == 0x1p63) return rounded > limit ? 1 : -1;
@@ -152,13 +152,12 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
     for (const std::string_view candidate : known)
       if (bare(candidate) == name) return candidate;
   }
-  // A name that was broken off.
+  // A name that was cut off.
   if (asked.size() >= 4)
     for (const std::string_view candidate : known)
       if (in_lower_case(bare(candidate)).starts_with(asked)) return candidate;
   std::optional<std::string_view> found;
-  // Two slips, or one in every three letters of a long word, but no more than half of a short one; farther
-  // words are not what was meant.
+  // At most two slips, or one in every three letters of a long word, but no more than half of a short one.
   std::pair<std::size_t, std::size_t> best{
       std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1, 0};
   for (const std::string_view candidate : known) {

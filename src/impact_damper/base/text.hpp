@@ -1,4 +1,4 @@
-// The words in which bad input is rejected, the same for files and command lines.
+// The wording in which bad input is rejected, the same for files and command lines.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace impact_damper {
 
-// Which numbers are allowed, both limits included unless least_is_allowed is false. NaN never is.
+// The range of allowed numbers, both limits included unless least_is_allowed is false. NaN never is allowed.
 struct NumberRange {
   double least = std::numeric_limits<double>::lowest();
   double most = std::numeric_limits<double>::max();
@@ -24,8 +24,8 @@ constexpr NumberRange within(double least, double most) { return {least, most}; 
 constexpr NumberRange at_least(double least) { return {least}; }
 constexpr NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
 
-// `text` on one line of UTF-8, with a question mark for each byte that is no character and each control
-// character. If it is longer than `most` characters: its first `most`, then "...".
+// Returns `text` on one line of UTF-8, with a question mark for each byte that is no character and each
+// control character. If it is longer than `most` characters: its first `most`, then "...".
 std::string cut(std::string_view text, std::size_t most = 60);
 std::string in_quotes(std::string_view text);  // cut, between double quotes
 // "a", "a or b", "a, b or c"; `last` is the word before the final item, here "or".
@@ -33,10 +33,10 @@ std::string listed(const std::vector<std::string_view>& words, std::string_view 
 
 std::string in_lower_case(std::string_view text);  // ASCII
 
-// The word of `known` that was meant by `word`: what the symbol `word` stands for (nu: mass_ratio), else the
-// nearest if it is near enough, else the first of which `word` begins a part (force: exciting_force). Options
-// and keys count as the same, "--mass-ratio" as "mass_ratio"; capitals decide only between words that are
-// equally near without them. Absent if there is none.
+// Returns the word of `known` that `word` most likely means: the name of the symbol `word` (nu: mass_ratio),
+// else the nearest if it is near enough, else the first one with a part that begins with `word` (force:
+// exciting_force). Options and keys count as the same, "--mass-ratio" as "mass_ratio"; capitals decide only
+// between words that are equally near without them. Absent if there is none.
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace impact_damper

@@ -9,7 +9,7 @@ namespace impact_damper {
 namespace {
 
 std::string rounded(double value) { return rounded_text(value, 6); }
-// At most `value`, so that whoever types it in is not rejected.
+// Rounded to at most `value`, so that whoever types it in is not rejected.
 std::string rounded_down(double value) { return rounded(value * (1 - 5e-6)); }
 
 }  // namespace

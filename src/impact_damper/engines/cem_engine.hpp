@@ -27,7 +27,7 @@
 
 namespace impact_damper {
 
-// How CemEngine keeps what there is of each secondary mass.
+// The container in which CemEngine keeps something for each secondary mass.
 template <class T>
 using ForOne = std::array<T, 1>;
 template <class T>
@@ -38,7 +38,7 @@ class CemEngine {
   static constexpr bool one = std::is_same_v<ForEach<Real>, ForOne<Real>>;
 
  public:
-  // `options` resolved and free of problems. ForOne takes a scene without a list of dampers or with a list of
+  // options: resolved and free of problems. ForOne takes a scene without a list of dampers or with a list of
   // one, ForSeveral any list.
   CemEngine(const Scene& scene, const Cem& options, Observer& observer);
 
@@ -70,37 +70,38 @@ class CemEngine {
   struct Mass {
     std::int32_t number;  // in the scene
     Real nu, k, clearance;
-    Real c, omega_2;                // of its wall, whether or not it is there
-    std::int64_t steps_of_contact;  // small ones, in the nominal contact time
-    std::optional<Wall> wall{};     // at which it is, in contact or stuck
+    Real c, omega_2;                // of its wall, whether the mass is there or not
+    std::int64_t steps_of_contact;  // small steps in the nominal contact time
+    std::optional<Wall> wall{};     // the wall it is at, in contact or stuck
     bool stuck = false;
     Moment before{}, now{};
-    // Of a list: dq_{n+1} = dq_dq dq_n + dq_q q_n + dq_dx (dx_n - dx_{n+1}), dx_{n+1} = ... + dx_dq dq_n +
+    // For a list: dq_{n+1} = dq_dq dq_n + dq_q q_n + dq_dx (dx_n - dx_{n+1}), dx_{n+1} = ... + dx_dq dq_n +
     // dx_q q_n.
     Real dq_dq = 1, dq_q = 0, dq_dx = 1, dx_dq = 0, dx_q = 0;
-    Real least{}, most{};  // q while nothing changes
+    Real least{}, most{};  // limits of q while nothing changes
     Real contact_begin = 0;
-    std::optional<std::size_t> impact{};  // that began the contact
-    Real work = 0, sum_ww = 0;  // lost at the wall in it; of its damper (2 h w)^2 over steps not yet in that
-    Real impact_loss = 0, contact_loss = 0, loss = 0;  // of the contacts before; in all
+    std::optional<std::size_t> impact{};  // the one that began the contact
+    Real work = 0, sum_ww = 0;  // lost at the wall in this contact; sum of (2 h w)^2 not yet added to it
+    Real impact_loss = 0, contact_loss = 0, loss = 0;  // past contacts, with and without an impact; their sum
 
     Real origin_of_q() const { return wall == Wall::right ? clearance : Real(0); }
-    Real push() const { return wall == Wall::left ? Real(1) : Real(-1); }  // of the wall on it
+    Real push() const { return wall == Wall::left ? Real(1) : Real(-1); }  // sign of the wall's push
     Wall wall_ahead() const { return now.x > clearance / 2 ? Wall::right : Wall::left; }
     Arc<Real> arc(const Real& h) const { return arc_of(before, now, h); }
   };
-  // The state of all: x and x', and q and q' of each secondary mass.
+  // The state of all masses: x and x', and q and q' of each secondary mass.
   struct Whole {
     Real x, v;
     ForEach<Real> q, w;
   };
-  // A mass that came to a wall in the last step, or away from it, and where; whether it sticks there.
+  // A mass that came to a wall or left it in the last step, the time of this since the beginning of the step,
+  // and whether the mass sticks there.
   struct Change {
     std::size_t index;
     Real at;
     bool joins = false;
   };
-  // A step and, for one damper, what it makes of the equations.
+  // A step size and, for one damper, the coefficients of the equations with it.
   struct Pace {
     Real h{};
     CemStep<Real> flight{}, contact{}, stuck{};
@@ -126,7 +127,7 @@ class CemEngine {
 
   Real forcing(const Real& time) const { return value_of(force_, time); }
   Real forcing_rate(const Real& time) const { return rate_of(force_, time); }
-  // The last step spans [0, h] on the arcs' axis, from number step_ - 1 on.
+  // The times at which the last step, number step_ - 1 to step_, begins and ends; arcs count it as [0, h].
   Real last_step_begin() const { return origin_ + Real(step_ - 1) * pace_.h; }
   Real last_step_end() const { return origin_ + Real(step_) * pace_.h; }
   // The number of the step of this segment in which `time` lies; the first for earlier times.
@@ -138,17 +139,17 @@ class CemEngine {
     const Mass& m = masses_[i];
     return m.wall && !m.stuck ? m.c * s.w[i] + m.omega_2 * s.q[i] : Real(0);
   }
-  // The primary mass with all that are at walls.
+  // The sum of the primary mass and all masses at walls, divided by the primary mass.
   Real mass_with_walls() const {
     Real mass = joined_mass_;
     for (const std::size_t i : in_contact_) mass += masses_[i].nu;
     return mass;
   }
-  // x'' by (M9.5) with `mass` for 1 + nu.
+  // x'' by (M9.5) with `mass` in place of 1 + nu.
   Real second_as_one(const Real& time, const Whole& s, const Real& mass) const {
     return (forcing(time) - 2 * zeta_ * s.v - s.x) / mass;
   }
-  // x'' by (M17.9), with `mass` for the primary one and those joined to it.
+  // x'' by (M17.9), with `mass` for the primary mass and the masses joined to it.
   Real second_of_x(const Real& time, const Whole& s, const Real& mass) const {
     if (mass > 1 && in_contact_.empty()) return second_as_one(time, s, mass);
     Real force = forcing(time);
@@ -166,7 +167,7 @@ class CemEngine {
       jerk -= masses_[i].nu * (masses_[i].omega_2 * s.w[i] - masses_[i].c * wall_force(s, i));
     return jerk;
   }
-  // h^2 x'' at a step.
+  // Returns h^2 x'' at a step.
   Real bend_at(const Moment& x, const Real& f) const {
     const CemStep<Real>& a = one ? pace_.stuck : step_of_x_;
     Real bend = (a.dx_dx - 1) * x.dx + a.dx_x * x.x + a.dx_f * f;
@@ -175,18 +176,19 @@ class CemEngine {
     return bend;
   }
 
-  // In the last step.
+  // Returns the state at a time in the last step.
   Whole state_at(const Real& at) const {
     const Arc<Real> x = x_arc();
     return {x.at(at), x.slope_at(at), of_each([&](std::size_t i) {
               const Mass& m = masses_[i];
               const Real q = m.arc(pace_.h).at(at);
-              // Of one damper with the rounding of y, which its runs have always had.
+              // For one damper q has the rounding of y.
               return one ? Real((m.origin_of_q() + q) - m.origin_of_q()) : q;
             }),
             of_each([&](std::size_t i) { return masses_[i].arc(pace_.h).slope_at(at); })};
   }
-  // The same with the velocities by the trapezoid of the accelerations, one order better than the slopes.
+  // Returns the same with the velocities by the trapezoid of the accelerations, one order better than the
+  // slopes.
   Whole refined_state_at(const Real& at) const {
     Whole s = state_at(at);
     const Real bend = second_of_x(last_step_begin() + at, s);
@@ -198,7 +200,7 @@ class CemEngine {
     return s;
   }
 
-  // The second-order start: the step before the first is u - h u' + h^2 u''/2.
+  // Begins a segment with the second-order start: the step before the first is u - h u' + h^2 u''/2.
   void begin_segment(const Real& time, const Whole& s) {
     const Real h = pace_.h, bend = second_of_x(time, s);
     now_ = {s.x, h * (s.v - h * bend / 2)};
@@ -209,13 +211,14 @@ class CemEngine {
     if (energy_balance_) add_powers(-h / 2, time, s);
     renew_step();
   }
-  // At rest on a wall: the second-order start leaves y''' out, and y on the wall, where the error of a y''
-  // that is zero would decide what comes next.
+  // Adds y''' = `jerk` to the start of a mass at rest on a wall, where y'' is `bend`. The second-order start
+  // leaves y on the wall, where the error of a y'' that is zero would decide what comes next.
   void lead_from_rest(std::size_t i, const Real& bend, const Real& jerk) {
     const Real h = pace_.h;
     if (3 * absolute(bend) < h * absolute(jerk)) masses_[i].now.dx += h * h * h * jerk / 6;
   }
-  // The step's coefficients for h and the walls at which masses are (M17.10); of one damper pace_ has them.
+  // Computes the step's coefficients for h and the walls at which masses are (M17.10); for one damper they
+  // are in pace_.
   void renew_step() {
     if constexpr (!one) {
       const Real h = pace_.h, outer = h * zeta_, h_2 = h * h;
@@ -240,7 +243,7 @@ class CemEngine {
       }
     }
   }
-  // To a wall, in contact with it or stuck, or into flight, with the same y.
+  // Puts a mass to a wall, in contact with it or stuck, or into flight, with the same y.
   void set_wall(std::size_t i, std::optional<Wall> wall, bool stuck = false) {
     Mass& m = masses_[i];
     const Real smallest = std::numeric_limits<Real>::denorm_min();
@@ -270,14 +273,14 @@ class CemEngine {
     }
   }
 
-  // Steps that each end in an event, or in none that can be told, cost many times what the others do: when as
-  // many as are allowed have been looked at, one step remains. Looks at samples do not count, as they must
-  // not change where the run ends.
+  // Spends one look at a step. Steps that are looked at one by one, at events or because no event can be
+  // excluded, cost many times what the others do: when the allowed number of looks is spent, one step
+  // remains. Looks at samples do not count, as they must not change where the run ends.
   void spend_look() {
     if (--looks_left_ < 0) steps_left_ = std::min<std::int64_t>(steps_left_, 1);
   }
-  // Where x or x' has been zero until now its first movement has to be seen, to know the sides: unless
-  // nothing can move x before the next impact.
+  // Whether the side of x or the sign of x' is unknown, because it has been zero until now: each step is then
+  // looked at for the first movement, unless nothing can move x before the next impact.
   bool side_or_trend_unknown() const {
     const bool at_rest = !force_ && in_contact_.empty() && !(joined_mass_ > 1) && now_.x == 0 && now_.dx == 0;
     return (half_cycles_.side() == 0 || trend_ == 0) && !at_rest;
@@ -289,8 +292,8 @@ class CemEngine {
     return std::max<std::int64_t>(steps, 1);
   }
 
-  // Steps until a wall is met or left (x'' changes its sign where masses are stuck), x changes its sign or x'
-  // its own, or `most` are done (fewer where a force or an energy balance is renewed).
+  // Takes steps until a wall is met or left (x'' changes its sign where masses are stuck), x changes its sign
+  // or x' its own, or `most` are done (fewer where a force or an energy balance is renewed).
   void take_steps(std::int64_t most) {
     const bool forced = bool(force_);
     // At every 1024th step of a segment the force is computed afresh, and the sums are added up.
@@ -323,7 +326,7 @@ class CemEngine {
     steps_left_ -= step_ - from;
     if (rates_) steps_at_pace_ -= step_ - from;
   }
-  // Of one damper.
+  // The same for one damper, in one regime.
   template <Regime regime, bool forced, bool balance>
   void take_steps(std::int64_t most) {
     Mass& m = masses_[0];
@@ -388,7 +391,7 @@ class CemEngine {
       if constexpr (regime == Regime::contact) m.sum_ww = sum_ww;
     }
   }
-  // Of a list.
+  // The same for a list.
   void take_steps_of_all(std::int64_t most) {
     const bool forced = bool(force_), stuck = joined_mass_ > 1;
     const Real side = half_cycles_.side(), trend = trend_, dx_dx = step_of_x_.dx_dx, dx_x = step_of_x_.dx_x;
@@ -443,7 +446,7 @@ class CemEngine {
     if (!changes_.empty() || crosses || turns) spend_look();
     if (!changes_.empty()) std::erase_if(changes_, [&](const Change& each) { return too_late(each.at); });
 
-    // Where masses join or part the motion begins anew, with or without `locate`.
+    // Where masses join or part, the motion begins anew, with or without `locate`.
     bool restart = locate_ && !changes_.empty();
     if (stuck_speed_) {
       for (Change& change : changes_) {
@@ -487,7 +490,7 @@ class CemEngine {
     if (steps_left_ == 0) return finish(StopReason::step_budget, span);
     give_samples(end_time_);
   }
-  // Sets changes_, in the order of time.
+  // Sets changes_, the masses that came to a wall or left one in the last step, in the order of time.
   void find_changes() {
     changes_.clear();
     bool finite = std::isfinite(double(now_.x));
@@ -506,20 +509,21 @@ class CemEngine {
       return at < then || (at == then && masses_[some.index].number < masses_[other.index].number);
     });
   }
-  // Where in the last step a mass came to a wall or away from it.
+  // Returns the time in the last step at which a mass came to a wall or left it.
   Real wall_crossing(const Mass& m) const {
     const bool falls = m.wall == Wall::right || (!m.wall && m.now.x < 0);
     Arc<Real> gap = m.arc(pace_.h).times(falls ? Real(1) : Real(-1));
     if (!m.wall && !falls) gap.g += m.clearance;
     return gap.fall(pace_.h);
   }
-  // Where in the last step x'' of a mass that is stuck changed its sign, and with it the wall's push.
+  // Returns the time in the last step at which x'' of a stuck mass changed its sign, and with it the wall's
+  // push; nothing if it did not.
   std::optional<Real> parting(const Mass& m) const {
     const Real from = m.push() * (now_.dx - before_.dx), to = m.push() * bend_at(now_, force_at_steps_.f);
     if (!(to < 0)) return {};
     return from > 0 ? pace_.h * from / (from - to) : Real(0);
   }
-  // Whether a touch is the beginning of the stuck regime (M9.9).
+  // Whether a touch begins the stuck regime (M9.9).
   bool joins(const Change& touch) const {
     const Mass& m = masses_[touch.index];
     if (m.wall) return false;
@@ -530,20 +534,21 @@ class CemEngine {
     return absolute(w) < Real(*stuck_speed_) &&
            towards * second_of_x(last_step_begin() + touch.at, s, mass) > 0;
   }
-  // Those at the first time; what comes later in the step is found from there.
+  // Keeps the changes of the earliest time; what comes later in the step is found from there.
   void keep_first_changes() {
     const auto time_of = [&](const Change& change) { return double(last_step_begin() + change.at); };
     const Real first = std::ranges::min_element(changes_, {}, &Change::at)->at;
     std::erase_if(changes_, [&](const Change& each) { return time_of(each) > time_of({0, first}); });
     for (Change& each : changes_) each.at = first;
   }
-  // `anew`: the state at the change, where the motion begins anew there.
+  // Carries out a change. anew: the state at the change, where the motion begins anew there.
   void change_regime(const Change& change, const std::optional<Whole>& anew) {
     const Mass& m = masses_[change.index];
     const Real& at = change.at;
     if (energy_balance_) add_sums();
     const Real y = m.now.x + m.origin_of_q();
-    // A step too coarse can lead from one wall through to the other; located, the mass leaves the one first.
+    // A step too coarse can lead from one wall through to the other; with `locate` the mass leaves the first
+    // wall.
     const bool met = !m.wall || (!anew && !(y >= 0 && y <= m.clearance));
     std::int64_t meeting = met;
     if (anew && &change == &changes_.front()) {  // all of them, or none
@@ -563,7 +568,7 @@ class CemEngine {
     tell_impact(double(time), wall, double(w), double(x_arc().at(at)), m.number);
     if (!anew) enter(change.index, wall, time, w);
   }
-  // At the changes' own time: those that change are on their walls exactly.
+  // Begins the motion anew at the time of the changes, with the masses that change exactly on their walls.
   void begin_anew(const Real& at, Whole s, bool slows_down) {
     const Real time = last_step_begin() + at;
     if (energy_balance_) close_powers(at);
@@ -600,13 +605,14 @@ class CemEngine {
       observer_.energy_balance().impact_loss.push_back(0);
     }
     if (joined_mass_ == 1) return;
-    // Thrown by this impact the primary mass meets those that are stuck to its other wall. Where that may be
-    // as fast as what bounces, they do, too.
+    // Thrown by this impact, the primary mass meets the masses that are stuck to its other wall. Where that
+    // may be as fast as an impact that bounces, these are left to their compliant wall, too.
     if (2 * m.nu / (1 + m.nu) * absolute(w) < Real(*stuck_speed_)) return;
     for (std::size_t other = 0; other < masses_.size(); ++other)
       if (masses_[other].stuck && masses_[other].wall != wall) set_wall(other, masses_[other].wall);
   }
-  // Those that join, with their momentum (M17.24); the energy is lost in the contacts that begin.
+  // Joins the masses that are to join, with their momentum (M17.24), for one damper (M9.10). The energy lost
+  // (M9.11) is a loss of the contacts that begin.
   void join(const Real& time, Whole& s) {
     std::vector<std::size_t> joining;
     for (const Change& change : changes_)
@@ -643,12 +649,12 @@ class CemEngine {
     steps_at_pace_ = 0;
   }
 
-  // `span`: up to where the last step counts.
+  // Completes a half cycle at a zero of x in the last step. span: the part of the step that counts.
   void cross_zero(const Real& at, const Real& span) {
     if (energy_balance_) energy(state_at(at));
     half_cycles_.crossing(last_step_begin() + at, observer_);
     trend_ = sign(now_.dx);
-    consider_peak(at, span);  // should x' have changed its sign after x did
+    consider_peak(at, span);  // x' may have changed its sign after x did
     if (until_amplitude_ && half_cycles_.last_amplitude() < Real(*until_amplitude_))
       return finish(StopReason::amplitude, at);
     if (half_cycles_.complete() >= budget_.max_half_cycles) finish(StopReason::half_cycle_budget, at);
@@ -665,7 +671,7 @@ class CemEngine {
       tell_sample(time, motion_at(Real(time) - last_step_begin()));
     }
   }
-  // The observer's calls for a list or, where that has none, for one damper.
+  // Calls the observer's functions for a list or, where the scene has none, for one damper.
   void tell_impact(double time, Wall wall, double w, double x, std::int32_t number) {
     if constexpr (DampersObserver<Observer>) {
       if (is_list_) return observer_.impact(time, wall, w, x, number);
@@ -740,7 +746,8 @@ class CemEngine {
     largest_energy_ = std::max(largest_energy_, energy.total());
     return energy;
   }
-  // The energy balance's integrals are trapezoids over the steps: the loop adds whole powers, these the ends.
+  // The energy balance's integrals are trapezoids over the steps: the loop adds whole powers, this function
+  // the ends.
   void add_powers(const Real& weight, const Real& time, const Whole& s) {
     viscous_work_ += weight * 2 * zeta_ * s.v * s.v;
     forcing_work_ += weight * forcing(time) * s.v;
@@ -765,13 +772,14 @@ class CemEngine {
     add_powers(at / 2, last_step_begin() + at, state_at(at));
   }
 
-  // Two rates (cem_rates.hpp). The pace for what comes next, and for how many steps it is the right one.
+  // With two rates (cem_rates.hpp): chooses the pace of the next steps, and returns the number of steps for
+  // which it is right.
   std::int64_t choose_pace() {
     if (in_contact_.empty()) {
-      // A segment's first step tells what its motion is.
+      // A segment's first step shows what its motion is.
       return step_ == 0 ? 1 : choose_pace_without_contact();
     }
-    // But a contact begins in small steps.
+    // A contact begins in small steps.
     const bool small = pace_.h == small_.h;
     std::int64_t begun = 0;
     for (const std::size_t i : in_contact_)
@@ -799,6 +807,8 @@ class CemEngine {
     change_pace(steps > 0 ? rates_->large : pace_of(step), s);
     return std::max(steps, 1);
   }
+  // Takes long steps once the masses in contact follow (M17.23), q_pressed and w_pressed, and none is about
+  // to leave its wall.
   std::int64_t choose_pace_in_contact() {
     const Real time = last_step_end(), mass = mass_with_walls();
     const Whole s = motion_at(pace_.h);
@@ -814,7 +824,7 @@ class CemEngine {
       const Real q = s.q[i], dq = q - q_pressed, dw = s.w[i] - w_pressed;
       const Real tolerance = m.omega_2 * small_.h * small_.h * q_pressed;
       settled = settled && dw * dw + m.omega_2 * dq * dq <= m.omega_2 * tolerance * tolerance;
-      // Half as many steps as at this speed lead out of the wall.
+      // Half of the steps that lead out of the wall at this speed.
       const Real overlap = -m.push() * q, per_step = 2 * m.push() * s.w[i] * rates_->pressed.h;
       const Real steps = overlap > many * per_step ? many : overlap / per_step;
       settled = settled && steps >= 1;
@@ -830,8 +840,8 @@ class CemEngine {
     change_pace(small_, s);
     return longest;
   }
-  // Halves `steps` of h until no mass that flies can meet a wall in them; for how much of h, if not even in
-  // one.
+  // Halves `steps` of h until no mass in flight can meet a wall in them. Returns the part of h in which none
+  // does, which is of use where not even one step is free.
   Real free_time(const Whole& s, const Real& h, int& steps) const {
     const Real bend = second_as_one(last_step_end(), s, joined_mass_), horizon = steps * h;
     Real free = h;
@@ -844,7 +854,7 @@ class CemEngine {
     }
     return free;
   }
-  // From the last step on, with the motion's own state there.
+  // Changes the pace from the last step on, with the motion's own state there.
   void change_pace(const Pace& pace, Whole s) {
     const Real h = pace_.h, time = last_step_end();
     if (pace.h == h) return;
@@ -855,18 +865,19 @@ class CemEngine {
     begin_segment(time, of_scheme(std::move(s), time, pace.h));
   }
   OwnVelocity<Real> own_velocity() const { return {zeta_, force_, 1 / mass_with_walls()}; }
-  // x' anew, with x' + y' kept in flight.
+  // Sets x' to v, and keeps x' + y' of masses in flight.
   void set_velocity(Whole& s, const Real& v) const {
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!masses_[i].wall) s.w[i] += s.v - v;
     s.v = v;
   }
-  // The scheme's state, with v_n, for the motion's own, with V.
+  // Returns the scheme's state, with v_n, for the motion's own, with V.
   Whole of_scheme(Whole s, const Real& time, const Real& h) const {
     set_velocity(s, own_velocity().to_scheme(s.x, s.v, time, h));
     return s;
   }
-  // The motion's own state where all fly, at the end of a step h, from the velocities in the middle of it.
+  // Returns the motion's own state where all fly, at the end of a step h, from the velocities in the middle
+  // of it.
   Whole flown(Whole s, const Real& time, const Real& h) const {
     const Real v = (s.v + h / 2 * (forcing(time) - s.x)) / (1 + h * zeta_);
     const Real own = own_velocity().from_scheme(s.x, v, time, h);
@@ -874,8 +885,8 @@ class CemEngine {
     s.v = own;
     return s;
   }
-  // The motion's own state within the last step: in flight, where that may be long, by a step that ends
-  // there.
+  // Returns the motion's own state at a time in the last step. In flight, where the step may be long, it is
+  // that of a step that ends there.
   Whole motion_at(const Real& at) const {
     if (!rates_) return state_at(at);
     const Real begin = last_step_begin(), time = begin + at;
@@ -909,8 +920,8 @@ class CemEngine {
 
   const Budget budget_;
   const std::optional<double> until_amplitude_;
-  const Outcome horizon_;  // if nothing else ends the scene before
-  const Real end_time_;    // its
+  const Outcome horizon_;  // the end, if nothing else ends the run before
+  const Real end_time_;    // of horizon_
   const bool centred_, locate_;
   const std::optional<double> stuck_speed_;
   Observer& observer_;
@@ -920,25 +931,25 @@ class CemEngine {
 
   ForEach<Mass> masses_;  // in the order of damper_order.hpp
   std::vector<std::size_t> in_contact_;
-  Real joined_mass_ = 1;             // the primary mass and those that are stuck
-  Real least_bend_{}, most_bend_{};  // x'' while these stay stuck
+  Real joined_mass_ = 1;             // the primary mass and those stuck to it, divided by the first
+  Real least_bend_{}, most_bend_{};  // limits of x'' while these stay stuck
   Whole start_;
 
   Pace small_;                            // the time step
-  std::optional<Rates> rates_;            // small_ beside them
+  std::optional<Rates> rates_;            // the larger steps, where there are any
   Pace pace_;                             // of the steps since origin_
-  CemStep<Real> step_of_x_{};             // of a list, by (M17.10)
-  Moment before_{}, now_{};               // of x: the last step went from the one to the other
+  CemStep<Real> step_of_x_{};             // for a list, by (M17.10)
+  Moment before_{}, now_{};               // x before and after the last step
   Real origin_ = 0;                       // time of step 0
   std::int64_t step_ = 0;                 // number of now_
-  std::int64_t steps_left_, looks_left_;  // until max_steps are done; spend_look()
-  std::int64_t steps_at_pace_ = 0;        // with two rates: until the pace is chosen anew
+  std::int64_t steps_left_, looks_left_;  // left of max_steps; left for spend_look()
+  std::int64_t steps_at_pace_ = 0;        // with two rates: left until the pace is chosen anew
   ForceAtSteps<Real> force_at_steps_;
-  Real trend_ = 0;  // sign of x' since the last turn
+  Real trend_ = 0;  // sign of x' since the last turning point
   HalfCycleTracker<Real> half_cycles_;
   std::int64_t impacts_ = 0;
   std::vector<Change> changes_;
-  // Over steps not yet in the works below, of (2 h v)^2 and f (2 h v), v centred.
+  // Sums over steps not yet in the works below, of (2 h v)^2 and f (2 h v), v centred.
   struct Sums {
     Real vv = 0, fv = 0;
   } sums_;
@@ -1009,10 +1020,10 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
     set_wall(i, wall, stuck);
     start_.q[i] -= masses_[i].origin_of_q();
   };
-  // In contact from the beginning, by no impact: first who overlaps. Then who is at rest at a wall and
-  // pressed to it, which y'' tells, or y''' where that is zero to rounding: by where y is a step later, y''
-  // h^2/2 + y''' h^3/6. In the stuck regime, where both are zero to rounding, the first derivative after them
-  // that is not tells; else the first step does.
+  // Contacts at the beginning, which no impact begins. First the masses that overlap a wall. Then those at
+  // rest at a wall and pressed to it, as y'' decides, or y''' where that is zero to rounding: by where y is a
+  // step later, y'' h^2/2 + y''' h^3/6. In the stuck regime, where both are zero to rounding, the first later
+  // derivative that is not decides; else the first step does.
   const ForEach<Real> y0 = start_.q;
   bool impact_at_once = false;
   for (std::size_t i = 0; i < count; ++i) {
@@ -1025,7 +1036,7 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
   const auto rests = [&](std::size_t i) {
     return (y0[i] == 0 || y0[i] == masses_[i].clearance) && start_.w[i] == 0;
   };
-  const Real bend = -second_of_x(Real(0), start_);
+  const Real bend = -second_of_x(Real(0), start_);  // y''
   const Real jerk = start_.v - force_.amplitude * force_.frequency;
   const Lead<Real> lead =
       lead_of_x(Real(2 * zeta_), Real(1), force_, force_.phase(Real(0)), start_.x, start_.v);
@@ -1039,8 +1050,8 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
   begin_segment(Real(0), start_);
   for (std::size_t i = 0; i < count; ++i)
     if (rests(i) && !masses_[i].stuck) lead_from_rest(i, bend, jerk);
-  // Nor would it know to which side a force moves a primary mass at rest in the middle: that is x''' h^3/6,
-  // too, unless an impact does.
+  // A force moves a primary mass at rest in the middle by x''' h^3/6, which the second-order start leaves
+  // out, too. It is added, unless an impact moves the mass.
   const bool moved_by_force = start_.x == 0 && start_.v == 0 && bend == 0 && !impact_at_once;
   if (moved_by_force) now_.dx += h * h * h * force_.amplitude * force_.frequency / 6 / joined_mass_;
 

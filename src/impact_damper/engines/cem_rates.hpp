@@ -10,11 +10,11 @@
 //
 // But they do not cancel. Central differences lead x'' + x = 0 round the ellipse x^2 + v_n^2 / (1 - h^2/4),
 // so a change at v adds (h_{n+1}^2 - h_n^2) v^2 / 8 to the energy, in every half cycle with the same sign:
-// with H = 0.05, up to a tenth of what the impacts take out at x0 = 6. What is handed on is therefore V = v_n
-// / sqrt(1 - h^2/4), with which the ellipse is the true circle for any h, run through too fast by h^2/24.
-// Damping and force add, by Taylor's theorem, v_n = ... + h^2 (f' - 2 zeta x'') / 6. Pressed to a wall both
-// masses move as one, (1 + nu) x'' + ..., and each h^2 here is divided by 1 + nu. x' + y', which nothing
-// changes in flight, is handed on as it is.
+// with H = 0.05, up to a tenth of what the impacts take out at x0 = 6. The velocity that is handed on is
+// therefore V = v_n / sqrt(1 - h^2/4), with which the ellipse is the true circle for any h, run through too
+// fast by the fraction h^2/24. Damping and force add, by Taylor's theorem, v_n = ... + h^2 (f' - 2 zeta x'')
+// / 6. Pressed to a wall both masses move as one, (1 + nu) x'' + ..., and each h^2 here is divided by 1 + nu.
+// x' + y', which nothing changes in flight, is handed on as it is.
 //
 // The way to a wall. Where the next H is not certified free (Certificate, below) one step leads as far as the
 // certificate goes. Nearing the wall these steps shorten quadratically; below a few h small ones take over.
@@ -27,11 +27,10 @@
 //     q_p = -(x'' + c w_p) / omega_m^2,   w_p = -x''' / omega_m^2,   x'', x''' of all that are at walls as
 //     one.
 // When the ringing is (omega_m h)^2 of q_p, the scheme's own relative error, steps of half the stability
-// limit are as good: what is left of it dies away in these too. Of a list, when that is so of all in contact.
-// Small steps return before one of them is free, or one that flies may meet a wall: for these (M9.4) is taken
-// with mu of what is joined, which leaves room for the ringing of the rest.
-// Masses joined to the primary one (Cem::stuck_speed) change nothing of this: alone they take steps of H
-// until they part.
+// limit are as good: what is left of it dies away in these too. With a list this must hold for all masses in
+// contact. Small steps return before one of them is free, or a mass in flight may meet a wall: for these
+// (M9.4) is taken with mu of the joined masses, which leaves room for the ringing of the rest. Masses joined
+// to the primary one (Cem::stuck_speed) change nothing of this: alone they take steps of H until they part.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +40,7 @@
 
 namespace impact_damper {
 
-// The scheme's v_n from the motion's own velocity V of x, and back.
+// Converts the motion's own velocity V of x into the scheme's v_n, and back.
 template <class Real>
 struct OwnVelocity {
   Real zeta;
@@ -56,17 +55,18 @@ struct OwnVelocity {
   }
 
  private:
+  // v_n / V without damping and force.
   Real turn(const Real& h) const { return square_root(1 - stiffness * h * h / 4); }
+  // v_n - turn(h) V, due to damping and force.
   Real lag(const Real& x, const Real& v, const Real& time, const Real& h) const {
     if (!force && zeta == 0) return 0;
     const Real& b = stiffness;
-    const Real bend = b * (value_of(force, time) - 2 * zeta * v - x);
+    const Real bend = b * (value_of(force, time) - 2 * zeta * v - x);  // x''
     return b * h * h / 6 * (rate_of(force, time) - 2 * zeta * bend);
   }
 };
 
-// What is sure about a flight that begins now: times in which no wall is met, neither by the motion nor by
-// central differences.
+// Proves times from now on in which a flight meets no wall, neither by the motion nor by central differences.
 //
 // y'' = -x''. With mu = 1, and as much more as the secondary masses that are joined to the primary one, only
 // the force can feed x^2 + mu x'^2, so sqrt(x^2 + mu x'^2) <= S = (its value now) + |f0| s for s from now on,
@@ -77,32 +77,33 @@ struct OwnVelocity {
 //
 // The differences keep to the same bounds. With n steps h = s/n they have, J s^3/6 being the sum's limit,
 //     y_n >= y + s (y' - |v_n - V|) - x'' s^2/2 - J s (s^2 - h^2)/6,   |v_n - V| <= J h^2/6,
-// as |d_n / h| <= S for all n; only to B must be added what v_n and V differ by: b = min(., B + J h/3). That
-// is exact for h <= 1.7 without damping and force, and with them but for terms of order h^4.
+// as |d_n / h| <= S for all n; only the difference of v_n and V must be added to B: b = min(., B + J h/3).
+// That is exact for h <= 1.7 without damping and force; with them terms of order h^4 are left out.
 template <class Real>
 class Certificate {
  public:
-  // `now`, with the acceleration x2 of the primary mass, in flight; `step` > 0, the longest, <= `horizon`;
-  // `mass`: mu.
+  // now: a state in flight; x2: the acceleration of the primary mass; step: the longest step, > 0 and <=
+  // `horizon`; mass: mu.
   Certificate(const Real& zeta, const Forcing<Real>& force, const State<Real>& now, const Real& x2,
               const Real& step, const Real& horizon, const Real& clearance, const Real& mass)
       : now_(now), clearance_(clearance), x2_(x2) {
     const Real f0 = absolute(force.amplitude);
     const Real swing = square_root(now.x * now.x + mass * now.v * now.v) + f0 * horizon;
-    const Real bend = (square_root(1 + 4 * zeta * zeta) * swing + f0) / mass;
+    const Real bend = (square_root(1 + 4 * zeta * zeta) * swing + f0) / mass;  // B
     jerk_ = (swing + 2 * zeta * bend + f0 * force.frequency) / mass;
     most_ = bend + jerk_ * step / 3;
   }
 
-  // No wall is met for s, at most the horizon.
+  // Whether no wall is met for a time s, at most the horizon.
   bool free_for(const Real& s) const { return left(s).at(s) > 0 && right(s).at(s) > 0; }
-  // For how much of s none is met.
+  // Returns the part of s in which no wall is met.
   Real free_time(const Real& s) const { return std::min(left(s).fall(s), right(s).fall(s)); }
 
  private:
-  // Below the distances from the walls.
+  // Lower bounds of the distances from the walls.
   Arc<Real> left(const Real& s) const { return {now_.y, now_.w, -bend(x2_, s)}; }
   Arc<Real> right(const Real& s) const { return {clearance_ - now_.y, -now_.w, -bend(-x2_, s)}; }
+  // b of (M9.4), the bound on x'' towards a wall.
   Real bend(const Real& towards, const Real& s) const {
     return std::clamp(Real(towards + jerk_ * s / 3), Real(0), most_);
   }

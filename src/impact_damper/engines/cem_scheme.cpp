@@ -16,7 +16,8 @@ double hypotenuse(double a, double b) {
   return larger * std::sqrt(1 + smaller / larger * (smaller / larger));
 }
 
-// The largest h in (0, most) for which `semidefinite` holds, which ceases to do so once.
+// Returns the largest h in (0, most) for which `semidefinite` holds; it must hold up to one limit and not
+// beyond.
 template <class Semidefinite>
 double last_of(double most, Semidefinite&& semidefinite) {
   double stable = 0, unstable = most;

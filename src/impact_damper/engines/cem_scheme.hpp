@@ -1,4 +1,4 @@
-// Central differences for one regime of the impact damper, solved for the new step once and for all.
+// Central differences for one regime of the impact damper, solved for the new step.
 //
 // With u = (x, q), q the overlap's coordinate (y in flight and at the left wall, y - 1 at the right),
 // equations (3)-(8) read M u'' + C u' + K u = (f, 0),
@@ -25,7 +25,7 @@ namespace impact_damper {
 
 enum class Regime { flight, contact, stuck };
 
-// A regime's equations as the numbers in them.
+// The numbers in the equations of a regime.
 template <class Real>
 struct RegimeEquations {
   Real nu{}, zeta{};
@@ -103,14 +103,14 @@ Real rate_of(const Forcing<Real>& force, const Real& time) {
   return force ? force.amplitude * force.frequency * sin_cos(Real(force.frequency * time)).cos : Real(0);
 }
 
-// The force at the next step, f_n, by f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n; computed afresh
+// The force f_n at the next step, by f_{n+1} - 2 f_n + f_{n-1} = -4 sin^2(omega_f h/2) f_n; computed afresh
 // at every 1024th step, before rounding can add up.
 template <class Real>
 struct ForceAtSteps {
   static constexpr std::int64_t block = 1024;
 
   ForceAtSteps() = default;
-  // With the next step at that time.
+  // time: that of the next step.
   ForceAtSteps(const Forcing<Real>& force, const Real& time, const Real& h) {
     const Real half = force.frequency * h / 2;
     const Real sin_half = sin_cos(half).sin;
@@ -126,7 +126,8 @@ struct ForceAtSteps {
   Real f = 0, df = 0, curb = 0;
 };
 
-// The parabola through three successive steps of one coordinate, about the middle one.
+// The parabola through three successive steps of one coordinate, about the middle one; bend: its second
+// derivative.
 template <class Real>
 struct Arc {
   Real g, slope, bend;
@@ -135,35 +136,35 @@ struct Arc {
   Real slope_at(const Real& t) const { return slope + t * bend; }
   Arc times(const Real& factor) const { return {factor * g, factor * slope, factor * bend}; }
 
-  // Where in [0, h] an arc that begins at or above zero falls through it.
+  // Returns the time in [0, h] at which an arc that begins at or above zero falls through it.
   Real fall(const Real& h) const {
     const Real square = slope * slope - 2 * bend * g;
     const Real root = square > 0 ? square_root(square) : Real(0);
     if (slope > 0) return bend < 0 ? std::clamp((slope + root) / -bend, Real(0), h) : h;
     return root > slope ? std::clamp(2 * g / (root - slope), Real(0), h) : Real(0);
   }
-  // Where in [from, to] its extremum lies, or the end nearest to it; `from` where rounding has `to` before
-  // it.
+  // Returns the time of its extremum in [from, to], or the end nearest to it; `from` where rounding has `to`
+  // before it.
   Real extremum(const Real& from, const Real& to) const {
     return bend == 0 || !(from < to) ? from : std::clamp(-slope / bend, from, to);
   }
 };
 
 [[noreturn]] void fail_of_overflow(double time, double step);
-// Rounded up, 1 at least and 1e15 at most.
+// Returns `steps` rounded up, at least 1 and at most 1e15.
 std::int64_t whole_steps(double steps);
-// The largest whole multiple of h that is at most `step`, where that is told.
+// Returns the largest whole multiple of h that is at most `step`; `step` itself where that is too many steps.
 template <class Real>
 Real multiple_of(const Real& h, const Real& step) {
   const Real steps = step / h;
   return steps < 1e15 ? Real(std::int64_t(steps)) * h : step;
 }
 
-// The frequency of the fastest undamped mode in contact (M9.3), of a list with all its masses in contact;
-// larger than 1 and sqrt(k/nu).
+// Returns the frequency of the fastest undamped mode in contact (M9.3), for a list with all its masses in
+// contact; larger than 1 and sqrt(k/nu).
 double fastest_contact_frequency(const Scene& scene);
 
-// The largest step at which no mode grows, in flight or in contact.
+// Returns the largest step at which no mode grows, in flight or in contact.
 //
 // By Jury's conditions for (M9.2) no mode grows as long as 4 M - 2 h C'' - h^2 K is positive semidefinite,
 // with C'' the lagged part of the damping; where it ceases to be, its determinant, which is the
@@ -171,7 +172,7 @@ double fastest_contact_frequency(const Scene& scene);
 //     centred: C'' = 0, h = 2 / omega with omega the fastest contact frequency, whatever the damping.
 //     lagged:  the determinant's first root; for a free primary mass it is
 //              2 (sqrt(1 + z^2) - z) / omega_c, z = zeta_m sqrt(1 + nu), omega_c = omega_m sqrt(1 + nu).
-// The limit in flight is 2 and never the lower one, for omega > 1. Of a list it is that of all masses in
+// The limit in flight is 2 and never the lower one, for omega > 1. For a list it is that of all masses in
 // contact (M17.11): fewer in contact have a higher one.
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration);
 

@@ -1,4 +1,4 @@
-// What of a scene and an engine's options is not allowed together.
+// Conflicts between a scene and an engine's options, each of which is allowed by itself.
 #pragma once
 
 #include <vector>

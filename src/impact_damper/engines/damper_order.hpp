@@ -12,8 +12,8 @@
 
 namespace impact_damper {
 
-// The numbers of the dampers in the scene, in an order that depends on the dampers alone: so renumbering them
-// changes no bit of any sum over them.
+// Returns the numbers of the dampers in the scene, in an order that depends on the dampers alone: so
+// renumbering them changes no bit of any sum over them.
 inline std::vector<std::int32_t> damper_order(std::span<const SceneDamper> dampers) {
   std::vector<std::int32_t> order(dampers.size());
   std::iota(order.begin(), order.end(), 0);

@@ -19,7 +19,7 @@
 
 namespace impact_damper {
 
-// Runs a scene that problems_of finds nothing wrong with, telling `observer` what it wants.
+// Runs a scene that problems_of finds nothing wrong with, and reports to `observer` what it asks for.
 template <Scalar Real, RunObserver Observer>
 Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
   return with_system<Real>(scene,
@@ -35,7 +35,7 @@ Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const E
                        : run_exact<Contact<Real, Force>>(walls, system, scene, options, observer);
 }
 
-// The same with the motion that contacts are.
+// The same with the type of the motion in contact.
 template <class InContact, class Real, class Force, class Observer>
 Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, Force>& system,
                   const Scene& scene, const Exact& options, Observer& observer) {
@@ -55,7 +55,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
   bool in_contact = state.y < 0 || state.y > 1 ||
                     (at_rest_on_wall && Flight<Real, Force>(system, tracker.now(), state).sticks());
   bool by_impact = false;
-  Real depth{0};  // at the end
+  Real depth{0};  // of the overlap at the end of the run
   Wall wall = state.y <= 0 ? Wall::left : Wall::right;
 
   SinCos<Real> phase = system.forcing.phase(tracker.now());  // of the force, now

@@ -1,11 +1,11 @@
 // The exact engine for several dampers on one primary mass (docs/mathematics.md, 17.5): compliant walls,
 // every event solved for.
 //
-// While all secondary masses fly the primary mass is one oscillator, and who meets a wall next is found as
-// with rigid walls (secondary_masses.hpp). While one pushes its wall it moves as the one damper of exact.hpp
-// does, and the others fly on: most often a bound on x'' shows at once that none of them meets a wall
+// While all secondary masses fly, the primary mass is one oscillator, and the next impact is found as with
+// rigid walls (secondary_masses.hpp). While one mass pushes its wall, it moves as the single damper of
+// exact.hpp does, and the others fly: most often a bound on x'' shows at once that none of these meets a wall
 // meanwhile (M17.8). While several push their walls, all move by power series (joint_contact.hpp), and once
-// these walls ring no more, as one oscillator again (joint_slow_mode.hpp).
+// these walls have stopped ringing as one oscillator again (joint_slow_mode.hpp).
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,8 @@
 
 namespace impact_damper {
 
-// Of each damper's wall, by number in the scene; each made for the first contact, if it is not there.
+// The contact modes of each damper's wall, by number in the scene. An empty one is made for its first
+// contact.
 template <class Real, class Force>
 using ModesOfDampers = std::vector<std::shared_ptr<const ContactModes<Real, Force>>>;
 
@@ -100,17 +101,17 @@ class ExactOfDampers {
   }
 
  private:
-  // What a mass's wall does, and what has happened in the contact that is under way.
+  // A mass's wall, and the contact that is under way there.
   struct OwnWall {
     Real stiffness, damping;  // K and c of (M2.2)
     std::shared_ptr<const ContactModes<Real, Force>> modes{};
-    std::optional<std::size_t> impact{};  // that began the contact
-    Real work{0};                         // of the wall's damper in it
+    std::optional<std::size_t> impact{};  // the one that began the contact, by index in impact_loss
+    Real work{0};                         // of the wall's damper in this contact
   };
   struct Event {
     std::size_t index;
     Real time;
-    std::optional<Wall> met;  // else the mass leaves its wall
+    std::optional<Wall> met;  // the wall that is met; empty: the mass leaves its wall
   };
 
   const ContactModes<Real, Force>& modes_of(std::size_t i) {
@@ -119,8 +120,8 @@ class ExactOfDampers {
     return *wall.modes;
   }
 
-  // In contact from the beginning: who overlaps a wall, or moves into the one at which it is; and then who
-  // rests on a wall and is pressed against it.
+  // Begins the contacts of the release: of masses that overlap a wall or move into the one at which they are,
+  // then of masses at rest on a wall against which x'' presses them.
   void begin_contacts() {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.u[i] < 0) enter(i);
@@ -131,15 +132,15 @@ class ExactOfDampers {
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (masses_.rests(i) && !masses_.held[i] && masses_.away[i] == side) enter(i);
   }
-  // The walls of those in contact.
+  // Sets pushed_ to the walls in contact, with their q and q' now.
   void list_pushed() {
     pushed_.clear();
     for (const std::size_t i : in_contact_)
       pushed_.push_back({masses_.nu[i], walls_[i].stiffness, walls_[i].damping,
                          masses_.away[i] * masses_.u[i], masses_.w(i)});
   }
-  // To which walls x'' leads the masses that rest, 1 for the left ones; where it is zero to rounding, the
-  // first derivative after it that is not.
+  // Returns the side on which x'' presses masses at rest against their walls: 1 left, -1 right, 0 neither.
+  // Where x'' is zero to rounding, the first later derivative that is not zero decides.
   Real side_of_acceleration() {
     list_pushed();
     const Real tells = lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing,
@@ -148,7 +149,7 @@ class ExactOfDampers {
     return tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0);
   }
 
-  // Nobody is in contact until the next wall is met.
+  // Follows the motion without a contact until a wall is met.
   void fly() {
     const JoinedMasses<Real, Force> motion(system_.free, system_.forcing, tracker_.now(), x_, v_, Real(0));
     const ForcedMotion<Real, Force>& primary = motion.primary();
@@ -165,12 +166,12 @@ class ExactOfDampers {
     take_events();
   }
 
-  // One mass pushes its wall until it leaves it, or another meets a wall.
+  // Follows the motion of one mass in contact, until it leaves its wall or another mass meets one.
   template <class InContact>
   void push_alone(const ContactModes<Real, Force>& modes) {
     const std::size_t i = in_contact_.front();
     events_.clear();
-    if (!(masses_.u[i] < 0) && masses_.u1[i] > 0) {  // left together with others, but for rounding
+    if (!(masses_.u[i] < 0) && masses_.u1[i] > 0) {  // has left with others, but for rounding
       events_.push_back({i, Real(0), {}});
       return take_events();
     }
@@ -178,7 +179,8 @@ class ExactOfDampers {
     const InContact contact(modes, tracker_.now(), modes.forcing.phase(tracker_.now()),
                             {x_, v_, q, masses_.w(i)}, masses_.wall(i), Real(0));
     if constexpr (std::is_same_v<InContact, Contact<Real, Force>>) {
-      // Where all others stay so far from their walls that a rounding of x' h is none of a distance (M17.15).
+      // The short-contact map's change of x errs by a rounding of x' h (M17.15). It is used where all others
+      // stay so far from their walls that this is no more than a rounding of any distance.
       const auto end = contact.end_of_short_contact();
       if (end && end->time < remaining &&
           all_stay_off_walls(contact.second_of_x(end->time), end->time, Real(absolute(v_) * end->time))) {
@@ -196,7 +198,7 @@ class ExactOfDampers {
     pass_contact(contact, until, leaves && until == leaves->time ? leaves->state : contact.at(until),
                  nullptr);
   }
-  // Until the contact is in the state `end`. change: of x by then, where it is known.
+  // Follows the contact until it is in the state `end`. change: of x by then, where it is known.
   template <class InContact>
   void pass_contact(const InContact& contact, const Real& until, State<Real> end,
                     const ChangeOfX<Real>* change) {
@@ -216,13 +218,14 @@ class ExactOfDampers {
     walls_[i].work += works.wall;
     take_events();
   }
-  // What x differs by from a straight line, and x' from its beginning, while one pushes its wall.
+  // Returns the departure of x from its straight line and the change of x' at t, while one mass is in
+  // contact.
   template <class InContact>
   ChangeOfX<Real> change_of_x(const InContact& contact, const Real& t, const Real& x, const Real& v) const {
     if (const auto change = contact.change_of_x(t)) return *change;
     return {Real(x - (x_ + v_ * t)), Real(v - v_)};
   }
-  // When another mass meets a wall while one pushes its own.
+  // Returns the first impact of the j-th mass on a wall while another is in contact, if not after `until`.
   template <class InContact>
   std::optional<Event> meets_beside(const InContact& contact, std::size_t j, const Real& until) {
     const Real &away = masses_.away[j], &u = masses_.u[j], &u1 = masses_.u1[j];
@@ -251,7 +254,8 @@ class ExactOfDampers {
     return Event{j, met->time, met->which == 0 ? masses_.wall(j) : opposite(masses_.wall(j))};
   }
 
-  // Several push their walls, for the length of a series or until one leaves or another meets a wall.
+  // Follows the motion of several masses in contact for one piece, or until one leaves or another meets a
+  // wall.
   void push_together() {
     list_pushed();
     if (ring_no_more()) return press_together();
@@ -288,8 +292,8 @@ class ExactOfDampers {
     take_events();
   }
 
-  // Begins a piece. From time to time: with those walls that ring no more, and are much faster than the
-  // others, following these.
+  // Begins a piece of the series. Every `soonest` pieces more walls are tried as followers (M17.22): those
+  // that have stopped ringing and are much faster than the others.
   void begin_piece() {
     const auto begin_with = [&](const Real& follow_from) {
       piece_.set_walls(system_.zeta, system_.forcing, pushed_, follow_from);
@@ -316,14 +320,15 @@ class ExactOfDampers {
     if (tried) return begin_with(follow_from_);
     piece_.begin(tracker_.now(), x_, v_, pushed_);
   }
-  // Whether the walls of those in contact ring no more. They do for some pieces.
+  // Whether the walls in contact have stopped ringing, so that the slow mode (M17.20) holds. It is not asked
+  // for in the first pieces, in which they ring.
   static constexpr int soonest = 16;
   bool ring_no_more() {
     if (++pieces_together_ < soonest) return false;
     if (pieces_together_ == soonest) slow_mode_ = SlowMode::of(system_.zeta, system_.forcing, pushed_);
     return slow_mode_ && slow_mode_->holds(pushed_, tracker_.now(), x_, v_);
   }
-  // Several press their walls, until one leaves or another meets a wall.
+  // Follows the slow mode of several masses that press their walls until one leaves or another meets a wall.
   void press_together() {
     const SlowMode& slow = *slow_mode_;
     const Real begin = tracker_.now();
@@ -365,18 +370,18 @@ class ExactOfDampers {
     take_events();
   }
 
-  // Whether (M17.8) proves it of all that fly.
+  // Whether (M17.8) proves for all masses in flight that they stay off their walls by `margin` for a time t.
   bool all_stay_off_walls(const Real& most, const Real& t, const Real& margin) const {
     for (std::size_t j = 0; j < masses_.size(); ++j)
       if (!masses_.held[j] && !masses_.stays_off_walls(j, most, t, margin)) return false;
     return true;
   }
-  // The end of a search for events beside one that is known at `time`: what happens with it, but comes out
-  // some roundings later, is found as well.
+  // The end of a search for events beside one at `time`, a few roundings later: an event at the same instant
+  // may come out later by that much.
   static Real just_after(const Real& time) { return time * (1 + 8 * std::numeric_limits<Real>::epsilon()); }
   static Wall opposite(Wall wall) { return wall == Wall::left ? Wall::right : Wall::left; }
-  // Adds an event to events_, which holds those of one time, the earliest that is known; that is `until`, and
-  // the motion is followed so far. An earlier event takes the place of all, a later one is left out.
+  // Adds an event to events_, which holds the earliest events known, all at the time `until`. An earlier
+  // event replaces them, a later one is ignored.
   void consider(const Event& event, Real& until) {
     if (event.time > until) return;
     if (event.time < until) events_.clear();
@@ -384,8 +389,9 @@ class ExactOfDampers {
     events_.push_back(event);
   }
 
-  // Lets a time pass without an event. change(t) tells x and x' at t and what they differ by from a straight
-  // line; overlap(k, t) q and q' of the k-th that pushes its wall.
+  // Advances all by a time without an event, or to an earlier stop. change(t) gives x, x' and their
+  // departures from a straight line; overlap(k, t) gives q and q' of the k-th mass in contact. Returns the
+  // work done.
   template <class Motion, class ChangeAt, class OverlapAt>
   Work<Real> pass(const Motion& motion, const Real& until, State<Real>& end, const Real& wall_damping,
                   ChangeAt&& change, OverlapAt&& overlap) {
@@ -422,7 +428,8 @@ class ExactOfDampers {
     places_[masses_.number[i]] = masses_.place(i, u, u1);
   }
 
-  // The events happen, unless the run has stopped: first who leaves a wall, then who meets one.
+  // Carries out events_, unless the run has stopped: first the masses that leave a wall, then those that meet
+  // one.
   void take_events() {
     if (tracker_.stopped()) return;
     const auto meets = [](const Event& event) { return event.met.has_value(); };
@@ -500,9 +507,9 @@ class ExactOfDampers {
   std::vector<Event> events_;
   std::vector<PushedWall<Real>> pushed_;
   Piece piece_;
-  std::optional<SlowMode> slow_mode_;  // of those in contact, after some pieces
-  int pieces_together_ = 0;            // since who is in contact has changed
-  Real follow_from_{0};                // the stiffness from which on walls follow in these pieces
+  std::optional<SlowMode> slow_mode_;  // of the contacts under way
+  int pieces_together_ = 0;            // since a contact began or ended
+  Real follow_from_{0};                // walls with this K or more follow in these pieces
 };
 
 // Runs a scene with a list of dampers that problems_of finds nothing wrong with.

@@ -1,5 +1,5 @@
-// The half cycles of x. HalfCycleTracker is fed with peaks and zero crossings and knows no motion; EventsOfX
-// finds these in a motion, in their order.
+// The half cycles of x. HalfCycleTracker takes peaks and zero crossings and knows no motion; follow_x() finds
+// these in a motion, in their order.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,21 @@ class HalfCycleTracker {
  public:
   explicit HalfCycleTracker(const Real& x0) : amplitude_(absolute(x0)) {}
 
-  // 1 or -1; 0 while x has not moved since the release.
+  // Returns 1 or -1; 0 while x has not moved since the release.
   const Real& side() const { return side_; }
   const Real& amplitude() const { return amplitude_; }
   std::int64_t complete() const { return complete_; }
 
   void take_side(const Real& side) { side_ = side; }
-  // |x| is `height` at a turn or an end: the largest of the half cycle is kept.
+  // Takes |x| = `height` at a turning point of x or an end of a motion: the largest of the half cycle is
+  // kept.
   void peak(const Real& height, const Real& time) {
     if (!(height > amplitude_)) return;
     amplitude_ = height;
     peak_time_ = time;
   }
-  // x crosses zero: one half cycle is complete, which is told if it is wanted, and the next begins.
+  // Takes a zero crossing of x: one half cycle is complete, and is reported if the observer wants it; the
+  // next begins.
   template <class Observer>
   void crossing(const Real& time, Observer& observer) {
     if (observer.wants_half_cycles())
@@ -40,7 +42,7 @@ class HalfCycleTracker {
     begin_ = peak_time_ = time;
     amplitude_ = 0;
   }
-  // Of the half cycle completed last.
+  // The amplitude of the half cycle completed last.
   const Real& last_amplitude() const { return last_amplitude_; }
 
  private:
@@ -48,10 +50,10 @@ class HalfCycleTracker {
   std::int64_t complete_ = 0;
 };
 
-// On which side of zero x is from a release on: the first of x, x', x'' and x''' that is not zero tells. In
-// flight and in sticking no later one has to, as a release is at phase 0 of the force: x''' is f0 omega_f.
-// Returns the time from which on events of x are looked for; nothing where x does not move, or in a contact
-// moves by what comes later than x''': then the next motion tells.
+// Sets the side of zero on which x is from a release on: the sign of the first of x, x', x'' and x''' that is
+// not zero. In flight and in sticking no later one is needed, as a release is at phase 0 of the force: x'''
+// is f0 omega_f. Returns the time from which on events of x are looked for. Returns nothing where x does not
+// move, or in a contact moves by a derivative later than x''': then the next motion decides.
 template <class Real, MotionOf<Real> Motion>
 std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
                                HalfCycleTracker<Real>& half_cycles, const Search<Real>& search) {
@@ -66,8 +68,8 @@ std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
   return leap < duration ? leap : duration;
 }
 
-// Peaks of the half cycle under way in [from, until): where x' changes its sign. Sets `no_turn_before`, the
-// time before which no further turn is possible.
+// Finds the peaks of the half cycle under way in [from, until): where x' changes its sign. Sets
+// `no_turn_before`, the time before which no further turning point of x is possible.
 template <class Real, MotionOf<Real> Motion>
 void find_peaks(const Motion& motion, Real from, const Real& until, bool rising, const Real& now,
                 HalfCycleTracker<Real>& half_cycles, Search<Real>& search, Real& no_turn_before) {
@@ -103,13 +105,13 @@ template <class Real, MotionOf<Real> Motion, class GoesOn>
   const Real v = half_cycles.side() * motion.at(from).v;
   bool rising =
       v > 0 || (v == 0 && motion.derivative_of_x(1, half_cycles.side(), from, search.span).whole.g1 > 0);
-  // What the ends already exclude is not searched for.
+  // Events that the ends already exclude are not searched for.
   bool may_turn = !motion.keeps_course(half_cycles.amplitude(), end, duration);
   bool may_cross = !motion.keeps_side(half_cycles.side(), end, duration);
   if (!may_turn && !may_cross) return duration;
   Real no_turn_before = from;
   // A zero of x within (M7.1) of a motion's end is the next motion's: an impact there may throw x back, and
-  // then the signs of x and x' tell whether it crosses.
+  // then the signs of x and x' decide whether it crosses.
   const Real at_speed = absolute(motion.at(Real(0)).x / end.v), scale = at_speed < 1 ? at_speed : Real(1);
   const Real last = duration - 16 * std::numeric_limits<Real>::epsilon() * (duration + scale);
   for (;;) {
@@ -123,7 +125,7 @@ template <class Real, MotionOf<Real> Motion, class GoesOn>
     from = *crossing;
     if (!goes_on(from)) return from;
     rising = true;
-    // A proof that |x| stays below the largest of its half cycle held for the one that has ended only.
+    // A proof that |x| stays below the largest of its half cycle held only for the one that has ended.
     may_turn = may_turn || !motion.keeps_course(half_cycles.amplitude(), end, duration);
     may_cross = !motion.leaves_zero(from, end, duration);
   }

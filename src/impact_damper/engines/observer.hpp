@@ -1,5 +1,5 @@
-// What every engine asks its observer, and what it reports to it. Recorder (recorder.hpp) keeps columns; a
-// program of your own may keep less, or something else. Quantities are dimensionless, as in run.hpp.
+// The interface between every engine and its observer. Recorder (recorder.hpp) keeps columns; a program of
+// your own may keep less, or something else. Quantities are dimensionless, as in run.hpp.
 #pragma once
 
 #include <concepts>
@@ -15,36 +15,37 @@ namespace impact_damper {
 // otherwise. Impacts are always reported. Observing never changes the motion.
 //
 // An observer of a closed-form engine may also have passed(motion, begin, duration, end), a template over the
-// motion (motion/motion.hpp). It is then told of each motion in turn, in the engine's own numbers: when it
-// began, how long it lasted, and the state in which it ended, before what its end changes.
+// motion (motion/motion.hpp). It is then called for each motion in turn, in the engine's own numbers: when it
+// began, how long it lasted, and the state in which it ended, before the event at its end changes it.
 template <class T>
 concept RunObserver = requires(T observer, const T asked, double number, Wall wall) {
   { asked.wants_half_cycles() } -> std::same_as<bool>;
   { asked.wants_contacts() } -> std::same_as<bool>;
   { asked.wants_energy() } -> std::same_as<bool>;
-  // begin, zero crossing, time of the peak, amplitude: told at the zero crossing. Only if
+  // begin, zero crossing, time of the peak, amplitude; reported at the zero crossing. Only if
   // wants_half_cycles().
   observer.half_cycle(number, number, number, number);
   // time, wall, y' just before, x.
   observer.impact(number, wall, number, number);
-  // begin, end, wall: told at the end. Only if wants_contacts().
+  // begin, end, wall; reported at the end. Only if wants_contacts().
   observer.contact(number, number, wall);
-  // The time of the next sample that is wanted, infinity for none. Asked for anew after each call of sample()
-  // and half_cycle(); times ascend.
+  // Returns the time of the next sample that is wanted, infinity for none. Asked for again after each call of
+  // sample() and half_cycle(); times ascend.
   { asked.next_sample() } -> std::same_as<double>;
   // That time, and x, x', y, y' there.
   observer.sample(number, number, number, number, number);
-  // Where the engine writes the energies. Called only if wants_energy().
+  // The object to which the engine writes the energies. Called only if wants_energy().
   { observer.energy_balance() } -> std::same_as<EnergyBalance&>;
 };
 
-// Where one of several dampers' secondary masses is: y and y', divided as in run.hpp.
+// The place of the secondary mass of one of several dampers: y and y', divided as in run.hpp.
 struct PlaceInCavity {
   double y, w;
 };
-// What the engines of several dampers (exact_dampers.hpp, restitution_dampers.hpp, cem.hpp) ask and report besides:
-// which damper, by its number in the scene, from 0. Simultaneous impacts, with rigid walls by (M17.2), come
-// in the order of these numbers; one that they cause at the same time comes after them.
+// The additional interface of the engines of several dampers (exact_dampers.hpp, restitution_dampers.hpp,
+// cem.hpp): calls also name the damper, by its number in the scene, from 0. Simultaneous impacts, with rigid
+// walls by (M17.2), come in the order of these numbers; one that they cause at the same time comes after
+// them.
 template <class T>
 concept DampersObserver = RunObserver<T> &&
     requires(T observer, double number, Wall wall, std::int32_t damper,

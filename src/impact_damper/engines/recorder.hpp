@@ -1,6 +1,7 @@
-// The observer that every engine talks to: keeps what a Record asks for, as columns.
+// The observer of the program: it keeps what a Record asks for, as columns.
 //
-// An engine is a template over its observer: anything that is a RunObserver (observer.hpp) may stand in.
+// An engine is a template over its observer: anything that is a RunObserver (observer.hpp) may take its
+// place.
 #pragma once
 
 #include <limits>
@@ -14,14 +15,14 @@ namespace impact_damper {
 
 class Recorder {
  public:
-  // dampers: how many there are, if the scene has a list of them, else 0.
+  // dampers: the length of the scene's list of dampers, 0 if it has none.
   explicit Recorder(Record record, std::size_t dampers = 0);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
   bool wants_contacts() const { return wants_.contacts; }
   bool wants_energy() const { return wants_.energy; }
 
-  // A row ended at `zero_crossing`; impacts told of since the last row are its own.
+  // Ends a row at `zero_crossing`. Impacts reported since the last row belong to this one.
   void half_cycle(double begin, double zero_crossing, double peak_time, double amplitude);
   // An impact on `wall` with y' = relative_velocity just before, while x = displacement.
   void impact(double time, Wall wall, double relative_velocity, double displacement);
@@ -29,8 +30,8 @@ class Recorder {
   void impact(double time, Wall wall, double relative_velocity, double displacement, std::int32_t damper);
   void contact(double begin, double end, Wall wall, std::int32_t damper);
 
-  // When the next history sample is wanted; infinity where none is known of yet. A half cycle may open a
-  // window that begins at its own zero crossing, so ask again after each.
+  // The time of the next history sample; infinity while none is known. A half cycle may open a window that
+  // begins at its own zero crossing, so ask again after each.
   double next_sample() const { return next_sample_; }
   void sample(double time, double x, double v, double y, double w);
   void sample(double time, double x, double v, std::span<const PlaceInCavity> places);
@@ -53,9 +54,9 @@ class Recorder {
   EnergyBalance energy_balance_;
   std::int64_t row_ = 0;
   std::int64_t impacts_in_row_ = 0;
-  std::vector<std::int64_t> impacts_in_row_of_;  // each of several dampers
+  std::vector<std::int64_t> impacts_in_row_of_;  // for each of several dampers
   std::size_t first_impact_in_row_ = 0;
-  std::vector<HistoryWindow> windows_;  // known of and not yet sampled to the end, ascending
+  std::vector<HistoryWindow> windows_;  // those known and not yet sampled to the end, ascending
   std::size_t window_ = 0;
   std::size_t next_below_ = 0;  // of wants_.history_below
   std::int64_t sample_in_window_ = 0;

@@ -6,12 +6,12 @@
 // Complete chattering, the paper's bounce-down, is an infinite sequence of impacts in a finite time (M6.1).
 // Its impacts are stepped through one by one until the relative acceleration a towards the wall changes by
 // less than the fraction Restitution::accumulation_tolerance within that time, the displacement that the
-// limit ignores, nu w^2 / (2a (1+nu)), is below rounding of x, and x has no turn within that time (M6.3).
-// Then the engine takes the limit: the masses join, keep their momentum, and stick from the time (M6.2) later
-// on. With the tolerance tol and |a'| <= m, the rebound speed w is then at most tol a^2 (1-e) / 2m; at the
-// default tolerance that is some 1e-9, or where a' is small, as after a release from rest, what (M6.3)
-// allows. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts until then;
-// the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
+// limit ignores, nu w^2 / (2a (1+nu)), is below rounding of x, and x has no turning point within that time
+// (M6.3). Then the engine takes the limit: the masses join, keep their momentum, and stick from the time
+// (M6.2) later on. With the tolerance tol and |a'| <= m, the rebound speed w is then at most tol a^2 (1-e) /
+// 2m; at the default tolerance that is some 1e-9, or where a' is small, as after a release from rest, what
+// (M6.3) allows. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts
+// until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
 //
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
@@ -43,9 +43,9 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
   tracker.begin(state, Real(0));
   Real losses{0};
 
-  // Whether a secondary mass on a wall sticks to it: at rest and pushed, at once; with w > 0 away from it,
-  // after a time `accumulation`, which this sets, of bouncing too short to follow. Else it bounces on, or is
-  // released.
+  // Whether a secondary mass on a wall sticks to it. At rest it does if it is pressed against the wall. With
+  // w > 0 away from the wall it does after a time `accumulation`, which this sets, if its bouncing is too
+  // short to follow. Else it bounces on, or is released.
   Wall wall = state.y <= Real(0.5) ? Wall::left : Wall::right;
   Real accumulation{0};
   const auto sticks = [&](const Flight<Real, Force>& flight) {
@@ -59,7 +59,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const Real change_of_push = -away * lead[3];
-    // In flight, and by the impacts.
+    // The acceleration changes in flight, and by the impacts (M6.2).
     const auto steady_for = [&](const Real& rate) {
       return (rate + 2 * zeta * push) * accumulation <= tolerance * push;
     };

@@ -1,11 +1,11 @@
 // The restitution engine for several dampers on one primary mass (docs/mathematics.md, chapter 17): rigid
 // walls, impacts that take no time, simultaneous ones by Moreau's law (motion/impact_law.hpp).
 //
-// Between two events the primary mass and what sticks to it are one oscillator (M17.1), and each other
-// secondary mass flies straight. Each is kept as its distance u from the wall that it left last, and u'. An
-// event moves all of them by the departure of x from its straight line, the same for all: that costs little.
-// Where the walls are met is searched for one by one, as for one damper (flight.hpp), but only for those
-// masses that may be the first: a bound on x'' excludes the others (M17.8).
+// Between two events the primary mass and those that stick to it are one oscillator (M17.1), and each other
+// secondary mass flies straight. Its state is the distance u from the wall that it left last, and u'. From
+// one event to the next all distances change by the same departure of x from its straight line, which costs
+// little. The impact times are found one by one, as for one damper (flight.hpp), but only for the masses that
+// may be the first: a bound on x'' excludes the others (M17.8).
 #pragma once
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class RestitutionOfDampers {
         if (!impacts(event.meeting)) break;
         settle();
       } else if (event.released) {
-        keep_sticking(Real(0));  // nothing: what has been let go is not looked at again before the next event
+        keep_sticking(Real(0));  // side 0 releases all; none can stick again before the next event
       }
     }
     for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
@@ -71,7 +71,7 @@ class RestitutionOfDampers {
   }
 
  private:
-  // The primary mass with what sticks, from now on until the next event.
+  // The motion of the primary mass and the masses that stick to it, from now until the next event.
   using Motion = JoinedMasses<Real, Force>;
   struct Event {
     Real time;
@@ -82,7 +82,7 @@ class RestitutionOfDampers {
   const Driven<Real, Force>& oscillator() const { return joined_ ? *joined_ : system_.free; }
   Force force() const { return {system_.forcing.amplitude / mass_, system_.forcing.frequency}; }
 
-  // The next event and, if secondary masses meet their walls, which.
+  // Returns the next event: a release, impacts, or the end of the motion's series or of the run.
   Event next_event(Motion& motion) {
     const Real remaining = tracker_.remaining(), length = motion.primary().length();
     Event event{length < remaining ? length : remaining, false, {}};
@@ -95,7 +95,8 @@ class RestitutionOfDampers {
     return event;
   }
 
-  // Lets a time pass in which nothing happens but in the primary mass's half cycles.
+  // Advances all masses to `until`, or to an earlier stop. The only events on the way are those of the half
+  // cycles of x.
   void pass(const Motion& motion, const Real& until) {
     const auto last = next_meeting_.primary_at(motion.primary(), until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
@@ -124,7 +125,8 @@ class RestitutionOfDampers {
     observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
   }
 
-  // The masses that are `meeting` walls do so, and those that rest on one feel it. False: that were too many.
+  // Carries out the impacts of the masses in `meeting` (M17.2), which also push masses at rest on a wall.
+  // Returns false if these are more than the impact budget allows: the run then stops before them.
   bool impacts(std::span<const Meeting<Real>> meeting) {
     if (!tracker_.has_room_for(std::int64_t(meeting.size()))) return false;
     at_walls_.clear();
@@ -150,7 +152,8 @@ class RestitutionOfDampers {
     std::sort(at_walls_.begin(), at_walls_.end(),
               [](const auto& one, const auto& other) { return one.index < other.index; });
     const Real jump = jump_of_velocity<Real>(at_walls_);
-    // First all others, then those that meet walls.
+    // The jump of x' changes u' of all masses; those at walls then get the speeds that they have after the
+    // impact.
     for (std::size_t i = 0; i < masses_.size(); ++i) masses_.u1[i] -= masses_.away[i] * jump;
     for (const MassAtWall<Real>& each : at_walls_) {
       masses_.u1[each.index] = speed_after(each, jump);
@@ -173,19 +176,19 @@ class RestitutionOfDampers {
     return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
   }
 
-  // x'' times the mass that moves, 0 if it is zero to rounding; and the side to which it leads or, where it
-  // is zero, the first derivative after it that is not.
+  // force: (1 + sigma) x'', the F of chapter 17.1, or 0 if that is zero to rounding. side: the sign of x''
+  // or, where it is zero, of its first derivative that is not.
   struct Acceleration {
     Real force, side;
   };
-  // What sticks from now on: of the masses that rest on a wall those which x'' presses against it, and those
-  // whose chattering is over so soon that its limit is taken.
+  // Decides which of the masses at rest on a wall stick: those that x'' presses against it, and those whose
+  // chattering ends so soon that its limit is taken.
   void settle() {
     const Acceleration now = acceleration();
     keep_sticking(now.side);
     if (now.side != 0 && take_limit_of_chattering(now)) keep_sticking(now.side);
   }
-  // Of those that rest the ones on `side` stick, 1 for the left walls, -1 for the right ones; the others fly.
+  // Lets the masses that rest on `side` stick, 1 for the left walls, -1 for the right ones. All others fly.
   void keep_sticking(const Real& side) {
     some_rest_ = false;
     Real sticking{0};
@@ -223,8 +226,9 @@ class RestitutionOfDampers {
       observer_.contact(begin, end, masses_.wall(i), masses_.number[i]);
   }
 
-  // Where the chattering of one or several masses on the side that x'' leads to is over before anything else
-  // can happen, and moves x by less than rounding (M17.5): they join the primary mass now.
+  // Takes the limit of complete chattering: masses on the side to which x'' leads join the primary mass now
+  // if their chattering ends before any other event and moves x by less than rounding (M17.5). Returns
+  // whether any join.
   bool take_limit_of_chattering(const Acceleration& now) {
     const Real a = absolute(now.force) / mass_;
     const Real span = tracker_.search().span;
@@ -250,8 +254,8 @@ class RestitutionOfDampers {
       return !(8 * each.moves <= epsilon * (absolute(x_) + absolute(v_) * each.lasts)) ||
              !ends_soon(each.lasts);
     });
-    // As many as can, those that are over first: what bounces longer, or meets its wall meanwhile, bounces
-    // on. Each number of them is tried: one that is left out, though it could join, would bounce for ever.
+    // Those whose chattering ends first join, as many as can. A mass that bounces longer, or meets its wall
+    // meanwhile, is left out. Every number is tried: a mass left out that could join would bounce for ever.
     std::sort(chattering_.begin(), chattering_.end(), [](const Chattering& one, const Chattering& other) {
       return one.lasts < other.lasts || (one.lasts == other.lasts && one.index < other.index);
     });
@@ -260,25 +264,26 @@ class RestitutionOfDampers {
     join(Real(found->momentum / (mass_ + found->mass)), now.side, a);
     return true;
   }
-  // The acceleration with which one comes back to its wall, and the part of its speed that each bounce takes.
+  // a_i and lambda_i of (M17.6): the acceleration with which a mass comes back to its wall, and the fraction
+  // of its speed that it loses at each bounce.
   struct Settling {
     Real a, lost;
-    Real per_speed() const { return 2 / (a * lost); }  // how long bounces of the speed 1 last
+    Real per_speed() const { return 2 / (a * lost); }  // duration of all bounces
   };
   struct Chattering {
     std::size_t index;
-    Real speed;  // with which it comes back to its wall
-    Real moves;  // by how much x at most
+    Real speed;  // r of (M17.5), with which it comes back to its wall
+    Real moves;  // its term of (M17.5), by which x moves at most
     Settling settles{};
     Real lasts{0};
   };
-  // Of those that chatter or stick on one side: their masses, and what they lose each time that another one
-  // kicks them off their walls.
+  // Sums over the masses that chatter or stick on one side, J in 17.3: nu, and nu (1 - e^2). A mass that
+  // throws them off their walls loses speed to them (M17.6).
   struct OnSide {
     Real mass{0}, loses{0};
   };
-  // Puts into chattering_ all on `side` that fly no farther from their walls than moves x by rounding, where
-  // x has the acceleration a. Returns these and those that stick there.
+  // Sets chattering_ to the masses in flight on `side` whose bounces move x by less than rounding, under the
+  // acceleration a of x. Returns the sums over these and those that stick there.
   OnSide find_chattering(const Real& a, const Real& side) {
     chattering_.clear();
     OnSide all;
@@ -288,7 +293,8 @@ class RestitutionOfDampers {
       const Real& u1 = masses_.u1[i];
       const Real square =
           masses_.held[i] ? Real(0) : Real(u1 * u1 + 2 * a * (masses_.u[i] > 0 ? masses_.u[i] : Real(0)));
-      // Most often too far, which is told without a division; first, as no processor foresees the side.
+      // This test excludes most masses without a division. It precedes that of the side, a branch that no
+      // processor predicts.
       if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != side) continue;
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
@@ -299,14 +305,15 @@ class RestitutionOfDampers {
     }
     return all;
   }
-  // Of the i-th while all others on its side are at rest, most of the time: not the state of one moment, in
-  // which each that has just been kicked off its wall flies. `force`: on all of them and the primary mass.
+  // Returns a_i and lambda_i of (M17.6). All others on the side of the i-th mass are taken to be at rest, as
+  // they are most of the time: the present state may be that of a moment in which one has just been thrown
+  // off its wall. force: |F|, on all of them and the primary mass.
   Settling settling_of(std::size_t i, const OnSide& all, const Real& force) const {
     const Real &nu = masses_.nu[i], &e = masses_.e[i], joined = 1 + (all.mass - nu);
     const Real lost = (1 - e) + (1 + e) * (nu / (1 + nu)) * ((all.loses - loses(i)) / joined);
     return {force / joined, lost < 1 ? lost : Real(1)};
   }
-  // How long it chatters then (M17.6).
+  // Returns T_i of (M17.6), how long a mass chatters.
   Real duration_of(const Chattering& one) const {
     const auto& [a, lost] = one.settles;
     const Real &u = masses_.u[one.index], &u1 = masses_.u1[one.index];
@@ -314,7 +321,7 @@ class RestitutionOfDampers {
     const Real more = 2 * (1 - lost) / lost;
     return (u1 + speed + more * speed) / a;
   }
-  // All of chattering_ stick from now on, and x' has gained that much.
+  // Lets all of chattering_ stick from now on; `gained` is the jump of x'. a: |x''|, side: its sign.
   void join(const Real& gained, const Real& side, const Real& a) {
     const bool alone = chattering_.size() == 1 && !some_rest_;
     for (Chattering& each : chattering_) {
@@ -341,16 +348,17 @@ class RestitutionOfDampers {
     v_ += gained;
     for (const Chattering& each : chattering_) stick(each.index, each.lasts);
   }
-  // What the first of chattering_ amount to.
+  // Sums over the first masses of chattering_. kick: nu (1 + e) r, the second sum of (M17.5).
   struct Joining {
     Real mass{0}, momentum{0}, kick{0}, moves{0};
-    Real kicks{0};     // what all their kicks together add to another's speed
+    Real kicks{0};     // the sum in (M17.21): speed that they give to another mass
     Real duration{0};  // (M17.21)
   };
-  // Leaves in chattering_ as many of its first as can join.
+  // Shortens chattering_ to as many of its first masses as can join, and returns their sums; nothing if none
+  // can.
   template <class EndsSoon>
   std::optional<Joining> most_that_join(const OnSide& everyone, const Real& on_all, EndsSoon&& ends_soon) {
-    Real slowest{0};  // of those that are kicked
+    Real slowest{0};  // the largest 2/(a lambda) of (M17.21)
     for (std::size_t i = 0; some_rest_ && i < masses_.size(); ++i) {
       if (!masses_.held[i]) continue;
       const Real per_speed = settling_of(i, everyone, on_all).per_speed();
@@ -376,7 +384,7 @@ class RestitutionOfDampers {
       joining_.push_back(all);
     }
     Real most{0};                     // a bound on |x''|
-    std::optional<Real> others_meet;  // a wall, not before this time: who is left out
+    std::optional<Real> others_meet;  // a lower bound of this time for the masses left out
     for (std::size_t count = chattering_.size(); count > 0; --count) {
       const Joining& all = joining_[count];
       if ((alone || all.duration <= options_.accumulation_tolerance) && limit_holds(all, a, ends_soon)) {
@@ -398,7 +406,7 @@ class RestitutionOfDampers {
     }
     return std::nullopt;
   }
-  // (M17.5) but for those who are left out.
+  // Whether (M17.5) holds, except that the masses left out are not looked at.
   template <class EndsSoon>
   bool limit_holds(const Joining& all, const Real& a, EndsSoon&& ends_soon) const {
     const Real epsilon = std::numeric_limits<Real>::epsilon();
@@ -409,8 +417,8 @@ class RestitutionOfDampers {
     return !may_turn || 2 * all.duration <= epsilon * tracker_.now();
   }
   Real loses(std::size_t i) const { return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]); }
-  // Before which time, `span` at most, nobody who flies can meet a wall but the first of chattering_, while
-  // |x''| <= most.
+  // Returns a lower bound, `span` at most, of the time at which a mass in flight meets a wall while |x''| <=
+  // most. The first `first` of chattering_ are excluded.
   Real first_meeting(const Real& most, const Real& span, std::size_t first) {
     joins_.assign(masses_.size(), false);
     for (std::size_t k = 0; k < first; ++k) joins_[chattering_[k].index] = true;
@@ -441,14 +449,14 @@ class RestitutionOfDampers {
   Real x_, v_;
   Real mass_{1};                               // of the primary mass and what sticks to it
   std::optional<Driven<Real, Force>> joined_;  // their oscillator, if anything sticks
-  Real push_{0};
+  Real push_{0};                               // the side on which masses stick, 1 or -1; 0: none sticks
   bool some_rest_ = false;
   Real not_followed_{0};  // how long the chattering whose limit has been taken lasts
   Real losses_{0};
   std::vector<DamperEnergy> energy_;  // by number in the scene
   std::vector<PlaceInCavity> places_;
   NextMeeting<Real, Force> next_meeting_;
-  std::vector<MassAtWall<Real>> at_walls_, told_;
+  std::vector<MassAtWall<Real>> at_walls_, told_;  // told_: only those whose impacts are reported
   std::vector<Chattering> chattering_;
   std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them
   std::vector<char> joins_;

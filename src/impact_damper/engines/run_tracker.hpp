@@ -1,5 +1,5 @@
-// What both closed-form engines share. A run is a chain of motions; RunTracker reads off each of them the
-// half cycles of x (half_cycle_tracker.hpp), the samples, the work, and where the run ends.
+// The common part of the closed-form engines. A run is a chain of motions; RunTracker finds in each of them
+// the half cycles of x (half_cycle_tracker.hpp), the samples, the work, and where the run ends.
 //
 // Observing never changes the motion: a motion is restarted at its own events, and a flight under a force at
 // the ends of its pieces, only.
@@ -15,7 +15,7 @@
 
 namespace impact_damper {
 
-// Time since the release, summed over thousands of motions with what each sum rounded off carried along.
+// Time since the release, summed over thousands of motions with the rounding error of each sum carried along.
 template <class Real>
 class Clock {
  public:
@@ -49,7 +49,7 @@ class RunTracker {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(horizon_.end_time) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
-  // When the run ended: exactly the time asked for if that ended it.
+  // The time at which the run ended: exactly the time asked for if that ended it.
   double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
   Search<Real>& search() { return search_; }
 
@@ -58,8 +58,8 @@ class RunTracker {
   }
   void begin(const Energy& energy) { observer_.energy_balance().initial = energy; }
 
-  // Lets `duration` of a motion pass, less if the scene ends in it; `end` is then the state at that time.
-  // Returns the works in it. tell_sample(t) tells the observer the next sample, at the time t of the motion.
+  // Advances the run by `duration` of a motion, less if the scene ends in it; `end` is then the state at that
+  // time. Returns the work done in it. tell_sample(t) reports the next sample, at the time t of the motion.
   template <MotionOf<Real> Motion, class TellSample>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
                                          const Real& wall_damping, TellSample&& tell_sample) {
@@ -93,7 +93,7 @@ class RunTracker {
     passed_ = duration;
     return works;
   }
-  // The same of a single damper.
+  // The same for a single damper.
   template <MotionOf<Real> Motion>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, const Real& duration, State<Real>& end,
                                          const Real& wall_damping) {
@@ -102,17 +102,18 @@ class RunTracker {
       observer_.sample(observer_.next_sample(), double(s.x), double(s.v), double(s.y), double(s.w));
     });
   }
-  // How much of the last motion has passed.
+  // The time by which the last motion was followed.
   const Real& passed() const { return passed_; }
 
-  // An impact that is about to happen, in state `s`. False: it was one too many, and the scene ends before
-  // it.
+  // Reports an impact that is about to happen, in state `s`. Returns false if that is one too many: the scene
+  // then ends before it.
   bool impact(Wall wall, const State<Real>& s) {
     if (!has_room_for(1)) return false;
     observer_.impact(double(now()), wall, double(s.w), double(s.x));
     return true;
   }
-  // The same of several at one instant, of which none is told.
+  // Counts several impacts at one instant and reports none. Returns false, and the scene ends, if they are
+  // too many.
   bool has_room_for(std::int64_t impacts) {
     if (impacts > budget_.max_impacts - impacts_) {
       stopped_ = StopReason::impact_budget;
@@ -139,7 +140,7 @@ class RunTracker {
  private:
   template <class TellSample>
   [[gnu::always_inline]] void tell_samples(const Real& duration, TellSample&& tell_sample) {
-    // Compared in double precision, as times are recorded: a sample asked for at an event's time is given.
+    // Compared in double precision, as times are recorded: a sample asked for at an event's time is reported.
     const double until = timed_out_ ? horizon_.end_time : double(clock_.after(duration));
     while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
@@ -177,7 +178,7 @@ class RunTracker {
   const Budget& budget_;
   Observer& observer_;
   Clock<Real> clock_;
-  Outcome horizon_;  // if nothing else ends the scene before
+  Outcome horizon_;  // the end, if nothing else ends the scene before
   Search<Real> search_;
   bool tracks_half_cycles_;
   HalfCycleTracker<Real> half_cycles_;
@@ -188,9 +189,9 @@ class RunTracker {
   Real viscous_{0}, forcing_{0}, reactive_{0}, turnover_{0};
 };
 
-// Lets a flight that begins now in `state` pass, in pieces (Flight::length()), until it meets a wall: which
-// one, and `state` then. Nothing where the run has stopped before. `released`: from rest on a wall. The
-// flight becomes each of its pieces in turn.
+// Follows a flight that begins now in `state`, in pieces (Flight::length()), until it meets a wall. Returns
+// the wall, and sets `state` to that at the impact. Returns nothing where the run has stopped before.
+// released: from rest on a wall. The flight becomes each of its pieces in turn.
 template <class Real, class Force, class Observer>
 [[gnu::always_inline]] inline std::optional<Wall> pass_flight(const System<Real, Force>& system,
                                                               RunTracker<Real, Force, Observer>& tracker,
@@ -218,7 +219,7 @@ template <class Real, class Force, class Observer>
     tracker.pass(flight, met ? met->time : until, state, Real(0));
     if (tracker.stopped()) return {};
     if (met) return met->wall;
-    // In its place: an optional flight beside it would be cleared, 600 bytes, before each flight.
+    // Constructed in its place: an optional flight beside it would be cleared, 600 bytes, before each flight.
     std::construct_at(&flight, system, tracker.now(), rest);
     released = false;
   }

@@ -1,6 +1,6 @@
 // The secondary masses of several dampers, and which of them meets a wall next (docs/mathematics.md, 17.1 and
-// 17.4). Only x couples them, so that each that flies is searched for by itself, as one damper's would be
-// (flight.hpp), and only those that may be the first: a bound on x'' excludes the others (M17.8).
+// 17.4). Only x couples them, so the impact time of each mass in flight is found separately, as for one
+// damper (flight.hpp), and only for those that may be the first: a bound on x'' excludes the others (M17.8).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,8 @@
 
 namespace impact_damper {
 
-// Number by number in arrays, which the processor moves two at a time, and in the order of damper_order.hpp.
+// One array for each quantity, which the processor reads two numbers at a time, in the order of
+// damper_order.hpp.
 template <class Real>
 struct SecondaryMasses {
   explicit SecondaryMasses(std::span<const SceneDamper> dampers) : number(damper_order(dampers)) {
@@ -47,16 +48,16 @@ struct SecondaryMasses {
     return double(Real(nu[i] * z1 * z1 / 2));
   }
 
-  // All fly for a time t in which x departs from its straight line by dx, and x' changes by dv. Those that
-  // are held do not: theirs is then set anew. To leave them out would take a branch that no processor
-  // foresees.
+  // Moves all masses in flight by a time t in which x departs from its straight line by dx and x' changes by
+  // dv. The masses that are held are moved as well, and the caller sets them anew: to leave them out would
+  // take a branch that no processor predicts.
   void fly(const Real& t, const Real& dx, const Real& dv) {
     for (std::size_t i = 0; i < size(); ++i) {
       u[i] += u1[i] * t - away[i] * dx;
       u1[i] -= away[i] * dv;
     }
   }
-  // One arrives at a wall.
+  // Puts the i-th mass on the wall `where`: u = 0, u' <= 0.
   void arrive(std::size_t i, Wall where) {
     const Real before = away[i];
     away[i] = Real(1 - 2 * int(where == Wall::right));
@@ -74,7 +75,8 @@ struct SecondaryMasses {
     const Real way = u1[i] * t, off = most * t * t / 2 + margin;
     return u[i] + (way < 0 ? way : Real(0)) > off && clearance[i] - u[i] - (way > 0 ? way : Real(0)) > off;
   }
-  // A time before which the i-th, which flies, meets no wall if |x''| <= most: the smaller root of (M17.8).
+  // A lower bound of the time at which the i-th mass, in flight, meets a wall if |x''| <= most: the smaller
+  // root of (M17.8).
   Real lower_bound_of_meeting(std::size_t i, const Real& most) const {
     // Rounding may leave a mass a little beyond a wall that it has just left.
     const Real &speed = u1[i], near = u[i] > 0 ? u[i] : Real(0), beyond = clearance[i] - near,
@@ -91,16 +93,15 @@ struct SecondaryMasses {
                                      : Real(0);
     return home < across ? home : across;
   }
-  // Which of those that fly is estimated to meet a wall first, as if x'' stayed as it is. `times`: room for
-  // all.
+  // Returns the mass in flight that would meet a wall first if x'' stayed as it is. times: scratch space.
   std::size_t likely_first(const Real& second_of_x, std::vector<Real>& times) const {
     times.resize(size());
     for (std::size_t i = 0; i < times.size(); ++i) {
-      // Without branches, which no processor would foresee.
+      // Without branches, which no processor would predict.
       const Real speed = absolute(u1[i]), rises = one_if_positive(u1[i]);
       const Real ahead = u[i] + rises * (clearance[i] - 2 * u[i]),
                  push = (1 - 2 * rises) * (away[i] * second_of_x);
-      // To the wall ahead, or where it turns before, back to the other one.
+      // The time to the wall ahead or, if the mass turns back before it, to the other wall.
       const Real square = speed * speed + 2 * push * ahead;
       const Real arrives = one_if_positive(square), turns = 1 - arrives;
       const Real sum = speed + square_root(Real(square - turns * (2 * push * clearance[i])));
@@ -118,7 +119,7 @@ struct SecondaryMasses {
 
   std::vector<std::int32_t> number;  // in the scene
   std::vector<Real> nu, e, clearance;
-  // 1 if the mass left its left wall last, -1 if its right one; at the release, if that is the nearer one.
+  // The wall that the mass left last, at the release the nearer one: 1 left, -1 right.
   std::vector<Real> away;
   std::vector<Real> u, u1;  // distance from that wall, and its derivative
   std::vector<char> held;   // at its wall: it sticks there, u = 0, or pushes it in, u <= 0
@@ -133,16 +134,16 @@ struct Meeting {
   Real speed;  // relative to the wall
 };
 
-// Searches for those that meet walls next. No queue is kept: an impact moves the estimates of all. The one
-// that is estimated to be the first is searched first. With its time known, (M17.8) and Lemma L2 exclude most
-// of the others.
+// Finds the masses that meet walls next. The mass estimated to be the first is searched first. With its
+// impact time known, (M17.8) and Lemma L2 exclude most others. No queue is kept: an impact changes the
+// estimates of all.
 template <class Real, class Force>
 class NextMeeting {
  public:
   using Change = typename ForcedMotion<Real, Force>::Change;
 
-  // All that meet walls at one instant (17.2), the first before `until`, from now on, while x moves as
-  // `primary` tells; in the order of the masses. Empty: nobody does.
+  // Returns all masses that meet walls at the next instant (17.2), in their order. The first must do so
+  // before `until`; the result is empty if none does. primary: the motion of x from now on.
   std::span<const Meeting<Real>> find(const SecondaryMasses<Real>& masses,
                                       const ForcedMotion<Real, Force>& primary, const Real& x, const Real& v,
                                       const Real& until, Search<Real>& search) {
@@ -160,7 +161,7 @@ class NextMeeting {
       if (i != likely && !masses.held[i] && !is_excluded(masses, i, primary, search))
         look_for(masses, i, primary, x, v, until, search);
     if (found_.size() < 2) return found_;
-    // At one instant: what rounding cannot tell apart.
+    // At one instant: times that rounding cannot tell apart.
     std::erase_if(found_, [&](const Meeting<Real>& each) {
       return each.time - earliest_ > slack_of(masses, each, primary, search);
     });
@@ -168,7 +169,7 @@ class NextMeeting {
     std::ranges::sort(found_, {}, &Meeting<Real>::index);
     return found_;
   }
-  // The primary mass at a time: where the last search found a meeting then, what it knows of it.
+  // The state of the primary mass at t, known from the search if t is the time that it found.
   Change primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
     return at_earliest_ && t == earliest_ ? *at_earliest_ : primary.at(t);
   }
@@ -187,8 +188,8 @@ class NextMeeting {
     earliest_ = met->time;
     at_earliest_ = {met->state.x, met->state.v, met->change->dx, met->change->dv};
   }
-  // Up to when a meeting of the i-th may be at the earliest time that is known: no slack (slack_of) exceeds
-  // the mean of the two that it is the lesser of.
+  // Returns the latest time at which the i-th mass may be found to meet a wall at the earliest instant known.
+  // No slack (slack_of) is longer than the geometric mean of the two that it is the lesser of.
   Real latest_of_instant(const SecondaryMasses<Real>& masses, std::size_t i,
                          const ForcedMotion<Real, Force>& primary, const Real& until,
                          const Search<Real>& search) {
@@ -198,8 +199,8 @@ class NextMeeting {
     const Real late = t + square_root(Real(2 * std::numeric_limits<Real>::epsilon() * way / most));
     return late < until ? late : until;
   }
-  // How much later than another a meeting may seem to be and still be at the same time: from what rounding
-  // leaves of the mass's distance from that wall; but no longer than it keeps its speed.
+  // Returns how much later than another an impact may be found and still be at the same instant: the rounding
+  // of the mass's distance divided by its speed, but no longer than it keeps its speed.
   Real slack_of(const SecondaryMasses<Real>& masses, const Meeting<Real>& met,
                 const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
     const Real from = met.wall == masses.wall(met.index) ? masses.u[met.index] : masses.clearance[met.index];
@@ -209,7 +210,8 @@ class NextMeeting {
                keeps = met.speed / (4 * most);
     return slack < keeps ? slack : keeps;
   }
-  // Whether the i-th is proved to fly on beyond the earliest meeting that is known, by more than rounding.
+  // Whether the i-th mass is proved to meet no wall until the earliest impact known, nor to come as near as
+  // rounding.
   bool is_excluded(const SecondaryMasses<Real>& masses, std::size_t i,
                    const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
     if (masses.rests(i)) return false;
@@ -225,8 +227,8 @@ class NextMeeting {
            stays_between<Real>({u, u1, -away * bounds_->second_now, -away * bounds_->third_now}, u_then,
                                u1_then, time, bounds_->fourth, gap);
   }
-  // On |x''| and |x''''|, for a time `span`, which does not depend on where the run ends; and x'' and x''' at
-  // the beginning.
+  // Bounds on |x''| and |x''''| for a time `span`, which does not depend on where the run ends; x'' and x'''
+  // now.
   struct Bounds {
     Real span, second, fourth, second_now, third_now;
   };

@@ -28,7 +28,7 @@ template <class Real>
   return slope0 >= 0 && from[2] >= 0 && 4 * from[3] > fourth * h;
 }
 
-// The same of one that only has to stay above 0.
+// Whether a distance is proved to stay above 0 between two ends (Lemma L2); arguments as above.
 template <class Real>
 [[gnu::always_inline]] inline bool stays_open(const Real& u0, const Real& slope0, const Real& u1,
                                               const Real& slope1, const Real& h, const Real& fourth) {
@@ -37,8 +37,8 @@ template <class Real>
          (u0 + u1) / 2 + h * (slope0 - slope1) * reciprocals<Real>[6] > off;
 }
 
-// The largest c for which Lemma L2 proves that a function from u0 > 0 to zero, a time h later, is at least
-// c (1 - t/h) in between (M7.11).
+// Returns the largest c for which Lemma L2 proves that a function that falls from u0 > 0 to zero, a time h
+// later, is at least c (1 - t/h) in between (M7.11).
 template <class Real>
 Real chord_below(const Real& u0, const Real& slope0, const Real& slope1, const Real& h, const Real& fourth) {
   const Real& third = reciprocals<Real>[3];

@@ -1,6 +1,6 @@
 // The first fall of a function through zero between two ends of a motion, where the function is cheap to
-// evaluate: a zero by its values and slopes at both ends, and proved to be the first, or that there is none,
-// by Lemma L2 in few parts (Lemma L6, docs/mathematics.md, 7.6).
+// evaluate. A zero is found from the values and slopes at both ends. Lemma L2, in few parts, proves that it
+// is the first, or that there is none (Lemma L6, docs/mathematics.md, 7.6).
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@ struct SlopeAt {
   Real time, u, u1;
 };
 
-// `time` empty: there is none.
+// With an empty `time` there is none.
 template <class Real>
 struct FirstFall {
   std::optional<Real> time;
   Real slope{0};
 };
 
-// A zero of u between `begin`, where u > 0 or rises from zero, and `end`, where u < 0: by Halley's method,
-// which starts at a zero of the cubic through both. at(t): u, u' and u''; rate: of the motion. Nothing where
-// it does not converge.
+// Returns a zero of u between `begin`, where u > 0 or rises from zero, and `end`, where u < 0, found by
+// Halley's method, which starts at a zero of the cubic through both. at(t): u, u' and u''; rate: of the
+// motion. Returns nothing where the method does not converge.
 template <class Real, class At>
 std::optional<SlopeAt<Real>> zero_between(const At& at, const SlopeAt<Real>& begin, const SlopeAt<Real>& end,
                                           const Real& rate) {
@@ -42,12 +42,14 @@ std::optional<SlopeAt<Real>> zero_between(const At& at, const SlopeAt<Real>& beg
   Real t = begin.time + s * h;
   for (int i = 0; i < 6; ++i) {
     const SeriesAt<Real> now = at(t);
+    // bend: the second-order correction, u'' times half of Newton's step divided by u'.
     const Real over = 1 / now.u1, newton = -now.u * over, bend = newton * (now.u2 * over) / 2;
     const bool bends_little = absolute(bend) < Real(0.0625);
     const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     t += step;
     if (!(begin.time < t && t < end.time)) return {};
-    // The next step would be below rounding. The step alone vanishes at a turn, too, where u is not zero.
+    // The next step would be below rounding. The step alone also vanishes at a turning point of u, where bend
+    // is large.
     constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
     if (absolute(step) * rate * two_to_the_18 < 1 && absolute(bend) * two_to_the_26 < 1)
       return SlopeAt<Real>{t, Real(0), now.u1 + step * now.u2};
@@ -55,11 +57,11 @@ std::optional<SlopeAt<Real>> zero_between(const At& at, const SlopeAt<Real>& beg
   return {};
 }
 
-// Whether u is proved to be positive between two times, or where it is not.
+// Whether u is proved to be positive between two times (open), or a point where it is not (closed).
 template <class Real>
 struct Openness {
   bool open;
-  std::optional<SlopeAt<Real>> closed{};  // neither: it is not known
+  std::optional<SlopeAt<Real>> closed{};  // neither: undecided
 };
 template <class Real, class At>
 Openness<Real> openness(const At& at, const SlopeAt<Real>& from, const SlopeAt<Real>& to, const Real& fourth,
@@ -74,8 +76,8 @@ Openness<Real> openness(const At& at, const SlopeAt<Real>& from, const SlopeAt<R
   return before.open ? openness(at, middle, to, fourth, halvings - 1) : before;
 }
 
-// The first fall of u through zero between `begin`, where u > 0 or rises from zero, and `end`. fourth: a
-// bound on |u''''| between them. Nothing where it is not decided.
+// Returns the first fall of u through zero between `begin`, where u > 0 or rises from zero, and `end`.
+// fourth: a bound on |u''''| between them. Returns nothing where it is not decided.
 template <class Real, class At>
 std::optional<FirstFall<Real>> fall_by_ends(const At& at, const SlopeAt<Real>& begin, SlopeAt<Real> end,
                                             const Real& fourth, const Real& rate) {

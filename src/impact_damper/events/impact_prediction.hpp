@@ -2,7 +2,7 @@
 //
 // root_isolation.hpp proves each step before it takes it, and needs many. Most impact times need none of
 // that: the series at the beginning predicts the time; an evaluation there and the series about it (M7.7)
-// give it to rounding; and the two ends exclude an earlier impact (Lemma L2, M7.5, M7.6).
+// give it to rounding; and the two ends exclude an earlier impact (Lemma L2, M7.5, M7.6). See
 // docs/mathematics.md, 7.4 and 7.5. Where the validation fails, root_isolation.hpp searches.
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace impact_damper {
 
-// When y meets a level nearby, by reversion of its series to third order (M7.7). `close`: the terms left out,
-// of the reversion and of the series, are below rounding of the time h that has led here.
+// The time until y is at a level nearby, by reversion of its series to third order (M7.7). close: the terms
+// left out, of the reversion and of the series, are below rounding of the time h that has led here.
 template <class Real>
 struct TimeToLevel {
   Real shift, newton;  // the time until then; the same to first order
@@ -51,12 +51,12 @@ template <class Real>
 
 inline constexpr double two_to_the_25 = 33554432;
 
-// Where the prediction begins: by the parabola through the beginning of u, which may begin with its third
-// derivative alone.
+// The starting point of the prediction, from the parabola through the beginning of u. Where u' = u'' = 0
+// there the sign of u''' decides which wall is predicted.
 template <class Real>
 struct FirstGuess {
   Real time;
-  bool across;  // at the other wall
+  bool across;  // at the wall opposite to the one that u is measured from
 };
 template <class Real, std::size_t N>
 [[gnu::always_inline]] inline FirstGuess<Real> guess_by_parabola(const Derivatives<Real, N>& u,
@@ -76,9 +76,8 @@ template <class Real, std::size_t N>
 
 // Whether the terms left out of a series up to t^9 are below rounding at t, where u' is u1: in the time, for
 // which |u^(10)| t^9/9! is compared with u', and in the departure, for which it is compared with the motion
-// of x, which may be far smaller. `fourth`: bound on |u''''|; each further derivative is taken to be
-// `rate` times the one before. Near critical damping u^(10) may be a few times that, and is still below
-// rounding.
+// of x, which may be far smaller. fourth: a bound on |u''''|; each further derivative is estimated as `rate`
+// times the one before. Near critical damping u^(10) may be a few times that, and is still below rounding.
 template <class Real>
 [[gnu::always_inline]] inline bool omits_nothing(const Real& u1, const Real& fourth, const Real& rate,
                                                  const Real& t) {
@@ -88,20 +87,21 @@ template <class Real>
   return omitted <= 4 * tiny && fourth * omitted <= tiny * absolute(u1) * (rate * rate * rate);
 }
 
-// Predicts when a mass in a gap, of 1 unless told, meets a wall, and `most` at the latest: by the parabola,
-// then by Halley's method on the series (docs/mathematics.md, 7.5). u: distance from the wall that the flight
-// is measured from, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t):
-// whether that series has enough terms at t. If so the prediction is `exact`, and `gained` is by how much u
-// and u' then differ from the straight line, with digits that u and u' of a fast mass do not have themselves.
-// go_on(t, step): whether to go on after a step that is still too long.
+// Predicts when a mass in a gap meets a wall, at `most` at the latest: by the parabola, then by Halley's
+// method on the series (docs/mathematics.md, 7.5). u: the distance from the wall that the flight is measured
+// from, and its derivatives; departure: the series of u without u[0] + u[1] t. enough(u', t): whether that
+// series has enough terms at t. If so the prediction is `exact`, and `gained` is the departure of u and u'
+// from the straight line, with digits that u and u' of a fast mass do not have themselves. go_on(t, step):
+// whether to go on after a step that is still too long.
 template <class Real>
 struct Prediction {
   Real time;
-  bool across;  // at the other wall
+  bool across;  // at the wall opposite to the one that u is measured from
   bool exact;
   Shifted<Real> gained;
 };
-// Halley's method alone, from `start` on. `near`: from the first step on by all terms of the series.
+// Predicts by Halley's method alone, from `start` on. near: use all terms of the series from the first step
+// on.
 template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
 [[gnu::always_inline]] inline Prediction<Real> predict_from(const FirstGuess<Real>& start, bool near,
                                                             const Derivatives<Real, N>& u,
@@ -111,21 +111,22 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
   constexpr std::size_t first_pairs = Departure::all < 6 ? Departure::all : 6;
   const bool across = start.across;
   Real t = start.time;
-  const Real ahead = (across ? gap : Real(0)) - u[0];  // to go, with its sign
+  const Real ahead = (across ? gap : Real(0)) - u[0];  // distance to go, with sign
   for (int i = 0;; ++i) {
     // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more pairs than these
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<first_pairs>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
+    // bend: the second-order correction, u'' times half of Newton's step divided by u'.
     const Real newton = (ahead - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
     const bool bends_little = absolute(bend) < Real(0.0625);
     const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     const Real size = absolute(step);
-    // Halley's step alone vanishes at a turn of u, too, where u is not at the wall.
+    // Halley's step alone vanishes at a turning point of u, too, where u is not at the wall.
     if (near && bends_little && size * two_to_the_25 < t && t < most) {
       if (!enough(u1, t)) return {t, across, false, {}};
-      // The step is below 2^-25 t. In u's departure, ~ u'' t^2/2, the term with its second power, u''
-      // step^2/2, may be above rounding. In that of u', ~ u'' t, the term u''' step^2/2 is left out: less
-      // than 2 epsilon u''' t^2.
+      // The step is below 2^-25 t. In the departure of u, ~ u'' t^2/2, the term with its second power, u''
+      // step^2/2, may be above rounding. In that of u', ~ u'' t, the term u''' step^2/2 is left out: it is
+      // less than 2 epsilon u''' t^2.
       return {t + step, across, true, {at.u + step * (at.u1 + step * at.u2 / 2), at.u1 + step * at.u2}};
     }
     if (i == 4 || !(size < t / 2)) break;
@@ -144,7 +145,7 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
   FirstGuess<Real> start = guess_by_parabola(u, most, gap);
   Real& t = start.time;
   const Real ahead = (start.across ? gap : Real(0)) - u[0];
-  // First by few terms, as a parabola may be far off.
+  // The first step uses few terms: a parabola may be far off.
   const SeriesAt<Real> rough = departure.template at<3>(t);
   const Real slope = u[1] + rough.u1, off = ahead - u[1] * t - rough.u;
   const Real nearer = off * slope / (slope * slope + off * rough.u2 / 2);

@@ -1,6 +1,6 @@
 // The first fall of a function through zero, found by a Taylor lower bound (docs/mathematics.md, 7.3: Lemma
-// L1, M7.3): none is missed, however grazing, unless it is lost in rounding errors. Each step leads to the
-// first root of the bound's cubic, to six digits and from below, which no root of the function precedes.
+// L1, M7.3). None is missed, however grazing, unless it is lost in rounding errors. Each step leads to the
+// first root of the bound's cubic, to six digits and from below, and no root of the function precedes it.
 //
 // Where g = main + rest with a bound on |rest| (a slow motion with a fast ringing on top; a straight flight
 // with an oscillation on top), main - bound > 0 is a second proof, which steps over many periods of the rest.
@@ -44,7 +44,7 @@ struct LowerCubic {
         half_third(third / 2) {}
   Real at(const Real& s) const { return g + s * (g1 + s * (half - s * sixth)); }
   Real slope(const Real& s) const { return g1 + s * (g2 - s * half_third); }
-  // From here on the cubic term is at least three times each positive other term, and p is not positive.
+  // Beyond this s the cubic term is at least three times each positive other term, and p is not positive.
   Real negative_from() const {
     const Real by_g = 18 * g / third, by_g1 = 18 * g1 / third, by_g2 = 9 * g2 / third;
     Real far = by_g > 1 ? square_root(by_g) : Real(1);
@@ -54,9 +54,9 @@ struct LowerCubic {
   }
 };
 
-// Up to its inflection p is convex: Newton's steps from the left cannot pass a root, and once they reach
-// rising ground there is none up to the inflection. `done`: `from` is a root of p, or a little before it;
-// else p has none before the inflection.
+// Searches p up to its inflection, where it is convex: Newton's steps from the left cannot pass a root, and
+// once p rises there is none up to the inflection. done: `from` is a root of p, or a little before it; else p
+// has none before the inflection.
 template <class Real>
 struct ConvexPart {
   Real from;
@@ -77,8 +77,8 @@ ConvexPart<Real> step_through_convex_part(const LowerCubic<Real>& p, const Real&
   return {low, false};
 }
 
-// The root of p in [low, most], where p is concave, positive at `low` and negative at `most`, or a little
-// before it: chords come from below, Newton's steps from above.
+// Returns the root of p in [low, most], or a point a little before it. p is concave there, positive at `low`
+// and negative at `most`: chords come from below, Newton's steps from above.
 template <class Real>
 Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most) {
   Real high = most;
@@ -93,7 +93,7 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
   // quarterings below, taken at once, come to the same number.
   const Real much_nearer = Real(1) / Real(std::int64_t(1) << 32);
   while (low == 0 && p.at(high * much_nearer) < 0) high *= much_nearer;
-  // Wherever p is still positive lies before the root.
+  // Every point where p is still positive lies before the root.
   Real nearer = low + (high - low) / 4;
   while (p.at(nearer) < 0) {
     high = nearer;
@@ -113,9 +113,9 @@ Real root_of_concave_part(const LowerCubic<Real>& p, Real low, const Real& most)
   return low;
 }
 
-// A step s in [0, most] with p > 0 on (0, s): the first positive root of p, from below, most often to six
-// digits, or `most` where it has none up to there. Needs p > 0 just after 0 (Lemma L1); if g = 0 and p is
-// not, the step is 0 or proves nothing.
+// Returns a step s in [0, most] with p > 0 on (0, s): the first positive root of p, from below, most often to
+// six digits, or `most` where there is none up to there. Needs p > 0 just after 0 (Lemma L1). If g = 0 and p
+// is not positive just after 0, the step is 0 or proves nothing.
 template <class Real>
 Real step_without_root(const Jet<Real>& jet, Real most) {
   SearchCounter<Real>::step();
@@ -130,9 +130,9 @@ Real step_without_root(const Jet<Real>& jet, Real most) {
   return root_of_concave_part(p, low, most);
 }
 
-// The root of the parabola, if it is the function's own within 2 epsilon (time + root): the parabola falls
-// there with at least half its slope here, the third derivative is too small to move the root further, and no
-// root can lie before it: there is none up to `proven`, and from there on the function falls.
+// Returns the root of the parabola, if it is the function's own within 2 epsilon (time + root). Then the
+// parabola falls there with at least half its slope here, the third derivative is too small to move the root
+// further, and no root can lie before it: there is none up to `proven`, and from there on the function falls.
 template <class Real>
 std::optional<Real> root_of_parabola(const Jet<Real>& jet, const Real& proven, const Real& time) {
   const Real slope_2 = jet.g1 * jet.g1 - 2 * jet.g2 * jet.g;
@@ -147,18 +147,19 @@ std::optional<Real> root_of_parabola(const Jet<Real>& jet, const Real& proven, c
 template <class Real>
 struct Root {
   Real time;
-  std::size_t which;  // of the functions that were watched
+  std::size_t which;  // the index among the functions
 };
 
-// The first time in [from, horizon) at which one of several functions falls through zero; `from` if one is
-// not positive and falls there. No two may be near zero at once: the gaps to both walls never are.
-// enclose(t), a std::array<LocalEnclosure<Real>, N>, says where each function stands and what bounds it for a
-// time search.span. `resolution` is the shortest time in which a function changes: a time t is told within 2
-// epsilon (t + resolution). Nothing also where the search has no steps left. A function that is neither
-// positive nor falls has just left its zero, and is taken for zero. Until a longer step than that
-// accuracy is proved, steps double. They are not proved: what the function does meanwhile is lost in rounding
-// errors. No step depends on the horizon: a search that ends earlier is the beginning of one that ends later,
-// to the bit.
+// Returns the first time in [from, horizon) at which one of several functions falls through zero; `from` if
+// one is not positive and falls there. Returns nothing if there is none, or if the search has no steps left.
+// No two functions may be near zero at once; the gaps to both walls never are.
+//
+// enclose(t), a std::array<LocalEnclosure<Real>, N>, encloses each function for a time search.span from t on.
+// resolution: the shortest time in which a function changes; the error of a time t is at most 2 epsilon (t +
+// resolution). A function that is neither positive nor falls has just left its zero, and is taken for zero.
+// Until a longer step than that error is proved, steps double. They are not proved: what the function does
+// meanwhile is lost in rounding errors. No step depends on the horizon: a search that ends earlier is the
+// beginning of one that ends later, to the bit.
 template <class Real, class Watch>
 std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Real& horizon,
                                      Search<Real>& search, const Real& resolution) {
@@ -203,7 +204,8 @@ std::optional<Root<Real>> first_root(Watch&& enclose, const Real& from, const Re
   return std::nullopt;
 }
 
-// The first time in [from, until) at which one function falls through zero; enclosure_at(t) encloses it.
+// Returns the first time in [from, until) at which one function falls through zero; enclosure_at(t) encloses
+// it.
 template <class Real, class Enclose>
 std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const Real& until,
                                  Search<Real>& search, const Real& resolution) {
@@ -212,9 +214,9 @@ std::optional<Real> isolate_fall(Enclose&& enclosure_at, const Real& from, const
   return root ? std::optional(root->time) : std::nullopt;
 }
 
-// How long after its beginning to begin the search for a fall of u, if u and its derivatives below the
-// `order`-th are zero but for rounding (M7.4): until then u has the sign of that one there, `lead`. At most
-// `span`, for which `next`, a bound on the derivative after it, holds.
+// Returns the time after its beginning at which to begin the search for a fall of u, if u and its derivatives
+// below the `order`-th are zero but for rounding (M7.4). Until then u has the sign of `lead`, its `order`-th
+// derivative there. The time is at most `span`, for which `next`, a bound on the following derivative, holds.
 template <class Real>
 Real begin_by_lead(std::size_t order, const Real& lead, const Real& next, const Real& span) {
   const Real leap = Real(double(order + 1)) / 2 * absolute(lead) / next;

@@ -1,4 +1,4 @@
-// A root of a power series by Halley's method. Whether it is the first is proved elsewhere (exclusion.hpp).
+// A root of a power series by Halley's method. Another proof must show that it is the first (exclusion.hpp).
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace impact_damper {
 
-// A root of the series g after `from`, and the slope there: by Halley's method, which starts at the root of
-// the parabola through `begin`, first with few terms. Nothing where it does not converge.
+// Returns a root of the series g after `from`, and the slope there. Halley's method starts at the root of the
+// parabola through `begin`, first with few terms. Returns nothing where it does not converge.
 template <class Real>
 struct SeriesRoot {
   Real time, slope;
@@ -37,8 +37,8 @@ std::optional<SeriesRoot<Real>> root_of_series(const PairedSeries<Real, pairs>& 
     const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
     t += step;
     if (!(t > 0 && t < available)) return {};
-    // Halley's method is of third order: the next step would be below rounding. The step alone vanishes at
-    // a turn, too, where the function is not zero.
+    // Halley's method is of third order: the next step would be below rounding. The step alone also vanishes
+    // at a turning point of g; a small bend, g'' times half of Newton's step divided by g', excludes that.
     constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
     if (near && absolute(step) * two_to_the_18 < t && absolute(bend) * two_to_the_26 < 1)
       return SeriesRoot<Real>{from + t, at.u1 + step * at.u2};

@@ -1,4 +1,4 @@
-// What every search for an event is given, and who counts it.
+// The limits of every search for an event, and the counter of what it does.
 #pragma once
 
 #include <cstdint>
@@ -6,17 +6,17 @@
 
 namespace impact_damper {
 
-// One for each run. Where a motion is so stiff, or so long, that its bounds hold for a very short time only,
-// the search for its next event would not end without a step budget.
+// The limits of the searches of one run. Where a motion is so stiff, or so long, that its bounds hold for a
+// very short time only, the search for its next event would not end without a step budget.
 template <class Real>
 struct Search {
   Real span;  // > 0: the bounds on derivatives that a step uses hold for this long
-  // Steps of searches (root_isolation.hpp) and panels of quadratures (energy.hpp) that are left, at about a
+  // The remaining steps of searches (root_isolation.hpp) and panels of quadratures (energy.hpp), at about a
   // microsecond each.
   std::int64_t steps_left = std::numeric_limits<std::int64_t>::max();
 
-  // False: none is left. The search then finds nothing, and the run ends by StopReason::step_budget
-  // (run_tracker.hpp).
+  // Returns false if no step is left. The search then finds nothing, and the run ends by
+  // StopReason::step_budget (run_tracker.hpp).
   bool take_step() { return steps_left-- > 0; }
   bool exhausted() const { return steps_left < 0; }
 };
@@ -32,7 +32,7 @@ enum class FoundBy {
 };
 inline constexpr int ways_to_find = 6;
 
-// Told what a search does. A scalar that counts specializes it; for any other it does nothing.
+// Called at each step of a search. A scalar that counts specializes it; for any other it does nothing.
 template <class Real>
 struct SearchCounter {
   static void prediction() {}  // of a flight's end, impact_prediction.hpp

@@ -1,5 +1,5 @@
-// Complex numbers whose products and quotients are what stands here: those of std::complex are made by the
-// compiler's own library, each version in another way.
+// Complex numbers whose products and quotients are computed as written here. Those of std::complex come from
+// the compiler's own library, and differ between versions.
 #pragma once
 
 #include "impact_damper/math/elementary.hpp"
@@ -24,7 +24,7 @@ class Complex {
   friend Complex operator*(const Complex& a, const Complex& b) {
     return Complex(a.real_ * b.real_ - a.imag_ * b.imag_, a.real_ * b.imag_ + a.imag_ * b.real_);
   }
-  // Smith's way: no square that could leave the range.
+  // Smith's method: no square that could leave the range.
   friend Complex operator/(const Complex& a, const Complex& b) {
     if (absolute(b.real_) < absolute(b.imag_)) {
       const Real ratio = b.real_ / b.imag_, divisor = b.real_ * ratio + b.imag_;

@@ -9,8 +9,8 @@
 
 namespace impact_damper {
 
-// Eigen's EigenSolver knows eigenvectors, too, and brings a matrix into Hessenberg form first: the same
-// eigenvalues, bit for bit, but ten times as long to compile.
+// Eigen's EigenSolver also computes eigenvectors, and first reduces a matrix to Hessenberg form. It gives the
+// same eigenvalues, bit for bit, but takes ten times as long to compile.
 std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix) {
   const auto n = Eigen::Index(matrix.size());
   Eigen::MatrixXd hessenberg(n, n);
@@ -24,7 +24,7 @@ std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix
   if (schur.info() != Eigen::Success) throw NumericalError("a matrix whose eigenvalues were not found");
   const Eigen::MatrixXd triangular = schur.matrixT() * largest;
 
-  // On the diagonal stand real eigenvalues, and blocks of two rows for two conjugate ones.
+  // The diagonal has real eigenvalues, and blocks of two rows for two conjugate ones.
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = std::size_t(i);
     if (i == n - 1 || triangular(i + 1, i) == 0) {
@@ -43,7 +43,8 @@ std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix
 }
 
 std::vector<std::complex<double>> eigenvalues_of(const Matrix& matrix) {
-  // By elimination with pivots: what is taken from a row with a factor is given back to a column.
+  // Reduction to Hessenberg form by elimination with pivots: each row operation is followed by the inverse
+  // operation on a column.
   Matrix a = matrix;
   const std::size_t n = a.size();
   for (std::size_t k = 1; k + 1 < n; ++k) {

@@ -8,9 +8,9 @@ namespace impact_damper {
 
 using Matrix = std::vector<std::vector<double>>;  // row by row
 
-// Of a square matrix. Conjugates are so exactly.
+// Returns the eigenvalues of a square matrix. Complex ones come in exactly conjugate pairs.
 std::vector<std::complex<double>> eigenvalues_of(const Matrix& matrix);
-// The same of a matrix that is zero below the diagonal next to its own.
+// Returns those of a Hessenberg matrix: all entries below the first subdiagonal are zero.
 std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix);
 
 }  // namespace impact_damper

@@ -1,6 +1,6 @@
-// The elementary functions of the result path, all in one place: whatever a run's numbers go through
-// besides + - * / and sqrt is called from here and nowhere else. In double precision they are the project's
-// own, with the same bits everywhere (elementary_kernels.hpp); other numbers bring theirs.
+// The elementary functions of the result path, all in one place: besides + - * / and sqrt the numbers of a
+// run go through no others. In double precision they are the project's own, with the same bits everywhere
+// (elementary_kernels.hpp); other number types bring theirs.
 #pragma once
 
 #include <cmath>
@@ -80,7 +80,7 @@ Real square_root(const Real& x) {
 template <class Real>
 Real absolute(const Real& x) {
   if constexpr (std::is_floating_point_v<Real>) {
-    return std::fabs(x);  // one instruction, where the other is a branch that no processor foresees
+    return std::fabs(x);  // one instruction, where the other is a branch that no processor predicts
   } else {
     return x < 0 ? -x : x;
   }

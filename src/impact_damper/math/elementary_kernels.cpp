@@ -10,7 +10,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t exponent_unit = std::uint64_t(1) << 52;
 
-// The upper half of a product.
+// Returns the upper half of a product.
 Unsigned upper_product(Unsigned p, Unsigned q) {
   const Unsigned p1 = p >> 64, p0 = std::uint64_t(p), q1 = q >> 64, q0 = std::uint64_t(q);
   const Unsigned crossed = p1 * q0 + ((p0 * q0) >> 64);
@@ -23,7 +23,7 @@ struct Remainder {
   double angle, rest;
 };
 
-// 1/(2 pi) behind 64 zero bits.
+// 1/(2 pi) after 64 zero bits.
 constexpr std::uint64_t per_turn[] = {0,
                                       0x28be60db9391054a,
                                       0x7f09d5f47d4d3770,
@@ -47,9 +47,9 @@ constexpr std::uint64_t per_turn[] = {0,
                                       0xfc33ef0826bd0d87};
 constexpr Unsigned two_pi = (Unsigned(0xc90fdaa22168c234) << 64) | 0xc4c6628b80dc1cd1;  // in units of 2^-125
 
-// Payne and Hanek's way, for finite |x| > 1: of x/(2 pi) = m 2^e/(2 pi) only the bits of 1/(2 pi) matter that
-// yield the fraction. It comes in 128 bits, and no double's is below 2^-66 from a multiple of 1/4, so that
-// the remainder has 60 good bits even then.
+// Payne and Hanek's method, for finite |x| > 1: of x/(2 pi) = m 2^e/(2 pi) only the bits of 1/(2 pi) matter
+// that yield the fraction. It comes in 128 bits, and no double's is below 2^-66 from a multiple of 1/4, so
+// that the remainder has 60 good bits even then.
 Remainder remainder(double x) {
   const std::uint64_t m = (bits(x) & (exponent_unit - 1)) | exponent_unit;
   const int position = 64 + int(bits(x) >> 52 & 0x7ff) - 1075;
@@ -66,7 +66,7 @@ Remainder remainder(double x) {
   return {turned, angle * unit, double(Integer(size - Unsigned(angle))) * unit};
 }
 
-// a + b, and what that rounds off.
+// A rounded sum or product, and its rounding error.
 struct Sum {
   double value, rest;
 };
@@ -93,7 +93,7 @@ SinCos<double> sin_cos_close(double x) {
   return {with_sign_of(turned[left.quarters].sin, x), turned[left.quarters].cos};
 }
 
-// Cody and Waite's way: n turns in three parts of 2 pi, n times the first two of which are exact.
+// Cody and Waite's method: n turns in three parts of 2 pi, n times the first two of which are exact.
 SinCos<double> sin_cos_far(double x) {
   if (!(magnitude(x) < 0x1p22)) return sin_cos_close(x);
   constexpr double whole = 0x1.8p52, per_radian = 0x1.45f306dc9c883p-3;
@@ -146,14 +146,14 @@ double logarithm(double x) {
   constexpr double ln_2 = 0x1.62e42fefa38p-1, ln_2_rest = 0x1.ef35793c76730p-45;
   const double constant = e * ln_2 + at.log;
   const double head = constant + d, head_rest = (constant - head) + d;
-  // ln(1 + d) - d by Taylor's series, |d| <= 2^-7, short of less than 2^-59 d.
+  // ln(1 + d) - d by Taylor's series, |d| <= 2^-7; what it leaves out is below 2^-59 d.
   const double z = d * d, z2 = z * z;
   const double second = z * (((-1.0 / 2 + d * (1.0 / 3)) + z * (-1.0 / 4 + d * (1.0 / 5))) +
                              z2 * ((-1.0 / 6 + d * (1.0 / 7)) - z * (1.0 / 8)));
   return head + ((head_rest + (d_rest + (e * ln_2_rest + at.log_rest))) + second);
 }
 
-// Brought within range by powers of two; where the quotient is tiny it is the angle.
+// The coordinates are scaled into range by powers of two; where the quotient is tiny it is the angle.
 double angle_of_beyond(double y, double x) {
   if (x != x || y != y) return not_a_number;
   const double height = magnitude(y), width = magnitude(x);
@@ -170,14 +170,14 @@ double angle_of_beyond(double y, double x) {
   const double quotient = height / width;
   if (quotient > 0x1p60) return whole(1);
   if (quotient < 0x1p-60) return is_left ? whole(2) : with_sign_of(quotient, y);
-  // By a power of two into the middle of the range, if they are not there.
+  // Scaled by a power of two into the middle of the range, if the coordinates are not there.
   const double scale = height > 0x1p400 || width > 0x1p400     ? 0x1p-600
                        : height < 0x1p-400 || width < 0x1p-400 ? 0x1p600
                                                                : 1;
   const double y1 = height * scale, x1 = x * scale, width1 = width * scale;
   const double larger = y1 > width1 ? y1 : width1, smaller = y1 > width1 ? width1 : y1;
   if (smaller > larger * 0x1p-20) return with_sign_of(angle_of_upper(y1, x1), y);
-  // t = smaller/larger, and of arctan t what t lacks and t^3/3.
+  // With t = smaller/larger rounded, the arc tangent of the exact quotient is t + (quotient - t) - t^3/3.
   const Quarter& from = quarters[2 * (y1 > width1) + (x < 0)];
   const double t = smaller / larger;
   const Sum product = exact_product(t, larger);

@@ -45,7 +45,7 @@ static_assert(std::numeric_limits<double>::is_iec559 && FLT_EVAL_METHOD == 0,
 
 inline std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 inline double from_bits(std::uint64_t x) { return std::bit_cast<double>(x); }
-// Not by integers: to leave the floating-point registers and come back costs more than a sum.
+// Integers are not used: leaving the floating-point registers and coming back costs more than a sum.
 inline double magnitude(double x) { return std::fabs(x); }
 inline double with_sign_of(double x, double sign) { return x * std::copysign(1.0, sign); }
 
@@ -58,7 +58,7 @@ inline double with_sign_of(double x, double sign) { return x * std::copysign(1.0
 double exponential_minus_1(double x);
 double logarithm(double x);
 
-// Of x + tail, |x| < 7.75, |tail| below its last place.
+// Sine and cosine of x + tail, |x| < 7.75, |tail| below its last place.
 inline SinCos<double> sin_cos_near(double x, double tail) {
   constexpr double sixteenths = 0x1.8p48, fine = 0x1.8p25;  // round to multiples of 2^-4 and 2^-27
   const double shifted = x + sixteenths, point = shifted - sixteenths;
@@ -66,9 +66,9 @@ inline SinCos<double> sin_cos_near(double x, double tail) {
   const double d_head = coarse_x - point, d_rest = (x - coarse_x) + tail;
   const Circle& at = circle[bits(shifted) & 0xff];
 
-  // (sin d - d)/d^3 and (cos d - 1)/d^2 by Taylor's series in z = d^2 <= h = 2^-10, up to z^3 or z^4, of
-  // whose last power the lower ones take over all but h^3/32 or h^4/128 (Chebyshev's polynomials): z^3 = 3/2
-  // h z^2 - 9/16 h^2 z + h^3/32, z^4 = 2 h z^3 - 5/4 h^2 z^2 + h^3 z/4.
+  // (sin d - d)/d^3 and (cos d - 1)/d^2 by Taylor's series in z = d^2 <= h = 2^-10, up to z^3 or z^4.
+  // Chebyshev's polynomials replace the last power by lower ones, except for h^3/32 or h^4/128: z^3 = 3/2 h
+  // z^2 - 9/16 h^2 z + h^3/32, z^4 = 2 h z^3 - 5/4 h^2 z^2 + h^3 z/4.
   constexpr double h = 0x1p-10, s9 = 1.0 / 362880, c8 = 1.0 / 40320;
   constexpr double s3 = -1.0 / 6 + h * h * h / 32 * s9, s5 = 1.0 / 120 - h * h * 9 / 16 * s9,
                    s7 = -1.0 / 5040 + h * 3 / 2 * s9;
@@ -113,7 +113,8 @@ inline ExponentialParts exponential_parts(double x) {
   const double above = x - n * step, below = n * step_rest, d = above - below;
   return {power_of_two[count & 127], (count & ~std::uint64_t(127)) << 45, d, (above - d) - below};
 }
-// value exp(d + rest) with exp(d) by Taylor's series, |d| <= ln 2/256, short of less than 6e-19.
+// Returns value exp(d + rest), with exp(d) by Taylor's series, |d| <= ln 2/256; what it leaves out is below
+// 6e-19.
 inline double raised(double value, double d, double rest) {
   const double z = d * d, second = value * z;
   return value + ((value * (d + rest) + second * (1.0 / 2 + d * (1.0 / 6))) +
@@ -126,8 +127,8 @@ inline double exponential(double x) {
   return raised(from_bits(bits(power.value) + scale), d, power.rest);
 }
 
-// The multiple of pi/2 from which, and the direction in which, an angle is counted, by whether |y| > |x| and
-// whether x < 0: pi/2 in a multiple of 2^-51 and the rest.
+// The multiple of pi/2 from which, and the direction in which, an angle is counted, indexed by whether |y| >
+// |x| and whether x < 0: pi/2 in a multiple of 2^-51 and the rest.
 struct Quarter {
   double head, rest, sign;
 };
@@ -137,8 +138,8 @@ inline constexpr std::array<Quarter, 4> quarters{{{0, 0, 1},
                                                   {quarter_turn, quarter_turn_rest, -1},
                                                   {quarter_turn, quarter_turn_rest, 1}}};
 
-// The angle from 0 to pi of (x, y), y > 0, the larger of |x| and y below 2^500, the smaller above 2^-500
-// and above 2^-20 of the larger.
+// Returns the angle from 0 to pi of (x, y), y > 0. The larger of |x| and y must be below 2^500, the smaller
+// above 2^-500 and above 2^-20 of the larger.
 inline double angle_of_upper(double y, double x) {
   const double width = magnitude(x);
   const double larger = y > width ? y : width, smaller = y > width ? width : y;
@@ -151,7 +152,7 @@ inline double angle_of_upper(double y, double x) {
   const double d_head = coarse_t - point, d_rest = t - coarse_t;
   const ArcTangent& at = arc_tangent[bits(shifted) & 0x7f];
 
-  // What t lacks, (smaller - t larger)/larger, from products that round nothing that counts.
+  // The exact quotient minus t, (smaller - t larger)/larger, from products that round nothing that counts.
   const double upper = from_bits(bits(larger) & ~((std::uint64_t(1) << 27) - 1)), lower = larger - upper;
   const double lacking =
       (((smaller - coarse_t * upper) - coarse_t * lower) - d_rest * upper - d_rest * lower) * per;

@@ -27,7 +27,7 @@ constexpr Fixed times(Fixed a, Fixed b) {
 
 constexpr double power(int exponent) { return std::bit_cast<double>(std::uint64_t(1023 + exponent) << 52); }
 
-// The nearest multiple of 2^-bits, and what is left.
+// Returns the nearest multiple of 2^-bits; rest() returns the difference.
 constexpr double head(Fixed value, int bits) {
   const int shift = fraction_bits - bits;
   return double(std::int64_t((value + (Fixed(1) << (shift - 1))) >> shift)) * power(-bits);
@@ -47,7 +47,7 @@ constexpr Fixed arc(Fixed x, int sign) {
 }
 
 constexpr auto make_circle() noexcept {
-  // sin and cos of 1/16 by their series, of the others by turning on.
+  // sin and cos of 1/16 by their series, those of the other points by rotation.
   Fixed sin = 0, cos = 0, term = one;
   for (int n = 1; term != 0; n += 2) {
     cos += term;

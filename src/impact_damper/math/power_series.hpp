@@ -18,7 +18,7 @@ struct SeriesAt {
   Real u, u1, u2;
 };
 
-// c_0 + c_1 s + c_2 s^2 + ...: coefficients of an even power and the odd one behind it in pairs. Summed as
+// c_0 + c_1 s + c_2 s^2 + ...: coefficients in pairs of an even power and the next odd one. Summed as
 // E(z) + s O(z), z = s^2, together with the derivatives of E and O:
 //     u' = O + 2s (E' + s O'),      u'' = 2 (E' + 3s O') + 4z (E'' + s O'').
 template <class Real, std::size_t pairs>
@@ -44,14 +44,15 @@ template <class Real, std::size_t pairs>
   return sum_of_first<Real, pairs>(c, s);
 }
 
-// What a series departs from its straight line c_0 + c_1 s by, times `times`: without these two terms.
+// The departure of a series from its straight line c_0 + c_1 s, that is the series without these two terms,
+// and its first two derivatives, multiplied by `times`.
 template <class Real, std::size_t pairs>
 struct Departure {
   const PairedSeries<Real, pairs>& series;
   Real times{1};
   static constexpr std::size_t all = pairs;
 
-  // By the first `summed` pairs.
+  // Sums the first `summed` pairs.
   template <std::size_t summed = pairs>
   [[gnu::always_inline]] SeriesAt<Real> at(const Real& s) const {
     const SeriesAt<Real> by = sum_of_first<Real, summed, true>(series, s);
@@ -82,8 +83,8 @@ inline const PairedSeries<Real, 5> reciprocal_factorials = [] {
   return all;
 }();
 
-// The series about one instant of what a motion departs from a straight line by: from its second derivative
-// on. (The first pair is zero.)
+// Returns the series of the departure of a motion from a straight line, about one instant: it begins with the
+// second derivative. (The first pair is zero.)
 template <class Real>
 [[gnu::always_inline]] inline PairedSeries<Real, 5> departure_of(const Derivatives<Real, 10>& u) {
   const PairedSeries<Real, 5>& over = reciprocal_factorials<Real>;

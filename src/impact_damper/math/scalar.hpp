@@ -1,4 +1,4 @@
-// What the closed-form engines ask of the numbers they compute with. The program uses double; tests and the
+// The requirements of the closed-form engines on their number type. The program uses double; tests and the
 // bench use wider numbers as a reference, and one that counts its operations.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace impact_damper {
 
-// A real number with rounding errors of at most `epsilon`, with an order, made from double and turned into
+// A real number with rounding errors of at most `epsilon` and an order, made from double and convertible to
 // it. Its elementary functions are found by argument-dependent lookup (elementary.hpp).
 template <class T>
 concept Scalar = std::numeric_limits<T>::is_specialized && std::constructible_from<T, double> &&

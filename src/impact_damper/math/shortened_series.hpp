@@ -1,9 +1,9 @@
-// A power series on [0, 1] shortened: what its higher terms contribute is given to the lower ones, so that
-// far fewer reach the same accuracy (docs/mathematics.md, M4.5).
+// A power series on [0, 1], shortened: the contributions of its higher terms are moved to the lower ones, so
+// that far fewer terms reach the same accuracy (docs/mathematics.md, M4.5).
 //
-// From the highest down, the term of the power n is replaced by what T*_n, Chebyshev's polynomial of [0, 1],
-// has in lower powers. That errs by the term times 2^(1-2n) at most, everywhere in [0, 1], where to leave it
-// out would err by the whole term at 1.
+// From the highest down, the term of the power n is replaced by the lower powers of T*_n, Chebyshev's
+// polynomial of [0, 1]. The error is at most the term times 2^(1-2n), everywhere in [0, 1]; leaving the term
+// out would cost the whole term at 1.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace impact_damper {
 
-// What one unit of the coefficient of the power kept + i adds to those below `kept`.
+// The amounts that one unit of the coefficient of the power kept + i adds to the coefficients below `kept`.
 template <class Real, std::size_t kept, std::size_t count>
 inline const std::array<PairedSeries<Real, kept / 2>, count> shares_of_higher_terms = [] {
   static_assert(kept % 2 == 0);
@@ -22,7 +22,7 @@ inline const std::array<PairedSeries<Real, kept / 2>, count> shares_of_higher_te
     std::array<Real, kept + count> c{};
     c[kept + i] = 1;
     for (std::size_t n = kept + i; n >= kept; --n) {
-      // Of T*_n, times what makes its highest coefficient c[n]: each from the one above it.
+      // The coefficients of T*_n, scaled so that the highest is c[n]: each follows from the one above it.
       Real coefficient = c[n];
       for (std::size_t k = n; k > 0; --k) {
         coefficient *= -Real(double(k * (2 * k - 1))) / Real(double(2 * (n + k - 1) * (n - k + 1)));
@@ -34,7 +34,7 @@ inline const std::array<PairedSeries<Real, kept / 2>, count> shares_of_higher_te
   return shares;
 }();
 
-// What the coefficients of the powers `kept`, kept + 1, ... add to those below.
+// Returns the amounts that the coefficients of the powers `kept`, kept + 1, ... add to those below.
 template <std::size_t kept, class Real, std::size_t count>
 PairedSeries<Real, kept / 2> share_of(const std::array<Real, count>& higher) {
   const auto& shares = shares_of_higher_terms<Real, kept, count>;

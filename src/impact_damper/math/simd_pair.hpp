@@ -1,4 +1,4 @@
-// Two numbers that undergo the same: one instruction for both, where the processor has it for their type.
+// Two numbers that undergo the same operations: one instruction for both, where the processor has it.
 #pragma once
 
 #include <array>

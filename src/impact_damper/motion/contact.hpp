@@ -1,7 +1,7 @@
 // Contact with a compliant wall (M2.2) in closed form.
 //
-// x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow mode, both masses
-// moving together, and a fast one, the wall giving way (M5.3). A state is split into the two
+// x and the overlap q (y at the left wall, y - 1 at the right) are each the sum of a slow mode, in which both
+// masses move together, and a fast mode, in which the wall gives way (M5.3). A state is split into the two
 // (contact_modes.hpp), and each moves by its own oscillator's C and S (oscillator.hpp).
 #pragma once
 
@@ -20,8 +20,8 @@ class Contact {
  public:
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : Contact(system, begin, system.forcing.phase(begin), start, wall, Real(wall == Wall::left ? 0 : 1)) {}
-  // phase: of the force at the beginning. With y counted from elsewhere: the wall is at `origin`. From the
-  // wall itself, 0, y has all the digits of q.
+  // phase: of the force at the beginning. origin: the position of the wall on the axis of start.y. With y
+  // counted from the wall itself, origin = 0, y has all the digits of q.
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const SinCos<Real>& phase,
           const State<Real>& start, Wall wall, const Real& origin)
       : system_(system),
@@ -42,7 +42,8 @@ class Contact {
     return {s.x, s.v, wall_ + s.q, s.w};
   }
 
-  // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
+  // Returns the end of the contact, q = 0 again, with the state then; nothing if it is not before `horizon`.
+  // From the wall it is taken from the short-contact map or from the slow mode, else from search_leave().
   std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     if (start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)) {
       std::optional<End> end;
@@ -60,7 +61,7 @@ class Contact {
     SearchCounter<Real>::found(FoundBy::contact_search);
     return search_leave(horizon, search);
   }
-  // The same where the short-contact map tells it, and the change of x.
+  // Returns the end of the contact and the change of x until then, if the short-contact map gives them.
   auto end_of_short_contact() const {
     using Result = typename Map::EndAndChange;
     const auto end = system_.short_contact && start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)
@@ -70,9 +71,9 @@ class Contact {
       if (end) short_.end = end->time;
     return end;
   }
-  // The same, certified step by step.
+  // Returns the same end as leave(), found by Lemma L1 step by step.
   std::optional<WallEvent<Real>> search_leave(const Real& horizon, Search<Real>& search) const {
-    // A mass at rest may be pressed against the wall by q''', or a later derivative, alone.
+    // q''', or a later derivative, may be all that presses a mass at rest against the wall.
     Real from = pressed_until();
     if (from == 0 && start_.y == wall_ && start_.w == 0) {
       const Real third = third_of_q_at_rest();
@@ -85,14 +86,14 @@ class Contact {
     end.state.y = wall_;
     return end;
   }
-  // |q|, with the digits that y - 1 does not have at the right wall.
+  // Returns |q| at t, at the right wall with the digits that y - 1 does not have.
   Real overlap(const Real& t) const { return absolute(sum_at(t).q); }
-  // x, x', q and q'. For a short time as what they change by: the parts of a small q may be large, and
-  // cancel.
+  // x, x', q and q' at t. For a short time the parts of a small q are large and cancel, so the changes since
+  // the beginning are summed instead.
   ContactState<Real> sum_at(const Real& t) const {
     return by_changes(t) ? sum_of_changes(t) : sum_of(slow_at(t), fast_at(t));
   }
-  // With digits of its own.
+  // x - (x0 + x'0 t) and x' - x'0, summed from the changes of the two parts, not as differences of x and x'.
   std::optional<ChangeOfX<Real>> change_of_x(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
     const bool is_short = is_short_time(t);
@@ -100,7 +101,7 @@ class Contact {
                              by_fast = change(c.fast, parts().fast, c.drive_fast, t, is_short);
     return ChangeOfX<Real>{by_slow.x + by_fast.x, by_slow.v + by_fast.v};
   }
-  // The two parts of x, x', q and q'.
+  // The two parts of x, x', q and q' at t.
   ContactState<Real> slow_at(const Real& t) const {
     return move(system_.slow, parts().slow, system_.drive_slow, t);
   }
@@ -109,7 +110,8 @@ class Contact {
   }
   const ContactModes<Real, Force>& system() const { return system_; }
 
-  // Towards zero: how deep the secondary mass is in the wall.
+  // Encloses inward_ q, the depth of the secondary mass in the wall, which falls through zero at the
+  // contact's end.
   LocalEnclosure<Real> depth(const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t, slow, fast);
     LocalEnclosure<Real> ahead =
@@ -119,7 +121,8 @@ class Contact {
     ahead.whole.g1 = inward_ * both.w;
     return ahead;
   }
-  // Whether x is proved to keep its sign in [0, t], or never to exceed `best` or the ends, by its ends.
+  // Proofs for [0, t] from both ends: x keeps its sign `side` (keeps_side); x' keeps its sign, or |x| does
+  // not exceed `best` (keeps_course).
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
     return side * start_.x > 0 && side * end.x > 0 && keeps_sign(start_.x, end.x, second_of_x(t), t);
   }
@@ -128,13 +131,14 @@ class Contact {
     const Real off = second_of_x(t) * t * t / 8;
     return absolute(start_.x) + off <= best && absolute(end.x) + off <= best;
   }
-  // From `from` on, the time within which x has one zero at most, and x' too: once the ringing is below
-  // rounding (Lemma L5). In a short contact under a force that of x' alone, after a turn.
+  // Returns a time after `from` within which x and x' have at most one zero each, once the ringing is below
+  // rounding (Lemma L5); 0 if none is known. In a short contact under a force, where `from` is a turning
+  // point, x'(from) = 0, the time holds for x' alone.
   Real one_turn_within(const Real& from) const {
     const ContactModes<Real, Force>& c = system_;
     if constexpr (forced) {
       if (short_.x && short_.x->turn.time == from) {
-        // While x'' keeps its sign x' has one zero at most, and |x'''| <= m proves that for a time |x''|/m.
+        // While x'' keeps its sign x' has at most one zero, and |x'''| <= m proves that for a time |x''|/m.
         const Real within = absolute(short_.x->turn.x2) / third_of_x(short_.x->end());
         const Real rest = short_.x->end() - from;
         return within < rest ? within : rest;
@@ -146,7 +150,7 @@ class Contact {
     const Real size = kept * (absolute(slow.x) + absolute(slow.v)) * std::numeric_limits<Real>::epsilon();
     return c.fast.bound_after(fast.x, fast.v, from) * c.fast.rate() < size ? c.slow.half_period() : Real(0);
   }
-  // Whether x, zero at `from`, is proved to have no other zero until `end`, a time t since the beginning.
+  // Whether x, zero at `from`, is proved to have no other zero until `end`, the state at time t.
   bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
     return t < from + one_turn_within(from) || absolute(end.v) > second_of_x(t) * (t - from);
   }
@@ -159,8 +163,8 @@ class Contact {
     return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
                               from, until, search, resolution());
   }
-  // |x| at a turn: that of the slow mode if the ringing is below rounding, and turns x so close to where the
-  // slow mode turns that its height there is the same.
+  // Returns |x| at a turning point, x'(t) = 0. It is the height of the slow mode alone if the ringing is
+  // below rounding and moves the turning point too little to change the height (docs/mathematics.md, 7.7).
   Real height(const Real& t) const {
     const ContactModes<Real, Force>& c = system_;
     if constexpr (forced)
@@ -180,14 +184,14 @@ class Contact {
     LocalEnclosure<Real> ahead =
         look(instant_of_x(slow, system_.slow, system_.drive_slow, t),
              instant_of_x(fast, system_.fast, system_.drive_fast, t), order, sign, span);
-    // Early in a contact the parts of a small x' are large, and cancel.
+    // Early in a contact the two parts of a small x or x' are large and cancel.
     if (order == 0) ahead.whole.g = sign * both.x;
     if (order == 1) ahead.whole.g = sign * both.v;
     return ahead;
   }
 
   // x and its first three derivatives at the beginning: from the equations, not from the parts, whose
-  // rounding errors would decide where one is zero.
+  // rounding errors would decide where a derivative is zero.
   std::array<Real, 4> leads_of_x() const {
     const ContactModes<Real, Force>& c = system_;
     const auto f = c.forcing.template derivatives<2>(phase_);
@@ -197,7 +201,8 @@ class Contact {
     return {start_.x, start_.v, x2, x3};
   }
 
-  // Until when a mass that rests on its wall stays in it by Lemma L7; 0 where q'' or q''' tells.
+  // For a mass at rest on its wall, pressed into it by a derivative of x later than x''': a time until which
+  // it stays in the wall by Lemma L7. 0 for any other start, where q'' or q''' decides.
   Real pressed_until() const {
     if (start_.w != 0 || start_.y != wall_) return 0;
     const ContactModes<Real, Force>& c = system_;
@@ -232,7 +237,7 @@ class Contact {
       return last_.phase.emplace(system_.forcing.phase(begin_ + t));
     }
   }
-  // What carries a part over a time t.
+  // The propagator of a part over a time t, and its response to the force.
   struct Carrier {
     Propagator<Real> propagator;
     DrivenResponse<Real> driven{};
@@ -252,7 +257,7 @@ class Contact {
   }
   Wall wall() const { return inward_ < 0 ? Wall::left : Wall::right; }
 
-  // Bounds for a time t.
+  // Bounds on derivatives of x for a time t from the beginning on.
   Real third_of_x(const Real& t) const { return bound_of_x(3, t, &Map::third_of_x); }
   template <class OfMap>
   [[gnu::always_inline]] Real bound_of_x(std::size_t order, const Real& t, OfMap of_map) const {
@@ -271,8 +276,8 @@ class Contact {
       return typename Map::Start{start_.x, start_.v, start_.w};
   }
 
-  // The first time from `from` on at which sign times x (order 0) or x' (1) falls through zero, if it is near
-  // F, where the slow mode u does. Nothing where that is not proved.
+  // Returns the first time from `from` on at which sign times x (order 0) or x' (order 1) falls through zero,
+  // if it is F, the fall of the slow mode u, or near F. Returns nothing where that is not proved.
   //
   // The proof, (a) to (c). (a) u stays above its chord times exp(-a F) (Lemma L4), and the fast mode below a
   // bound that decreases (M3.5): so there is no zero before the time `settling` at which that bound meets the
@@ -293,7 +298,7 @@ class Contact {
         std::numeric_limits<Real>::epsilon() / 32 * kept * (absolute(u) + absolute(u1) / c.slow.root_b());
     if (from > 0) return ringing(0, from) < nothing ? std::optional(fall) : std::nullopt;
 
-    Real settling{0}, rest = ringing(0, settling);
+    Real settling{0}, rest = ringing(0, settling);  // rest: bound on the ringing from `settling` on
     for (int i = 0; i < 2; ++i) {
       if (!(rest < kept * u)) return {};
       settling = fall - fall * rest / (kept * u);
@@ -313,8 +318,9 @@ class Contact {
     return fall + shift;
   }
 
-  // The same of a contact of the short-contact map, by its series. Neither what is decided nor the time
-  // depends on `until`.
+  // Returns the first fall of sign times x (order 0) or x' (order 1), or that there is none, in a contact
+  // whose end the short-contact map gave: by its series (M7.10) and Lemma L6. Returns nothing where that is
+  // not decided. Neither the decision nor the time depends on `until`.
   std::optional<FirstFall<Real>> fall_in_short_contact(std::size_t order, const Real& sign, const Real& from,
                                                        const Real& until) const {
     const XInShortContactTable<Real>& table = system_.x_in_short_contact;
@@ -353,7 +359,7 @@ class Contact {
     const Real fourth = order == 0 ? map.fourth_of_x(start_of_map()) : map.fifth_of_x(start_of_map());
     auto fall = fall_by_ends(at, begin, end, fourth, table.rate());
     if (fall && fall->time && by_changes(*fall->time)) {
-      // What has hardly changed since the touch has digits that the series does not have.
+      // For a short time the changes since the touch have digits that the series does not have.
       const ContactState<Real> now = sum_at(*fall->time);
       *fall->time -= sign * (order == 0 ? now.x : now.v) / fall->slope;
       if (!(*fall->time > from)) return {};
@@ -364,8 +370,8 @@ class Contact {
 
   ContactState<Real> move(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
                           const ContactState<Real>& drive, const Real& t) const {
-    // Under forcing x' and q' of a part differ from its v and w by drive.x f and drive.q f, from the start
-    // on.
+    // Under a force the x' and q' of a part include drive.x f and drive.q f, which `from` lacks at t = 0,
+    // too.
     if (t == 0 && !system_.forcing) return from;
     const auto [p, driven] = carrier(oscillator, t);
     const Real s1 = -oscillator.b() * p.s;
@@ -375,7 +381,7 @@ class Contact {
     return to;
   }
 
-  // sum_at(t), the parts at t being known.
+  // As sum_at(t), where the two parts at t are already known.
   ContactState<Real> sum_at(const Real& t, const ContactState<Real>& slow,
                             const ContactState<Real>& fast) const {
     return by_changes(t) ? sum_of_changes(t) : sum_of(slow, fast);
@@ -394,12 +400,12 @@ class Contact {
             q0 + (start_.w * t + (by_slow.q + by_fast.q)), start_.w + (by_slow.w + by_fast.w)};
   }
 
-  // Whether the parts are summed as what they change by.
+  // Whether t is so short that the changes of the parts are summed, not the parts.
   bool is_short_time(const Real& t) const {
     return t * system_.fast.rate() < Real(0.5) && t * system_.slow.rate() < Real(0.5);
   }
-  // What a part departs by from a straight line, and what its velocities change by; for a short time without
-  // what both parts have in common.
+  // Returns the departure of a part from its straight line, in x and q, and the change of its x' and q'. For
+  // a short time the terms that both parts have in common, with opposite signs, are left out.
   ContactState<Real> change(const Oscillator<Real>& oscillator, const ContactState<Real>& from,
                             const ContactState<Real>& drive, const Real& t, bool is_short = true) const {
     const auto [p, driven] = carrier(oscillator, t);
@@ -407,7 +413,7 @@ class Contact {
     ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
-      // (M5.10): what both parts have in common in x and q is left out where it would cancel.
+      // (M5.10): the terms common to both parts, which would cancel, are left out of x and q.
       if (is_short && driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {
@@ -432,7 +438,7 @@ class Contact {
     to.w += drive.w * driven.d1 + drive.q * on_velocity;
   }
 
-  // The modal split of the start, made when first asked for: the short-contact map does not need it.
+  // The modal split of the start, made at the first call: the short-contact map does not need it.
   const ContactParts<Real>& parts() const {
     if (!parts_) {
       parts_.emplace();
@@ -469,11 +475,11 @@ class Contact {
 
   const ContactModes<Real, Force>& system_;
   Real begin_;
-  SinCos<Real> phase_;  // of the forcing then
+  SinCos<Real> phase_;  // of the force then
   State<Real> start_;
   Real wall_, inward_;
   mutable std::optional<ContactParts<Real>> parts_;
-  // Under a force, what was found for the time asked for last: a search asks for one several times in turn.
+  // Under a force, what was computed for the latest time: a search evaluates one time several times in turn.
   static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
   struct Nothing {};
   struct Last {
@@ -488,7 +494,7 @@ class Contact {
   [[no_unique_address]] mutable std::conditional_t<forced, Last, Nothing> last_;
   struct Unforced {};
   [[no_unique_address]] std::conditional_t<forced, typename Map::Start, Unforced> touch_;
-  // Under a force, of a contact whose end the map has told.
+  // Under a force: the end of a contact that the short-contact map gave, and x until then.
   struct Endless {};
   struct Short {
     std::optional<Real> end{};

@@ -1,7 +1,7 @@
 // The propagator of a contact without modes (M5.7): exp(A t) as a product of powers exp(2^j A h), tabulated
 // once for a scene and rounded once, and of a Taylor series for the rest of t, below h. It needs no
-// eigenvalues. No factor increases the energy (M5.8), so none increases the rounding errors of those before
-// it.
+// eigenvalues. No factor increases the energy (M5.8), and so none increases the rounding errors of the
+// factors before it.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace impact_damper {
 
-// The equations of a contact with a force: numbers as in contact_modes.hpp.
+// The numbers in the equations of a contact with a force, named as in contact_modes.hpp.
 template <class Real>
 struct ContactEquations {
   Real nu, zeta, stiffness, damping;  // nu, zeta, K = k/nu, c
@@ -31,7 +31,7 @@ class ContactExponential {
     if (forcing) rate_ += forcing.frequency;
     while (shortest_ * rate_ > Real(0.5)) shortest_ /= 2;
     Matrix power = short_exponential();
-    // Later than any run may last.
+    // Longer than any run.
     Real step = shortest_;
     while (step < Real(1e13)) {
       powers_.push_back(rounded(power));
@@ -63,7 +63,7 @@ class ContactExponential {
     return s;
   }
 
-  // A s.
+  // Returns A s.
   template <class Number>
   std::array<Number, 6> derivative(const std::array<Number, 6>& s) const {
     const auto& [x, v, q, w, f, g] = s;
@@ -73,7 +73,7 @@ class ContactExponential {
     const Real omega = equations_.forcing.frequency;
     return {v, v1, w, times(-1, wall) + times(-1, v1), times(omega, g), times(-omega, f)};
   }
-  // Of all motions, force included: no eigenvalue is larger.
+  // Upper bound of the modulus of every eigenvalue, the force included.
   const Real& rate() const { return rate_; }
   const ContactEquations<Real>& equations() const { return equations_; }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// The roots are about 1. Not std::abs, whose last bit is the C library's.
+// The roots are about 1. std::abs is not used: its last bit depends on the C library.
 double size(const Complex& z) { return std::sqrt(z.real() * z.real() + z.imag() * z.imag()); }
 
 double separation(const std::vector<Complex>& roots, int first, int second) {
@@ -37,7 +37,7 @@ QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0) {
   std::vector<Complex> roots = eigenvalues_of_hessenberg(companion);
   for (Complex& root : roots) root *= scale;
 
-  // Conjugates are so exactly, so two roots make a real factor if they are conjugate or both real.
+  // The roots come in exact conjugates, so two roots make a real factor if they are conjugate or both real.
   double best = -1;
   QuadraticFactor factor{};
   for (int i = 0; i < 4; ++i) {

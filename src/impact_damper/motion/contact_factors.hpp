@@ -1,9 +1,9 @@
 // The characteristic polynomial of a contact, P = J H - g D^2 (M5.1, M5.2), as a product of two real
 // quadratics (M5.3).
 //
-// J = s^2 + j1 s + j0 is that of the two masses joined, H = s^2 + h1 s + h0 that of the wall between them;
-// their coupling g D^2 is weak if the wall is stiff or viscous, or if one mass is light. The unknowns are the
-// differences of the factors from J and H, which so have their own relative accuracy.
+// J = s^2 + j1 s + j0 belongs to the two masses joined, H = s^2 + h1 s + h0 to the wall between them. Their
+// coupling g D^2 is weak if the wall is stiff or viscous, or if one mass is light. The unknowns are the
+// differences of the factors from J and H, which thus have a relative accuracy of their own.
 #pragma once
 
 #include <limits>
@@ -22,9 +22,9 @@ struct ContactFactors {
 struct QuadraticFactor {
   double p, b;
 };
-// The slower factor of s^4 + c3 s^3 + c2 s^2 + c1 s + c0 from its roots (Eigen), to a few digits: the faster
-// follows from it without cancellation, but not the other way round. Of the possible pairings of real roots
-// the one whose two factors have roots farthest apart.
+// Returns the slower factor of s^4 + c3 s^3 + c2 s^2 + c1 s + c0 from its roots (Eigen), to a few digits: the
+// faster follows from it without cancellation, but not the other way round. Real roots can be paired in
+// several ways; the pairing is taken whose two factors have roots farthest apart.
 QuadraticFactor quadratic_factor(double c3, double c2, double c1, double c0);
 
 // A wall with K = k/nu above this is much stiffer than all else that holds the primary mass.
@@ -52,15 +52,14 @@ ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real
     f.b2 = h0 + f.db2;
   };
   differ_by(0, 0);
-  // With a wall that is much stiffer than the spring the joined motion is near enough to start from.
+  // With a wall that is much stiffer than the spring, the joined motion is near enough to start from.
   if (!(stiffness > stiff_above(zeta))) {
     const Real c3 = 2 * zeta + damping * both, c2 = 1 + 2 * zeta * damping + stiffness * both;
     const Real c1 = damping + 2 * zeta * stiffness;
     const QuadraticFactor start = quadratic_factor(double(c3), double(c2), double(c1), double(stiffness));
     differ_by(start.p - j1, start.b - j0);
   }
-  // Bairstow's iteration, Newton on the remainder r1 s + r0, until rounding errors keep it from coming
-  // nearer.
+  // Bairstow's iteration, Newton's method on the remainder r1 s + r0, until rounding errors stop it.
   Real before = std::numeric_limits<Real>::infinity();
   for (int i = 0; i < 50; ++i) {
     const Real alpha = f.p2 - f.p, beta = f.b2 - f.b;
@@ -86,7 +85,7 @@ ContactFactors<Real> factor_contact(const Real& nu, const Real& zeta, const Real
     f.db = f.b - j0;
     f.db2 = f.b2 - h0;
   }
-  // The energy bounds need damping that is not negative; a rounding error may make it so where it is zero.
+  // The energy bounds need damping >= 0, which a rounding error may violate where it is zero.
   if (f.p < 0) f.p = 0;
   if (f.p2 < 0) f.p2 = 0;
   return f;

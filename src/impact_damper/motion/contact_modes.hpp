@@ -1,11 +1,11 @@
-// The walls of a scene: what all contacts (M2.2) with them have in common, made once for a scene.
+// The modes of all contacts (M2.2) with the walls of a scene, made once for a scene.
 //
 // The characteristic polynomial is factored into a slow and a fast quadratic (M5.3, contact_factors.hpp). A
 // state is split into its two modes by (M5.4), applied to q and to the centre of both masses, X (M5.5): these
 // two are weakly coupled, so that nothing cancels. Each mode moves as its own oscillator.
 //
 // Where the factors are equal or nearly so, and where the primary mass is strongly damped, the parts are
-// large and cancel, as the split's norm (M5.6) tells. Such contacts are followed without modes
+// large and cancel, as the split's norm (M5.6) shows. Such contacts are followed without modes
 // (contact_without_modes.hpp).
 #pragma once
 
@@ -38,8 +38,8 @@ class ContactModes {
     beta_ = beta / resultant;
     slow_ = (beta - alpha * p) / resultant;
     fast_ = (beta - alpha * p2) / resultant;
-    // What one unit of forcing accelerates: x'' by 1, q'' by -1, and the centre by 1/(1+nu), from which the
-    // slow mode of x follows with all its digits. As 1 less the fast mode it would lose those of 1 + nu.
+    // One unit of force accelerates x by 1, q by -1 and the centre by 1/(1+nu). From the last the slow mode
+    // of x follows with all its digits. As 1 minus the fast mode it would lose those of 1 + nu.
     const Centre<Real> driven_centre = split({0, 1, 0, -1}, drive_slow, drive_fast),
                        driven_slow_centre{-driven_centre.x, joined_ - driven_centre.v};
     drive_slow.x = driven_slow_centre.x - share_ * drive_slow.q;
@@ -67,7 +67,7 @@ class ContactModes {
     }
   }
 
-  // Splits u into a slow and a fast mode, whose sum it is. Returns the centre X of the fast mode.
+  // Splits u into its slow and its fast mode. Returns the centre X of the fast mode.
   Centre<Real> split(const ContactState<Real>& u, ContactState<Real>& slow_part,
                      ContactState<Real>& fast_part) const {
     const auto& [p, b, p2, b2, dp, db, db2] = factors_;
@@ -94,7 +94,7 @@ class ContactModes {
     return centre;
   }
 
-  // Derivatives of x and q, from the equations themselves, given those of the force.
+  // Computes the derivatives of x and q from the equations; f: those of the force.
   template <std::size_t N>
   void derive(const ContactState<Real>& state, Derivatives<Real, N>& x, Derivatives<Real, N>& q,
               const Derivatives<Real, N>& f = {}) const {
@@ -114,31 +114,32 @@ class ContactModes {
   Oscillator<Real> slow, fast;
   ContactState<Real> drive_slow, drive_fast;
 
-  std::optional<ContactExponential<Real>> coupled;  // instead of all that follows
+  std::optional<ContactExponential<Real>> coupled;  // for a contact without modes, else empty
   static constexpr std::size_t columns = std::is_same_v<Force, NoForcing<Real>> ? 3 : 5;
   ShortContactMap<Real, columns> short_contact;
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<columns == 5, XInShortContactTable<Real>, Nothing>
       x_in_short_contact;
-  // Both parts' motion for a time in which the fast one moves little: a quarter of its period.
+  // A time in which the fast mode moves little, a quarter of its period if it oscillates, and the propagators
+  // of both modes over that time.
   Real piece;
   Propagator<Real> slow_piece, fast_piece;
 
  private:
-  // The force that a column of the short-contact map stands for, of amplitude 1: cos(omega_f t) in column 3
-  // and sin(omega_f t) in column 4, t being the time since the touch; none in the first three.
+  // The force of a column of the short-contact map, with amplitude 1: cos(omega_f t) in column 3 and
+  // sin(omega_f t) in column 4, t being the time since the touch; none in the first three columns.
   Force unit_force(std::size_t column) const { return {column < 3 ? Real(0) : Real(1), forcing.frequency}; }
   static SinCos<Real> phase_of(std::size_t column) {
     return column == 3 ? SinCos<Real>{Real(1), Real(0)} : SinCos<Real>{Real(0), Real(1)};
   }
-  // Bounds until `latest` on what the slow and the fast mode do from rest under such a force.
+  // Bounds until `latest` on the motion of the slow and the fast mode from rest under the force of a column.
   DrivenBounds<Real> driven_bounds(std::size_t column, const Real& latest) const {
     const Force force = unit_force(column);
     const SinCos<Real> phase = phase_of(column);
     DrivenBounds<Real> all{};
     const auto add = [&](const Oscillator<Real>& mode, const ContactState<Real>& drive) {
-      // Such a part p begins with p = 0, p' = displacement f, and obeys
-      // p'' + 2 a p' + b p = (velocity + 2 a displacement) f + displacement f'.
+      // Such a part p begins with p = 0, p' = displacement f, and obeys p'' + 2 a p' + b p = (velocity + 2 a
+      // displacement) f + displacement f'.
       const auto instant = [&](const Real& displacement, const Real& velocity) {
         return Instant<Real, 7, Force>(mode, Real(0), displacement * (column == 3 ? 1 : 0),
                                        velocity + 2 * mode.a() * displacement, displacement, force, phase);
@@ -162,8 +163,8 @@ class ContactModes {
     return all;
   }
 
-  // How much larger than a motion its fast mode can be, both masses counted alike: the square root of the sum
-  // of squares over four orthogonal states of norm 1.
+  // An upper bound of the size of a fast mode divided by that of the motion, in the norm (M5.6): the square
+  // root of the sum of squares over four orthogonal states of norm 1.
   Real norm_of_split() const {
     const Real root_k = square_root(stiffness);
     Real sum{0};
@@ -180,7 +181,7 @@ class ContactModes {
 
   Real joined_, share_;  // 1/(1+nu), nu/(1+nu)
   ContactFactors<Real> factors_;
-  Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2, by the resultant
+  Real alpha_, beta_, slow_, fast_;  // alpha, beta, beta - alpha p, beta - alpha p2; divided by the resultant
 };
 
 }  // namespace impact_damper

@@ -11,7 +11,7 @@ namespace impact_damper {
 template <class Real, class Force = Forcing<Real>>
 class ContactWithoutModes {
  public:
-  // `system` must have its `coupled`.
+  // system.coupled must not be empty.
   ContactWithoutModes(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start,
                       Wall wall)
       : ContactWithoutModes(system, begin, system.forcing.phase(begin), start, wall,
@@ -38,10 +38,10 @@ class ContactWithoutModes {
     const Vector s = exponential_(s_, t);
     return {s[0], s[1], wall_ + s[2], s[3]};
   }
-  std::optional<ChangeOfX<Real>> change_of_x(const Real&) const { return {}; }  // as in contact.hpp
+  std::optional<ChangeOfX<Real>> change_of_x(const Real&) const { return {}; }  // not available without modes
   Real overlap(const Real& t) const { return absolute(exponential_(s_, t)[2]); }
 
-  // When and in what state the secondary mass is back at the wall's position, if before `horizon`.
+  // Returns the end of the contact, q = 0 again, with the state then; nothing if it is not before `horizon`.
   [[gnu::noinline]] std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     Real from{0};
     if (start_.y == wall_ && start_.w == 0) {  // as in contact.hpp
@@ -104,7 +104,7 @@ class ContactWithoutModes {
 
  private:
   using Vector = std::array<Real, 6>;
-  // The motion and its derivatives at one time.
+  // The state and its derivatives at one time.
   struct Chain {
     Chain(const ContactWithoutModes& contact, const Real& t) : motion(contact) {
       s[0] = t == 0 ? contact.s_ : contact.exponential_(contact.s_, t);
@@ -116,7 +116,7 @@ class ContactWithoutModes {
       const ContactEquations<Real>& e = motion.exponential_.equations();
       return square_root(Real(x * x + v * v + e.nu * ((v + w) * (v + w) + e.stiffness * q * q)));
     }
-    // N_n for a time `span` from here on.
+    // Upper bound of N_n for a time `span` from here on.
     Real largest(std::size_t n, const Real& span) const {
       if (motion.size_of_force_ == 0) return size(n);
       Real power{1};

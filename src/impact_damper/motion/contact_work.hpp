@@ -1,11 +1,11 @@
 // The work done in a contact, however long it lasts (docs/mathematics.md, chapter 8).
 //
 // A wall of little damping rings thousands of times in a sustained contact, too often for a quadrature. The
-// rates x' and q' are taken as ringing (the fast mode without what the force keeps up) plus smooth (all
-// else). Smooth times smooth is left to the quadrature. The square of the ringing is a sum of exponentials,
-// integrated from its beginning alone, so that it tests where the motion ends. Smooth times ringing is
-// integrated by parts (M8.2, M8.3), exactly; digits are lost only where both oscillate about equally fast,
-// and there the quadrature follows both.
+// rates x' and q' are split into the ringing (the fast mode without its steady state under the force) and a
+// smooth part (all else). The square of the smooth part is left to the quadrature. The square of the ringing
+// is a sum of exponentials, integrated from its beginning alone, so that it tests where the motion ends. The
+// product of both is integrated by parts (M8.2, M8.3), exactly; digits are lost only where both oscillate
+// about equally fast, and there the quadrature is taken of the whole motion.
 #pragma once
 
 #include "impact_damper/motion/contact.hpp"
@@ -19,7 +19,8 @@ struct Wave {
   Real u, u1;
 };
 
-// Integral of h^2 over [0, duration] for a ringing h (underdamped) that begins as told.
+// Returns the integral of h^2 over [0, duration] of an underdamped free motion that begins with the value and
+// slope h.
 template <class Real>
 Real square_of_ringing(const Oscillator<Real>& ringing, const Wave<Real>& h, const Real& duration) {
   // h = exp(-a t) (h0 cos(omega t) + m sin(omega t))
@@ -34,7 +35,7 @@ Real square_of_ringing(const Oscillator<Real>& ringing, const Wave<Real>& h, con
   return (h.u * h.u + m * m) / 2 * mean + (h.u * h.u - m * m) / 2 * in_phase + h.u * m * behind;
 }
 
-// R of (M8.3) for the ringing h.
+// Returns R of (M8.3) for the ringing h.
 template <class Real>
 Wave<Real> by_parts(const Oscillator<Real>& ringing, const Wave<Real>& h, const Real& p, const Real& b) {
   const Real p2 = 2 * ringing.a(), b2 = ringing.b(), a = p2 + p, o = b2 - b;
@@ -42,7 +43,7 @@ Wave<Real> by_parts(const Oscillator<Real>& ringing, const Wave<Real>& h, const 
   return {(a * h.u1 + (a * p2 - o) * h.u) / r, -(o * h.u1 + a * b2 * h.u) / r};
 }
 
-// x' or q' at one instant of a contact.
+// x' or q' at one instant of a contact, in parts.
 template <class Real>
 struct RateParts {
   Wave<Real> slow, steady, ringing;  // steady, ringing: of the fast motion
@@ -76,7 +77,8 @@ RateParts<Real> rate_parts(const ContactModes<Real, Force>& walls, const Contact
   return parts;
 }
 
-// As the works of any motion (energy.hpp), at a cost that does not grow with how long the wall rings.
+// Returns the same as work_of() for any motion (energy.hpp), at a cost that does not grow with how long the
+// wall rings.
 template <class Real, class Force>
 Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>& contact, const Real& begin,
                    const Real& duration, const Real& wall_damping, Search<Real>& search) {
@@ -115,7 +117,7 @@ Work<Real> work_of(const System<Real, Force>& system, const Contact<Real, Force>
     }
     return sum;
   };
-  // f, and f a quarter of a period ahead.
+  // Antiderivatives of f times the ringing of x', and of f a quarter of a period ahead times that ringing.
   const auto force_times_ringing = [&](const RateParts<Real>& rate, const Real& t) {
     const auto f = walls.forcing.template derivatives<3>(walls.forcing.phase(begin + t));
     const Real& frequency = walls.forcing.frequency;

@@ -11,12 +11,12 @@
 
 namespace impact_damper {
 
-// In pairs of an even power and the odd one behind it. As many powers of the Taylor series have a share in
-// them.
+// The number of pairs of an even and the next odd power in the series, and how many powers of the Taylor
+// series contribute to them.
 inline constexpr std::size_t driven_pairs = 9, taylor_terms = 28;
-// The series errs in x'' by 2 (driven_radians / 4)^16 / 16! of the motion: epsilon / 1024, or near critical
-// damping and in resonance up to 17 times that, which is still below rounding. What its Taylor series leaves
-// out is less.
+// The error of the series in x'' is 2 (driven_radians / 4)^16 / 16! of the motion: epsilon / 1024, or near
+// critical damping and in resonance up to 17 times that, which is still below rounding. The Taylor series
+// leaves out less.
 template <class Real>
 inline constexpr double driven_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.775
                                          : std::numeric_limits<Real>::digits10 < 20 ? 1.102
@@ -24,7 +24,7 @@ inline constexpr double driven_radians = std::numeric_limits<Real>::digits10 < 1
 template <class Real>
 using DrivenTerms = PairedSeries<Real, driven_pairs>;
 
-// A series, of whose first three pairs a small part, 1e-12 of them at most, is kept apart: in a table the
+// A series. A small part of its first three pairs, at most 1e-12 of them, is kept apart: in a table the
 // rounding of the sum would be the same in every flight, and add up.
 template <class Real>
 struct ShortenedSeries {
@@ -32,7 +32,7 @@ struct ShortenedSeries {
   PairedSeries<Real, 3> small;
 };
 
-// Of an oscillator under a force of one frequency.
+// Makes the series of an oscillator under a force of one frequency.
 template <class Real>
 class DrivenSeriesMaker {
  public:
@@ -48,11 +48,12 @@ class DrivenSeriesMaker {
   // How long the series and its first two derivatives hold.
   const Real& reach() const { return reach_; }
 
-  // The Taylor coefficients of x, time in the unit: from x and x', f and f' at the beginning. Number: Real,
-  // or a pair of them, of two motions.
+  // Returns the Taylor coefficients of x, with time in the unit, from x and x', f and f' at the beginning.
+  // Number: Real, or a pair of them, of two motions.
   template <class Number>
   std::array<Number, taylor_terms> taylor(const Number& x, const Number& x1, const Number& f,
                                           const Number& f1) const {
+    // turn: the angle of the force's phase in one unit of time.
     const Real square = unit_ * unit_, b = b_ * square, a2 = a2_ * unit_, turn = frequency_ * unit_;
     std::array<Number, taylor_terms> c{x, x1 * unit_};
     Number f_now = f * square, f_next = f1 * (square * unit_);
@@ -65,7 +66,7 @@ class DrivenSeriesMaker {
     }
     return c;
   }
-  // The series with these coefficients, shortened over the reach (M4.5).
+  // Returns the series with these coefficients, shortened over the reach (M4.5).
   ShortenedSeries<Real> shortened(const std::array<Real, taylor_terms>& c) const {
     constexpr std::size_t kept = 2 * driven_pairs - 2;
     const Real reach = reach_ / unit_;
@@ -106,8 +107,8 @@ class DrivenSeriesMaker {
   Real unit_{1};  // a power of two
 };
 
-// The series is linear in x, v and the force f0 sin(phi) and f0 cos(phi) at the beginning: the coefficients
-// of each, made once for an oscillator and a frequency of the force.
+// The coefficients of the series for one unit of x, of v and of the force's f0 sin(phi) and f0 cos(phi) at
+// the beginning, in which the series is linear. Made once for an oscillator and a frequency of the force.
 template <class Real>
 class DrivenSeriesTable {
  public:
@@ -136,13 +137,13 @@ class DrivenSeriesTable {
 
   // How long the series and its first two derivatives hold.
   const Real& reach() const { return reach_; }
-  // By how much at most, per unit of time, a force of amplitude 1 increases the size (M3.4) of the n-th
-  // derivative; n < 8.
+  // Upper bound of the growth, per unit of time, of the size (M3.4) of the n-th derivative under a force of
+  // amplitude 1; n < 8.
   const Real& growth(std::size_t n) const { return growth_[n]; }
   // Whether the force is so fast that the steady state may give the smaller bound (M3.4).
   bool fast() const { return fast_; }
-  // The steady state that a force of amplitude 1 keeps up: in phase with the force and a quarter of a period
-  // behind it, and its amplitude.
+  // The steady state under a force of amplitude 1: its parts in phase with the force and a quarter of a
+  // period behind it, and its amplitude.
   struct Steady {
     Real in_phase, behind, amplitude;
   };
@@ -170,19 +171,19 @@ class DrivenSeriesTable {
 template <class Real>
 class DrivenSeries {
  public:
-  // From x and v, and the force f0 sin(phi) and f0 cos(phi).
+  // in_phase: f0 sin(phi); across: f0 cos(phi); both at the beginning, like x and v.
   DrivenSeries(const DrivenSeriesTable<Real>& table, const Real& x, const Real& v, const Real& in_phase,
                const Real& across)
       : c_(table.terms_of(x, v, in_phase, across)) {}
 
-  // By how much x and v differ from x0 + v0 t and v0, and x''; the first multiplied by `times`.
+  // The differences of x and v from x0 + v0 t and v0, and x'', all multiplied by `times`.
   Departure<Real, driven_pairs> departure(const Real& times = Real(1)) const { return {c_, times}; }
-  // The n-th derivative of x at the beginning, n < 8, but for 1e-9 of the motion's (M4.5).
+  // The n-th derivative of x at the beginning, n < 8, with an error of at most 1e-9 of the motion's (M4.5).
   Real derivative(std::size_t n) const {
     constexpr std::array<double, 8> factorial{1, 1, 2, 6, 24, 120, 720, 5040};
     return c_[n / 2][n % 2] * Real(factorial[n]);
   }
-  // The series of sign times the `order`-th derivative of x; order: 0, 1 or 2.
+  // Returns the series of sign times the `order`-th derivative of x; order: 0, 1 or 2.
   DrivenTerms<Real> derivative(std::size_t order, const Real& sign) const {
     DrivenTerms<Real> all;
     const std::size_t last = all.size() - 1;

@@ -1,7 +1,7 @@
 // Energies of the two masses and the walls, and the work that changes them: the balance (M8.1).
 //
 // Work is integrated along the motion itself by Gauss-Legendre quadrature, not taken as a difference of
-// energies: so the residual is a test of the motion and not an identity.
+// energies. So the residual is a test of the motion and not an identity.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace impact_damper {
 
-// Energy of a state, divided by K epsilon^2; `depth` is how deep the secondary mass is in a compliant wall.
-// Kinetic energy with the cross term that the paper's sum of squares drops: m is carried along with x'.
+// Returns the energy of a state, divided by K epsilon^2. depth: of the secondary mass in a compliant wall.
+// The kinetic energy has the cross term that the paper's sum of squares drops: m is carried along with x'.
 template <class Real, class Force>
 Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const Real& depth) {
   Energy energy;
@@ -29,7 +29,7 @@ template <class Real>
 struct Work {
   Real wall{0}, viscous{0}, forcing{0};
   Real reactive{0};  // of the forcing a quarter of a period ahead, f0 cos(omega_f t)
-  Real turnover{0};  // integral of the forcing's |power|: what rounding errors of its work are measured by
+  Real turnover{0};  // integral of the forcing's |power|: the scale of its rounding errors
 };
 
 // Abscissae (positive half) and weights of the 16-point Gauss-Legendre rule on [-1, 1]
@@ -46,10 +46,10 @@ inline constexpr std::array<GaussPoint, 8> gauss_16{{{0.0950125098376374402, 0.1
                                                      {0.9445750230732325761, 0.0622535239386478929},
                                                      {0.9894009349916499326, 0.0271524594117540949}}};
 
-// Work over [0, duration] of a motion that begins at `begin`, of which rates(t) tells x' and y' in panels of
-// length panel(t); wall_damping is nu c in contact, else 0. As exact as Gauss's 16 points are over a panel
-// (Oscillator::panel: to rounding), as long as there are no more than 65536 panels: then they get longer, and
-// an oscillation that fast averages out.
+// Returns the work over [0, duration] of a motion that begins at `begin`. rates(t): x' and y'; panel(t): the
+// length of the panel that begins at t; wall_damping: nu c in contact, else 0. As exact as Gauss's 16 points
+// are over a panel (Oscillator::panel: to rounding), as long as there are no more than 65536 panels: then
+// they get longer, and an oscillation that fast averages out.
 template <class Real, class Force, class Rates, class Panel>
 Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Panel&& panel, const Real& begin,
                            const Real& duration, const Real& wall_damping, Search<Real>& search) {
@@ -57,7 +57,7 @@ Work<Real> integrated_work(const System<Real, Force>& system, Rates&& rates, Pan
   Real from{0};
   const Real least = duration / 65536;
   for (int panels = 1; from < duration; ++panels) {
-    --search.steps_left;  // the next search may end the run for it; a quadrature is short enough by itself
+    --search.steps_left;  // only a search ends the run for lack of steps: a quadrature is short
     Real to = from + panel(from);
     if (panels > 65536 && to < from + least) to = from + least;
     if (!(to < duration)) to = duration;

@@ -1,5 +1,5 @@
 // Flight, 0 < y < 1: (M2.1). The secondary mass flies straight, z = x + y = z0 + z'0 t. Several dampers share
-// the motion of their primary mass, and each has a clearance of its own (engines/restitution_dampers.hpp).
+// the motion of their primary mass, and each has a clearance of its own (engines/secondary_masses.hpp).
 #pragma once
 
 #include "impact_damper/events/impact_prediction.hpp"
@@ -8,7 +8,7 @@
 
 namespace impact_damper {
 
-// The clearance that lengths are divided by, and that of one of several dampers.
+// The clearance of a single damper, the unit of length, and that of one of several dampers.
 template <class Real>
 struct UnitClearance {
   static constexpr Real gap() { return Real(1); }
@@ -28,7 +28,7 @@ struct FlightStart {
         wall(start.y > Real(0.5) ? 1 : 0),
         away(start.y > Real(0.5) ? -1 : 1),
         u(away * (start.y - wall)) {}
-  // Of a further piece of a flight.
+  // The start of a further piece of a flight.
   FlightStart(const State<Real>& now, const Real& which, const Real& direction, const Real& distance)
       : state(now), wall(which), away(direction), u(distance), goes_on(true) {}
   State<Real> state;
@@ -37,7 +37,8 @@ struct FlightStart {
   bool goes_on = false;  // a piece of a flight that began before
 };
 
-// Primary: the primary mass's motion, or a reference to it.
+// A motion of the secondary mass in flight. Primary: the type of the primary mass's motion, or a reference to
+// it.
 template <class Real, class Force = Forcing<Real>, class Clearance = UnitClearance<Real>,
           class Primary = ForcedMotion<Real, Force>>
 class Flight {
@@ -69,26 +70,28 @@ class Flight {
     return state_of(from_wall(t));
   }
 
-  // After this time at the latest the flight goes on as another piece, which begins there.
+  // The time after which, at the latest, the flight goes on as another piece, and the start of that piece at
+  // t.
   Real length() const { return primary_.length(); }
   FlightStart<Real> start_of_rest(const Real& t) const {
     const Place now = from_wall(t);
     return {state_of(now), wall_, away_, now.u};
   }
   bool goes_on() const { return goes_on_; }  // as a piece of a flight that began before
-  // Where and when a wall is met, if before `horizon`, which is no later than length().
+  // Returns the first impact on a wall, if it is before `horizon`, which must not exceed length().
   std::optional<WallEvent<Real>> next_wall(const Real& horizon, Search<Real>& search) const {
     return met_from(Real(0), Real(0), horizon, search);
   }
-  // The same of a mass that begins at rest on a wall, and leaves it.
+  // Returns the same for a mass that begins at rest on a wall and leaves it.
   std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
     const Real leap = begin_by_lead_of_y(search.span);
-    // If y'' differs from zero by rounding alone, its sign may be wrong: then the prediction begins after the
-    // leap, too. From an exact zero guess_by_parabola goes by y''', unless that is rounding as well.
+    // No wall is met before `leap` (M7.4). The prediction begins there, too, because a y'' that differs from
+    // zero by rounding alone may have the wrong sign. Only where y'' is exactly zero and y''' leads it begins
+    // at 0: guess_by_parabola then uses y'''.
     const bool by_jerk = lead_of_y()[2] == 0 && primary_.lead().order <= 3;
     return met_from(by_jerk ? Real(0) : leap, leap, horizon, search);
   }
-  // The same by Lemma L1, step by step.
+  // Returns the first impact in [from, horizon) by Lemma L1, step by step.
   std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
                                              Search<Real>& search) const {
     const auto met = first_root<Real>([&](const Real& t) { return gaps(t, search.span); }, from, horizon,
@@ -111,11 +114,12 @@ class Flight {
           {},
           std::numeric_limits<Real>::infinity()};
     };
-    // A mass that begins at rest on a wall turns there, and by rounding alone a second time.
+    // A mass that begins at rest on a wall has y' = 0 there; rounding could show a second zero within `leap`.
     const Real leap = start_.w == 0 && u_ == 0 ? begin_by_lead_of_y(search.span) : Real(0);
     return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
   }
-  // What falls through zero at an impact: the gap to the left wall, y, and the gap to the right one.
+  // Encloses the two functions that fall through zero at an impact: the gap to the left wall, y, and the gap
+  // to the right wall, both for a time `span` from t on.
   std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
     const Place now = from_wall(t);
     const Real near = now.u, far = gap() - now.u, y1 = away_ * now.u1;
@@ -132,8 +136,8 @@ class Flight {
     const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
-  // Whether a secondary mass at rest on the wall next to it sticks to it, pressed against it: the first
-  // derivative of y, from y'' = -x'' on, that is not zero to rounding tells.
+  // Whether a secondary mass at rest on the wall next to it sticks to it. The first derivative of y, from y''
+  // = -x'' on, that is not zero to rounding decides: it must press the mass against the wall.
   bool sticks() const { return away_ * primary_.lead().value > 0; }
   // A bound on |y''''| for a time `span` from the beginning on.
   Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
@@ -163,7 +167,8 @@ class Flight {
 
  private:
   Real gap() const { return clearance_.gap(); }
-  // The place of the secondary mass as its distance u from the wall.
+  // The state with the position of the secondary mass as its distance u from the wall, u' and the change of
+  // x.
   struct Place {
     Real x, v, u, u1;
     ChangeOfX<Real> change;  // of x
@@ -195,7 +200,7 @@ class Flight {
         if (predicted && predicted->wall)
           return predicted->wall->time < horizon ? predicted->wall : std::nullopt;
         if (predicted && horizon <= primary_.reach()) {
-          search.take_step();  // a scene without end is one of many pieces
+          search.take_step();  // each piece costs a step, so that a run without events ends
           return {};
         }
       }
@@ -209,8 +214,8 @@ class Flight {
     }
     return met;
   }
-  // Where the search for the next wall begins if the mass is released at rest and leaves with y''', or a
-  // later derivative, alone (M7.4); else 0.
+  // For a mass that is released at rest and leaves its wall by y''', or a later derivative, alone: the time
+  // (M7.4) before which it meets no wall. 0 for any other start.
   Real begin_by_lead_of_y(const Real& span) const {
     const auto y = lead_of_y();
     const Lead<Real> lead = primary_.lead();
@@ -222,14 +227,15 @@ class Flight {
                near = 1 / square_root(Real(1 + size / gap()));
     return near < far ? near : far;
   }
-  // Whether the terms that a correction leaves out, of fourth order, are below rounding for x and x', too,
-  // which may be far smaller than the secondary mass's motion: x'' and x''' stand for the size of x.
+  // Whether the fourth-order terms that a correction by `shift` leaves out are below rounding for x and x',
+  // too, which may be far smaller than the secondary mass's motion. |x''| + |x'''| stands for the size of x.
   static bool moves_x_by_series(const Derivatives<Real, 6>& u, const Real& shift, const Real& fourth) {
     const Real shift_2 = shift * shift, second = absolute(u[2]), third = absolute(u[3]);
     return fourth * (shift_2 * shift_2) <= 4 * std::numeric_limits<Real>::epsilon() * (second + third);
   }
-  // Whether Lemma L2 proves it, by both ends of a time h from `begin` on, else by those of its halves, and so
-  // on for as often as `halvings` tells.
+  // Whether Lemma L2 proves that u stays between the walls for a time h from `begin` on. from: u and its
+  // derivatives at `begin`; to: u and u' at the end; fourth: a bound on |u''''|. Where the ends do not prove
+  // it the interval is halved, at most `halvings` times.
   template <std::size_t N>
   bool stays_between_walls(const Derivatives<Real, N>& from, const Real& begin,
                            const Derivatives<Real, 2>& to, const Real& h, const Real& fourth,
@@ -239,14 +245,14 @@ class Flight {
     if (halvings == 0) return false;
     const Real half = h / 2;
     const Place middle = from_wall(begin + half);
-    // Its last two derivatives are asked for next to a wall only, and may tell nothing: -1.
+    // The third derivative -1 makes no claim: stays_between() uses it only for a beginning next to a wall.
     return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
            stays_between_walls(Derivatives<Real, 4>{middle.u, middle.u1, Real(0), Real(-1)},
                                Real(begin + half), to, half, fourth, halvings - 1);
   }
-  // By the series of a motion under a force (M4.4), which is as good as the closed form while it holds: the
-  // wall that is met first, or, `wall` empty, that none is met meanwhile. Nothing where Lemma L2 proves
-  // neither.
+  // Returns the wall that is met first, or with an empty `wall` that none is met while the series (M4.4) of a
+  // motion under a force holds, where it is as accurate as the closed form. Returns nothing where Lemma L2
+  // proves neither.
   struct PredictedWall {
     std::optional<WallEvent<Real>> wall;
   };
@@ -254,10 +260,11 @@ class Flight {
     const Real reach = primary_.reach();
     const DrivenSeries<Real>& x = primary_.series();
     const Derivatives<Real, 4> u{u_, away_ * start_.w, -away_ * x.derivative(2), -away_ * x.derivative(3)};
-    // On a wall and into it: an impact now. A speed of one denormal number is lost in Lemma L2's products.
+    // A start on a wall and into it is an impact now. Lemma L2's products would lose a speed of one denormal
+    // number.
     if (u[0] == 0 && u[1] < 0) return {};
     const Real& fourth = primary_.fourth_until_reach();
-    // Whether Lemma L2 proves the wall that is predicted to be the first.
+    // Returns the predicted impact if Lemma L2 proves it to be the first.
     const auto first = [&](const Prediction<Real>& predicted) -> std::optional<PredictedWall> {
       const Real& h = predicted.time;
       const auto& [by_u, by_u1] = predicted.gained;
@@ -285,7 +292,7 @@ class Flight {
       if (usable(predicted)) return first(predicted);
       if (!late && none()) return PredictedWall{};
     }
-    // Where the series ends beyond a wall, back from there.
+    // The series ends beyond a wall: Halley's method starts again from that end.
     if (end->u >= 0 && end->u <= gap()) return {};
     const Prediction<Real> predicted = predict_from(FirstGuess<Real>{reach, end->u > gap()}, true, u,
                                                     departure, reach, enough, go_on, gap());
@@ -297,8 +304,8 @@ class Flight {
     const bool left = across == (away_ < 0);
     return {time, left ? Wall::left : Wall::right, {x, v, left ? Real(0) : gap(), away_ * u1}, change};
   }
-  // By prediction and validation (impact_prediction.hpp), in three pieces at most; nothing where that does
-  // not succeed.
+  // Returns the first impact after `from` by prediction and validation (impact_prediction.hpp), in at most
+  // three pieces; nothing where that does not succeed. span: for how long the bounds hold.
   std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
     const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
     Real begin = from;
@@ -344,7 +351,7 @@ class Flight {
         }
         const bool near = absolute(shift) < h / 4, beyond = !(there.u >= 0 && there.u <= gap());
         if (correction == 5 || !(near || beyond)) break;
-        // A place far beyond a wall: the wall was met before. Back, by half of h at most.
+        // Far beyond a wall: the impact was earlier, so h moves back, by h/2 at most.
         h += near ? shift : newton < 0 && newton > -h / 2 ? newton : Real(-h / 2);
       }
       if (!(h <= span) || !stays_between_walls(u, begin, {there.u, there.u1}, h, fourth, 2)) return {};

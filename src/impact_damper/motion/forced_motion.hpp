@@ -1,9 +1,8 @@
 // x of one oscillator, with or without a force: in flight (flight.hpp), and where both masses move as one
-// (sticking.hpp). From its beginning it follows in closed form (M3.2), and under a force by its series
-// (M4.4) while that holds.
+// (sticking.hpp). From its beginning it follows in closed form (M3.2), and under a force by its series (M4.4)
+// while that holds.
 //
-// Every motion answers, for a time t since its beginning: the state, which wall it meets and when, and where
-// a derivative of x falls through zero.
+// Times are since the beginning of the motion.
 #pragma once
 
 #include "impact_damper/events/exclusion.hpp"
@@ -16,7 +15,7 @@
 
 namespace impact_damper {
 
-// A quadrature panel (Oscillator::panel), no longer than the forcing allows.
+// Returns the length of a quadrature panel (Oscillator::panel), at most six radians of the force.
 template <class Real, class Force>
 Real panel_under(const Force& forcing, const Real& panel) {
   return forcing && panel * forcing.frequency > 6 ? Real(6 / forcing.frequency) : panel;
@@ -73,7 +72,7 @@ class ForcedMotion {
   Instant<Real, N, Force> instant(const Real& x, const Real& v, const Real& t) const {
     return {oscillator_, x, v, Real(1), Real(0), forcing_, phase_at(t)};
   }
-  // The same of `times` x. The arguments x and v have been multiplied by `times` already.
+  // Returns the derivatives of `times` x. The arguments x and v have been multiplied by `times` already.
   template <std::size_t N>
   Derivatives<Real, N> derivatives(const Real& x, const Real& v, const Real& t, const Real& times) const {
     if (!forcing_) return impact_damper::derivatives<N>(oscillator_, x, v);
@@ -87,15 +86,15 @@ class ForcedMotion {
     if (!forcing_) return oscillator_.bound(d[4], d[5]);
     return Instant<Real, 6, Force>{oscillator_, x, v, times, Real(0), forcing_, phase_at(t)}.bound(4, span);
   }
-  // The derivatives at the beginning. Under a force there are enough for a bound on the fourth of x''.
+  // The derivatives at the beginning. Under a force they suffice for a bound on the fourth derivative of x''.
   static constexpr bool forced = !std::is_same_v<Force, NoForcing<Real>>;
   using Beginning = Instant<Real, forced ? 8 : 6, Force>;
   // A bound on |x^(n)| for a time `span` from the beginning on; n <= 6, without a force n <= 4.
   Real bound(std::size_t n, const Real& span) const {
     if constexpr (forced) {
       // Under a fast force the steady state may give the smaller of the two bounds (M3.4). Else only the
-      // bound that grows with `span` is computed, from the series, which is there already.
-      // Its coefficients differ from derivatives by less than `above` tells (M4.5).
+      // bound that grows with `span` is computed, from the series, which is there already. Its coefficients
+      // differ from the derivatives by a smaller factor than `above` (M4.5).
       const DrivenSeriesTable<Real>& table = oscillator_.series;
       const Real& f0 = forcing_.amplitude;
       constexpr double above = 1 + 1.0 / 1048576;
@@ -127,12 +126,13 @@ class ForcedMotion {
     }
   }
 
-  // The way in which x'' and the derivatives after it lead at the beginning.
+  // The first derivative of x at the beginning, from x'' on, that is not zero to rounding (M7.12).
   Lead<Real> lead() const {
     return lead_of_x(Real(2 * oscillator_.a()), oscillator_.b(), forcing_, phase_, x0_, v0_);
   }
 
-  // Whether x, or x', is proved to keep its sign in [0, t], by its ends, x and v at the last.
+  // Whether x (keeps_side), or x' (keeps_course), is proved to keep its sign in [0, t], from x and v at both
+  // ends.
   bool keeps_side(const Real& side, const Real& x, const Real& v, const Real& t) const {
     if (!(side * x0_ > 0 && side * x >= 0)) return false;  // a zero at the end is the next motion's
     if constexpr (forced) {
@@ -154,11 +154,11 @@ class ForcedMotion {
       return t < oscillator_.half_period();
     }
   }
-  // A time from t on in which x' has one zero at most; without a force x and every derivative, too.
+  // Returns a time after t within which x' has at most one zero; without a force x and every derivative, too.
   Real one_turn_within(const Real& t) const {
     if constexpr (forced) {
       if (!(t < reach())) return 0;
-      // While x'' keeps its sign x' has one zero at most, and |x'''| <= m proves that for a time |x''(t)|/m.
+      // While x'' keeps its sign x' has at most one zero, and |x'''| <= m proves that for a time |x''(t)|/m.
       const Real rest = reach() - t, within = absolute(departure(t).u2) / bound(3, reach());
       return within < rest ? within : rest;
     } else {
@@ -184,19 +184,20 @@ class ForcedMotion {
     const Real time = oscillator_.fall(u, u1, from);
     return time < until ? std::optional(time) : std::nullopt;
   }
-  // |x| at the time t of a turn.
+  // Returns |x| at a turning point, x'(t) = 0.
   Real height(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity()))
       return absolute(at(t).x);
     return oscillator_.height(x0_, v0_, t);
   }
-  // The last turn of x before t, the first zero of x''; nothing where it has no closed form.
+  // Returns the last turning point of x, x' = 0, before t, the first zero of x''; nothing where it has no
+  // closed form.
   std::optional<Real> turn_before(const Real& t) const {
     const Real& half_period = oscillator_.half_period();
     if (forcing_ || !(half_period < std::numeric_limits<Real>::infinity()) || !(t < half_period)) return {};
     return t - oscillator_.turn_before();
   }
-  // |x'| at a zero of x'' at t, where x is -2a/b times x'; nothing where it has no closed form.
+  // Returns |x'| at a zero of x'' at t, where x is -2a/b times x'; nothing where it has no closed form.
   std::optional<Real> speed_at_turn(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
@@ -219,9 +220,10 @@ class ForcedMotion {
   }
   Real panel(const Real& t) const { return panel_under(forcing_, oscillator_.panel(t)); }
 
-  // The series about the beginning under a force, and how long it holds.
+  // The series under a force about the beginning of the motion. It holds for reach().
   const DrivenSeries<Real>& series() const { return cached_.series; }
-  // Asked for at the end of the series, and often twice in turn at another time.
+  // The departure of x from its straight line at t, by the series. The values at its end and at the latest
+  // other time are kept: both are often needed again.
   const SeriesAt<Real>& departure(const Real& t) const {
     if (t == cached_.time) return cached_.then;
     if (t == reach()) {
@@ -232,13 +234,13 @@ class ForcedMotion {
     return cached_.then = series().departure().at(t);
   }
   const Real& reach() const { return oscillator_.series.reach(); }
-  // A bound on |x''''| while it holds.
+  // A bound on |x''''| while the series holds.
   const Real& fourth_until_reach() const {
     if (cached_.fourth < 0) cached_.fourth = bound(4, reach());
     return cached_.fourth;
   }
-  // How long the motion is followed as one: under a force as long as the series holds. But a fast force or
-  // strong damping would make that many pieces of a slow motion: then the closed form is cheaper.
+  // How long the motion is followed as one piece: under a force as long as the series holds. But a fast force
+  // or strong damping would cut a slow motion into many pieces: then the closed form is cheaper.
   Real length() const {
     if constexpr (forced)
       if (forcing_.frequency <= 64 * oscillator_.root_b() && oscillator_.rate() <= 4 * oscillator_.root_b())
@@ -248,7 +250,7 @@ class ForcedMotion {
 
  private:
   SinCos<Real> phase_at(const Real& t) const { return t == 0 ? phase_ : forcing_.phase(begin_ + t); }
-  // Sign times x (order 0) or x' (1), and its derivative, by the series.
+  // Returns sign times x (order 0) or x' (order 1), and its derivative, by the series.
   std::array<Real, 2> x_or_v(std::size_t order, const Real& sign, const Real& t) const {
     const SeriesAt<Real> by =
         t == 0 ? SeriesAt<Real>{Real(0), Real(0), series().derivative(2)} : departure(t);
@@ -256,9 +258,9 @@ class ForcedMotion {
     if (order == 1) return {sign * v, sign * by.u2};
     return {sign * (x0_ + (v0_ * t + by.u)), sign * v};
   }
-  // What falls() returns, if Lemma L2 proves it: the fall that Halley's method finds on the series is the
-  // first; or, `time` empty, there is none before `until`. Nothing where neither is proved. The time of a
-  // fall does not depend on `until`, so a shorter run is the beginning of a longer one.
+  // The result of falls(), if Lemma L2 proves it: the fall that Halley's method finds on the series is the
+  // first; or, with an empty `time`, there is none before `until`. Nothing where neither is proved. The time
+  // of a fall does not depend on `until`, so a shorter run is the beginning of a longer one.
   struct PredictedFall {
     std::optional<Real> time;
   };
@@ -267,7 +269,7 @@ class ForcedMotion {
     if (!(from < reach())) return {};
     const Real fourth = order == 0 ? fourth_until_reach() : bound(order + 4, reach());
     const bool whole = until <= reach();
-    // The ends alone tell most often that x or x' does not fall.
+    // The ends alone show most often that x or x' does not fall.
     if (whole && order < 2) {
       const auto [end, end_slope] = x_or_v(order, sign, until);
       auto [begin, slope] = from == cached_.zero.time && order == cached_.zero.order
@@ -280,8 +282,8 @@ class ForcedMotion {
     }
     const auto g = series().derivative(order, sign);
     SeriesAt<Real> begin = from == 0 ? SeriesAt<Real>{g[0][0], g[0][1], 2 * g[1][0]} : sum<Real>(g, from);
-    // Later than the beginning a search starts where g is positive, or at a zero of g that has just been
-    // left: if g is negative there, then by rounding.
+    // After the beginning a search starts where g is positive, or at a zero of g that has just been left: if
+    // g is negative there, then by rounding.
     if (begin.u < 0 && from > 0) begin.u = 0;
     if (begin.u < 0 || (begin.u == 0 && !(begin.u1 > 0))) return {};
     if (const auto root = root_of_series(g, begin, from, reach())) {
@@ -299,9 +301,9 @@ class ForcedMotion {
   const Driven<Real, Force>& oscillator_;
   Force forcing_;
   Real begin_;
-  SinCos<Real> phase_;  // of the forcing at the beginning
+  SinCos<Real> phase_;  // of the force at the beginning
   Real x0_, v0_;
-  // All but the series made when first asked for; without a force never.
+  // All but the series is made at the first call; without a force there is nothing.
   struct Nothing {
     explicit Nothing(const ForcedMotion&) {}
   };
@@ -312,13 +314,13 @@ class ForcedMotion {
                  motion.forcing_.amplitude * motion.phase_.cos) {}
     DrivenSeries<Real> series;
     Real fourth{-1};  // none yet
-    Real time{-1};    // what was asked for last
+    Real time{-1};    // the latest time of departure(t)
     SeriesAt<Real> then{};
     std::optional<SeriesAt<Real>> at_reach{};
     struct Zero {
       std::size_t order;
       Real time{-1}, slope;
-    } zero{};  // of x or a derivative of it: what fell last
+    } zero{};  // of the x or x' that fell last
     std::optional<Beginning> beginning{};
   };
   [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;

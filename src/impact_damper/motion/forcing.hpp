@@ -10,8 +10,8 @@
 
 namespace impact_damper {
 
-// Sine and cosine of an angle that is larger than the one `at` belongs to by `by`, 0 to 1/16: in double
-// precision, as the next terms of both Taylor series are below 2^-61 (docs/mathematics.md, chapter 4).
+// Returns the sine and cosine of the angle of `at` increased by `by`, 0 to 1/16, to double precision: the
+// next terms of both Taylor series are below 2^-61 (docs/mathematics.md, chapter 4).
 template <class Real>
 SinCos<Real> turned(const SinCos<Real>& at, const Real& by) {
   const Real z = by * by;
@@ -29,11 +29,11 @@ struct Forcing {
   Real amplitude{0}, frequency{1};
   explicit operator bool() const { return amplitude != 0; }
 
-  // Where in its cycle the force is.
+  // Sine and cosine of the phase at a time.
   SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
-  // The same where the phase is known, `before`, that the force had a time `since` before `time`: turned on
-  // from there where the force has turned by less than 1/16 since, else computed from `time`.
-  // since >= 0. A phase that was turned is not turned again: the errors would add up.
+  // The same from the phase `before` that the force had a time `since` >= 0 before `time`: `before` is turned
+  // by the angle frequency since, if that is below 1/16; else the phase is computed from `time`. A phase that
+  // was turned must not be turned again: the errors would add up.
   SinCos<Real> phase(const Real& time, const SinCos<Real>& before, const Real& since) const {
     if constexpr (std::numeric_limits<Real>::digits10 < 17) {
       const Real by = frequency * since;
@@ -42,7 +42,7 @@ struct Forcing {
     return phase(time);
   }
 
-  // At a phase.
+  // f and its derivatives at a phase.
   template <std::size_t N>
   std::array<Real, N> derivatives(const SinCos<Real>& phase) const {
     static_assert(N >= 2);
@@ -55,7 +55,7 @@ struct Forcing {
   }
 };
 
-// None, known when compiled: what scenes without forcing need not ask is not there.
+// No force, known at compile time, so that scenes without a force have no code for it.
 template <class Real>
 struct NoForcing {
   Real amplitude{0}, frequency{1};
@@ -70,8 +70,8 @@ struct NoForcing {
   }
 };
 
-// What motions ask of a force: whether there is one, amplitude f0, frequency omega_f > 0, the sine and
-// cosine of its phase at a time of the run, and f and its derivatives at a phase.
+// The requirements of motions on a force: whether there is one, amplitude f0, frequency omega_f > 0, the sine
+// and cosine of its phase at a time of the run, and f and its derivatives at a phase.
 template <class T, class Real>
 concept ForceOf = requires(const T force, const Real& time, const SinCos<Real>& phase) {
   {bool(force)};

@@ -1,5 +1,5 @@
-// What the impacts of one instant change, with rigid walls and several dampers: Newton's law of restitution
-// in Moreau's form (M17.2), (M17.3).
+// The impacts of one instant, with rigid walls and several dampers: Newton's law of restitution in Moreau's
+// form (M17.2), (M17.3).
 #pragma once
 
 #include <algorithm>
@@ -12,25 +12,25 @@ namespace impact_damper {
 // A secondary mass that is at a wall, impinging or at rest there. Velocities are divided by epsilon Omega_n.
 template <class Real>
 struct MassAtWall {
-  std::size_t index;  // whose; ties are decided by it, so that the order of the masses changes no bit
+  std::size_t index;  // of the mass; decides ties, so that the order of the masses changes no bit
   Real nu, e;         // its mass, divided by the primary mass, > 0; its restitution, 0 to 1
   Real away;          // the direction from the wall into the cavity: 1 at a left, -1 at a right wall
   Real speed;         // before, relative to the wall and along `away`: < 0 impinging, 0 at rest
-  // The impulse on it vanishes if its wall's velocity jumps back by so much, (1+e) |speed|.
+  // If the wall's velocity jumps away from the mass by this much, (1+e) |speed|, the impulse on it vanishes.
   Real escape() const { return (1 + e) * -speed; }
 };
 
-// J, by how much the primary mass's velocity x' jumps (M17.3): the root of
+// Returns J, the jump of the primary mass's velocity x' (M17.3): the root of
 //     J + sum of away nu max(0, escape + away J),
-// which rises with J and is linear in pieces. `at_walls`: one or several masses; it is reordered.
+// which rises with J and is linear in pieces. at_walls: one or several masses; it is reordered.
 template <class Real>
 Real jump_of_velocity(std::span<MassAtWall<Real>> at_walls) {
   if (at_walls.size() == 1) {
     const MassAtWall<Real>& only = at_walls.front();
     return -only.away * (only.nu * only.escape() / (1 + only.nu));
   }
-  // The impulses that the walls of each side would get if x' stayed as it is: the larger tells the sign of J,
-  // which throws the walls of the stronger side back.
+  // The impulses that the walls of each side would get if x' stayed as it is. The larger determines the sign
+  // of J: the walls of the stronger side are thrown back.
   Real left{0}, right{0};
   for (const MassAtWall<Real>& each : at_walls) (each.away > 0 ? left : right) += each.nu * each.escape();
   const Real stronger = right > left ? -1 : 1;
@@ -57,8 +57,8 @@ Real jump_of_velocity(std::span<MassAtWall<Real>> at_walls) {
   return -stronger * size;
 }
 
-// Its speed after the impacts, relative to the wall and along `away`, where x' has jumped by `jump`: what
-// restitution asks for, or more where the wall moves away faster than that.
+// Returns the speed of a mass after the impacts, relative to the wall and along `away`, when x' has jumped by
+// `jump`: that of restitution, or a larger one where the wall moves away faster than that.
 template <class Real>
 Real speed_after(const MassAtWall<Real>& mass, const Real& jump) {
   const Real rebound = mass.e * -mass.speed, untouched = mass.speed - mass.away * jump;

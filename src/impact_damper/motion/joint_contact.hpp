@@ -1,6 +1,6 @@
 // Several secondary masses in contact with their walls at once (docs/mathematics.md, 17.5): x and each q as
-// power series in time (M17.16), in pieces so short that what the series leave out is below rounding
-// (M17.17). No modes: a set of masses seldom comes again, and equal dampers have equal modes.
+// power series in time (M17.16), in pieces so short that the terms left out are below rounding (M17.17).
+// Modes are not used: a set of masses seldom comes again, and equal dampers have equal modes.
 #pragma once
 
 #include <algorithm>
@@ -18,34 +18,35 @@
 
 namespace impact_damper {
 
-// One piece at a time. It is a motion (motion.hpp); y and y' in its states mean nothing. Series are in s =
-// t/h_: their terms are h_^n/n! times the n-th derivatives by t. Whatever is passed and returned is by t.
+// The motion (motion.hpp) of one piece at a time. y and y' in its states are not used. Arguments and results
+// are in t. The series inside are in s = t/h_: their terms are h_^n/n! times the n-th derivatives by t.
 template <class Real, class Force>
 class JointContact {
  public:
   static constexpr std::size_t joint_terms = 24;
-  // The first term left out of x'' is joint_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64,
-  // or near critical damping and in resonance up to `terms` times that, which is still below rounding.
+  // The first omitted term of x'' is joint_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or
+  // near critical damping and in resonance up to `terms` times that, which is still below rounding.
   static constexpr double joint_radians = std::numeric_limits<Real>::digits10 < 17   ? 1.4562250345325596
                                           : std::numeric_limits<Real>::digits10 < 20 ? 1.029
                                                                                      : 0.22;
   using Terms = PairedSeries<Real, joint_terms / 2>;
-  // A series in s, and a bound on the third derivative, by t, of its function in the piece.
+  // A function as a series in s, with a bound on its third derivative by t in the piece.
   struct Function {
     Terms terms;
     Real third;
-    std::size_t order;  // of the derivative of x, or of a mass's distance from its wall, that it is
+    std::size_t order;  // of the derivative, of x or of a mass's distance from its wall
   };
 
-  // Whether walls as stiff as that, and stiffer ones, may follow all else: they are much faster.
+  // Whether the walls with K >= `least` may follow the others (M17.22): at least one wall must be left to
+  // lead, and `least` must exceed 1e4 rate^2, the rate (M17.17) being that of the walls that lead.
   static bool may_follow(const Real& least, const Real& zeta, const Force& forcing,
                          const std::vector<PushedWall<Real>>& walls) {
     const auto leads = [&](const PushedWall<Real>& wall) { return wall.stiffness < least; };
     const Real rate = rate_for(zeta, forcing, walls, least);
     return std::ranges::any_of(walls, leads) && least > 10000 * rate * rate;
   }
-  // The walls are those of the piece that begins next. Those of a stiffness of at least `follow_from` ring no
-  // more: they follow all else (M17.22).
+  // Sets the walls of the pieces to come. Walls with K >= `follow_from` have stopped ringing, and follow all
+  // else (M17.22).
   void set_walls(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls,
                  const Real& follow_from = std::numeric_limits<Real>::infinity()) {
     zeta_ = zeta;
@@ -77,7 +78,7 @@ class JointContact {
       power *= end;
     }
   }
-  // Begins a piece: the walls are those of set_walls(), with their q and q' now.
+  // Begins a piece at `time` with x0 and v0. walls: those of set_walls(), with their q and q' now.
   void begin(const Real& time, const Real& x0, const Real& v0, const std::vector<PushedWall<Real>>& walls) {
     const std::size_t count = walls.size();
     std::array<Real, joint_terms> x{x0, h_ * v0};
@@ -88,7 +89,7 @@ class JointContact {
     phase_ = forcing_.phase(time);
     pull_.fill(Real(0));
     expand(x);
-    // What this leaves out is a ten-thousandth of itself each time.
+    // Each step leaves at most 1e-4 of what it corrects.
     for (int i = 0; i < 5 && !followers_.empty(); ++i) {
       follow(x);
       expand(x);
@@ -97,7 +98,7 @@ class JointContact {
     for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = SimdPair<Real>{x[2 * n], x[2 * n + 1]};
     end_ = -1;
   }
-  // Whether the walls that follow have the q and q' that they are told, but for rounding errors.
+  // Whether q and q' of the walls that follow agree with `walls` but for rounding errors.
   bool follows(const std::vector<PushedWall<Real>>& walls) const {
     const std::size_t count = nu_.size();
     const Real size = rounding_size() + h_ * h_ * absolute(forcing_.amplitude * phase_.sin);
@@ -110,7 +111,7 @@ class JointContact {
   }
 
   const Real& length() const { return length_; }
-  // x and x' at t, and what they differ by from x0 + v0 t and v0.
+  // x and x' at t, and their differences dx and dv from x0 + v0 t and v0.
   struct Change {
     Real x, v, dx, dv;
   };
@@ -123,13 +124,13 @@ class JointContact {
     const Change now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
   }
-  // q and q' of the i-th wall.
+  // Returns q and q' of the i-th wall at t.
   std::array<Real, 2> overlap(std::size_t i, const Real& t) const {
     if (t == end_) return {end_q_[i], end_w_[i]};
     const SeriesAt<Real> now = sum<Real>(terms_of(i), t * over_h_);
     return {now.u, over_h_ * now.u1};
   }
-  // Integral of nu c q'^2 over [0, t].
+  // Returns the work of the i-th wall's damper: the integral of nu c q'^2 over [0, t].
   Real wall_work(std::size_t i, const Real& t) const {
     const Terms q = terms_of(i);
     const Real half = t / 2;
@@ -146,7 +147,8 @@ class JointContact {
     return nu_[i] * (damping * over_h_) * sum_ww;
   }
 
-  // Proves of those whose q keeps its sign until t that it does (Lemma L2); stays(i) tells.
+  // Evaluates each q and q' at t, and a bound on each q''''. stays(i, wall) is then whether Lemma L2 proves
+  // that q of the i-th mass keeps its sign until t.
   void look_until(const Real& t) {
     const std::size_t count = nu_.size();
     const Real s = t * over_h_;
@@ -172,24 +174,24 @@ class JointContact {
     return stays_open(Real(inward * q_[i]), Real(inward * (over_h_ * q_[nu_.size() + i])),
                       Real(inward * end_q_[i]), Real(inward * end_w_[i]), end_, fourth_[i]);
   }
-  // What falls through zero where the i-th mass leaves its wall: how deep it is in it.
+  // Returns the function that falls through zero where the i-th mass leaves its wall: its depth in the wall.
   Function depth(std::size_t i, Wall wall) const {
     return function(terms_of(i), wall == Wall::left ? Real(-1) : Real(1), 0);
   }
-  // What falls through zero where a mass that flies meets a wall, u and u' now, which leads away from it if
-  // away is 1: u'' = -away x''.
+  // Returns the function that falls through zero where a mass in flight meets a wall: its distance from the
+  // wall, now u with the derivative u1. away: 1 at a left wall, -1 at a right one, so that u'' = -away x''.
   Function gap(const Real& u, const Real& u1, const Real& away) const {
     Function gap = function(x_, -away, 0);
     set(gap.terms, 0, u);
     set(gap.terms, 1, h_ * u1);
     return gap;
   }
-  // A bound on |x''|.
+  // A bound on |x''| in the piece.
   Real second_of_x() const { return bound(x_, 2); }
-  // When a function first falls through zero, in [0, until).
+  // Returns the first time in [0, until) at which g falls through zero.
   std::optional<Real> fall(const Function& g, const Real& until, Search<Real>& search) const {
     Real from{0};
-    // At rest on a wall the third derivative, or a later one, may lead alone (M7.4).
+    // At rest on a wall the third derivative, or a later one, may decide alone (M7.4).
     if (get(g.terms, 0) == 0 && get(g.terms, 1) == 0) {
       const std::size_t lead = order_of_lead() - g.order, order = lead > 3 ? lead : 3;
       Real value = get(g.terms, order);
@@ -230,7 +232,7 @@ class JointContact {
   Real resolution() const { return h_; }
 
  private:
-  // (M17.17)
+  // Returns the rate (M17.17) of the walls with K < `follow_from`.
   static Real rate_for(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls,
                        const Real& follow_from) {
     Real all_k{0}, most_k{0}, all_c{0}, most_c{0};
@@ -244,7 +246,8 @@ class JointContact {
     return square_root(Real(1 + all_k + most_k)) + 2 * zeta + all_c + most_c +
            (forcing ? forcing.frequency : Real(0));
   }
-  // Of the derivative of x that leads at the beginning; no more than the series has.
+  // Returns the order of the first derivative of x at the beginning, from x'' on, that is not zero (M7.12),
+  // but no higher one than the series has.
   std::size_t order_of_lead() const {
     std::vector<PushedWall<Real>> walls;
     for (std::size_t i = 0; i < nu_.size(); ++i)
@@ -258,10 +261,12 @@ class JointContact {
         lead_of_x<Real>(2 * zeta_, Real(1), forcing_, phase_, get(x_, 0), over_h_ * get(x_, 1), walls).order;
     return order > 0 && order + 1 < joint_terms ? order : joint_terms - 2;
   }
-  // The terms of x from its first two, and those of each q; those of what follows come from follow().
+  // Computes the terms of x from its first two, and those of each q that leads, by (M17.16). Those of the
+  // walls that follow come from follow().
   void expand(std::array<Real, joint_terms>& x) {
     const std::size_t count = nu_.size();
     const auto& [sin, cos] = phase_;
+    // turn: the angle of the force's phase in one unit of time.
     const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
     Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
     const auto& over = reciprocals<Real>;
@@ -281,7 +286,8 @@ class JointContact {
       f_next = f_after;
     }
   }
-  // The terms of what follows, from those of x: K q = -(x'' + q'') - c q', from the last one down.
+  // Computes the terms of each q that follows from those of x by (M17.22), K q = -(x'' + q'') - c q', from
+  // the highest order down.
   void follow(const std::array<Real, joint_terms>& x) {
     const std::size_t count = nu_.size();
     pull_.fill(Real(0));
@@ -290,14 +296,14 @@ class JointContact {
       for (std::size_t n = joint_terms; n-- > 0;) {
         const Real both = Real(double((n + 1) * (n + 2)));
         pull_[n] += nu_[i] * both * second;
-        const Real bend = n + 2 < joint_terms ? Real(x[n + 2] + second) : Real(0);
+        const Real bend = n + 2 < joint_terms ? Real(x[n + 2] + second) : Real(0);  // of x'' + q''
         const Real now = -(both * bend + double(n + 1) * damping * next) / spring;
         second = next;
         next = q_[n * count + i] = now;
       }
     }
   }
-  // The sizes of what h^2 x'' at the beginning is the sum of, without the force.
+  // The sum of the sizes of the terms that make up h^2 x'' at the beginning, without the force.
   Real rounding_size() const {
     const std::size_t count = nu_.size();
     Real size = h_ * h_ * absolute(get(x_, 0)) + 2 * zeta_ * h_ * absolute(get(x_, 1));
@@ -310,7 +316,7 @@ class JointContact {
     terms[n / 2] =
         n % 2 == 0 ? SimdPair<Real>{value, terms[n / 2][1]} : SimdPair<Real>{terms[n / 2][0], value};
   }
-  // A bound on a derivative by t in the piece: the sum of its terms' sizes at the end.
+  // A bound on the `order`-th derivative by t in the piece: the sum of the sizes of its terms at the end.
   Real bound(const Terms& terms, std::size_t order) const {
     const Real end = length_ * over_h_;
     Real all{0};
@@ -329,7 +335,7 @@ class JointContact {
       q[n] = SimdPair<Real>{q_[2 * n * count + i], q_[(2 * n + 1) * count + i]};
     return q;
   }
-  // Sign times the `order`-th derivative by t, 0 or 1.
+  // Returns sign times the `order`-th derivative by t of a series; order is 0 or 1.
   Function function(const Terms& terms, const Real& sign, std::size_t order) const {
     Function g{};
     for (std::size_t n = 0; n + order < joint_terms; ++n)
@@ -361,23 +367,23 @@ class JointContact {
   Force forcing_{};
   SinCos<Real> phase_{};  // of the force, when the piece begins
   Real length_{0};
-  // The unit of time of the series, a power of two, so that no number is rounded for it: the rounding would
-  // be the same in every piece, and add up.
+  // The unit of time of the series, a power of two, so that no number is rounded by it: the rounding would be
+  // the same in every piece, and add up.
   Real h_{1}, over_h_{1};
-  std::vector<Real> nu_, spring_, damping_;  // of each wall; h^2 K and h c, 0 of what follows
+  std::vector<Real> nu_, spring_, damping_;  // of each wall: nu, h^2 K, h c; the last two 0 if it follows
   struct Follower {
     std::size_t index;
     Real spring, damping;
   };
   std::vector<Follower> followers_;
-  Real mass_{1};                          // of the primary mass and what follows
-  std::array<Real, joint_terms> pull_{};  // the terms of what q'' of these takes from h^2 mass_ x''
+  Real mass_{1};                          // of the primary mass and the walls that follow
+  std::array<Real, joint_terms> pull_{};  // terms of h^2 sum nu q'' over these (M17.22)
   std::vector<Real> q_;                   // the terms of order 0 of all walls, then those of order 1 ...
   std::vector<Real> force_;
   Terms x_{};
   std::array<Real, joint_terms>
-      fourth_weight_{};  // the fourth derivative of a q is at most the sum of these times its terms' sizes
-  Real end_{-1};         // where these are known:
+      fourth_weight_{};  // |q''''| of a wall is at most the sum of these times the sizes of its terms
+  Real end_{-1};         // the time of look_until(), for which these hold:
   std::vector<Real> end_q_, end_w_, fourth_;
 };
 

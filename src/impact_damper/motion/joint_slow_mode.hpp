@@ -1,5 +1,5 @@
-// Several secondary masses that press their walls together after the ringing of these has died away
-// (docs/mathematics.md, 17.5): x is one oscillator again, the slow factor of (M17.18), and each q a
+// Several secondary masses that press their walls together after their ringing has died away
+// (docs/mathematics.md, 17.5): x is one oscillator again, the slow factor of (M17.18), and each q is a
 // combination of x, x' and the force, (M17.20).
 #pragma once
 
@@ -21,8 +21,8 @@ class JointSlowMode {
  public:
   using Primary = ForcedMotion<Real, Force>;
 
-  // Of these walls, of which nu, stiffness and damping count here, not q and q'. Nothing where a wall is not
-  // much stiffer than the spring of the primary mass.
+  // Returns the slow mode of these walls, of which nu, stiffness and damping are used, not q and q'. Returns
+  // nothing where a wall is not much stiffer than the spring of the primary mass.
   static std::optional<JointSlowMode> of(const Real& zeta, const Force& forcing,
                                          const std::vector<PushedWall<Real>>& walls) {
     Factor factor{};
@@ -53,20 +53,21 @@ class JointSlowMode {
     return {};
   }
 
-  // The oscillator, its force, and by how much time the force's phase is ahead of that of the scene's.
+  // The oscillator, its force, and the time by which the phase of this force is ahead of that of the scene.
   const Driven<Real, Force>& oscillator() const { return oscillator_; }
   const Force& force() const { return force_; }
   const Real& ahead() const { return ahead_; }
 
-  // q and q' of the k-th at a time since the release, when x and x' are told.
+  // Returns q and q' of the k-th wall at a time since the release; x and v: those of the primary mass then.
   std::array<Real, 2> overlap(std::size_t k, const Real& time, const Real& x, const Real& v) const {
     const OfWall& wall = walls_[k];
     const auto f = force_.template derivatives<3>(force_.phase(time + ahead_));
-    const Real bend = f[0] - 2 * oscillator_.a() * v - oscillator_.b() * x;
+    const Real bend = f[0] - 2 * oscillator_.a() * v - oscillator_.b() * x;  // x''
     return {wall.on_x * x + wall.on_v * v + (wall.on_f * f[0] + wall.on_f1 * f[1]),
             wall.on_x * v + wall.on_v * bend + (wall.on_f * f[1] + wall.on_f1 * f[2])};
   }
-  // Whether the walls ring no more: their q and q' are those of the slow mode but for rounding errors.
+  // Whether the walls have stopped ringing: their q and q' are those of the slow mode but for rounding
+  // errors.
   bool holds(const std::vector<PushedWall<Real>>& walls, const Real& time, const Real& x,
              const Real& v) const {
     const Real size_of_x = absolute(x) + absolute(v) / oscillator_.root_b();
@@ -74,7 +75,7 @@ class JointSlowMode {
       const OfWall& wall = walls_[k];
       const auto [q, w] = overlap(k, time, x, v);
       const Real size = absolute(wall.on_x) * size_of_x + absolute(wall.on_v * v) + wall.size_on_f;
-      // The phase of the force is known to a rounding of itself, which grows with time.
+      // The phase of the force has a rounding error of itself, which grows with time.
       const Real rounding =
           std::numeric_limits<Real>::epsilon() * (64 * size + 4 * force_.frequency * time * wall.size_on_f);
       if (!(absolute(walls[k].q - q) <= rounding && absolute(walls[k].w - w) <= rounding * wall.rate))
@@ -82,7 +83,7 @@ class JointSlowMode {
     }
     return true;
   }
-  // How deep the k-th is in its wall from a time t of `primary` on, which began at `begin`.
+  // Encloses the depth of the k-th mass in its wall from the time t of `primary` on, which began at `begin`.
   LocalEnclosure<Real> depth(std::size_t k, Wall where, const Primary& primary, const Real& begin,
                              const Real& t, const Real& span) const {
     const Real inward = where == Wall::left ? -1 : 1;

@@ -1,5 +1,5 @@
-// Which way a mass at rest on a wall goes: as the first derivative of x, from x'' on, that is not zero
-// (docs/mathematics.md, M7.12).
+// The direction in which a mass at rest on a wall goes: the first derivative of x, from x'' on, that is not
+// zero decides (docs/mathematics.md, M7.12).
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,24 @@
 
 namespace impact_damper {
 
-// A wall that is pushed: the mass ratio nu of who pushes it, its K = k/nu and c, and q and q' now.
+// A wall in contact: the mass ratio nu of the mass that pushes it, its K = k/nu and c, and q and q' now.
 template <class Real>
 struct PushedWall {
   Real nu, stiffness, damping;
   Real q, w;
 };
 
-// A derivative of x: the first that is not zero to rounding. Of order 0 if all are zero, x'' for ever.
+// The first derivative of x, from x'' on, that is not zero to rounding. Order 0: all are zero, and so x'' for
+// ever.
 template <class Real>
 struct Lead {
   std::size_t order = 0;
   Real value{0};
 };
 
-// Of x'' + a2 x' + b x = f, x and x' given now, with the forces of the walls that are `pushed` on the right
-// side. A derivative counts as zero if it is no more than the rounding errors of the terms that it is the sum
-// of; those that follow are then made with zero in its place.
+// Returns the lead of x, which obeys x'' + a2 x' + b x = f with the forces of the walls `pushed` added to f
+// and has x and x' now. A derivative counts as zero if it does not exceed the rounding errors of the terms
+// that make it up; those that follow are then made with zero in its place.
 template <class Real, class Force>
 Lead<Real> lead_of_x(const Real& a2, const Real& b, const Force& forcing, const SinCos<Real>& phase, Real x,
                      Real x1, std::span<const PushedWall<Real>> pushed = {}) {
@@ -36,7 +37,7 @@ Lead<Real> lead_of_x(const Real& a2, const Real& b, const Force& forcing, const 
   auto [f, f1] = forcing.template derivatives<2>(phase);
   Real amplitude = absolute(forcing.amplitude);
   std::vector<PushedWall<Real>> walls(pushed.begin(), pushed.end());
-  // x'' obeys a linear equation of this order, so that many vanish together only for ever.
+  // x'' obeys a linear equation of this order: if so many derivatives vanish, all vanish for ever.
   const std::size_t order = 4 + 2 * walls.size();
   for (std::size_t n = 2; n < 2 + order; ++n) {
     Real sum = f - a2 * x1 - b * x, size = b * absolute(x) + a2 * absolute(x1) + amplitude;
@@ -61,7 +62,8 @@ Lead<Real> lead_of_x(const Real& a2, const Real& b, const Force& forcing, const 
   return {};
 }
 
-// How long at least a mass that rests on a compliant wall stays in it, if this leads it there (M7.13).
+// Lower bound of the time for which a mass at rest on a compliant wall stays in it, if `lead` presses it into
+// the wall (M7.13).
 template <class Real, class Force>
 Real pressed_at_least(const Lead<Real>& lead, const Real& zeta, const Force& forcing) {
   const Real size = absolute(lead.value), longest = forcing.frequency > 1 ? 1 / forcing.frequency : Real(1);

@@ -1,6 +1,5 @@
-// What a motion is: one part of a run, between two of its events, in closed form. Flight, Stuck,
-// JoinedMasses, Contact, ContactWithoutModes and JointContact are motions. All times are since the motion's
-// beginning.
+// A motion is one part of a run, between two of its events, in closed form: Flight, Stuck, JoinedMasses,
+// Contact, ContactWithoutModes or JointContact. All times are since the motion's beginning.
 #pragma once
 
 #include <concepts>
@@ -25,7 +24,7 @@ concept MotionOf = requires(const T motion, const Real& t, const State<Real>& en
   { motion.keeps_side(t, end, t) } -> std::same_as<bool>;
   { motion.keeps_course(t, end, t) } -> std::same_as<bool>;
   { motion.leaves_zero(t, end, t) } -> std::same_as<bool>;
-  // From t on, a time in which x' has one zero at most; 0 where none is known.
+  // A time after t within which x' has at most one zero; 0 where none is known.
   { motion.one_turn_within(t) } -> std::convertible_to<Real>;
   // |x| at a peak at t.
   { motion.height(t) } -> std::convertible_to<Real>;
@@ -33,7 +32,7 @@ concept MotionOf = requires(const T motion, const Real& t, const State<Real>& en
   // from t on.
   { motion.leads_of_x()[order] } -> std::convertible_to<Real>;
   { motion.derivative_of_x(order, t, t, t).whole.g } -> std::convertible_to<Real>;
-  // The length of a quadrature panel that begins at t, and a time within which nothing happens.
+  // The length of a quadrature panel that begins at t, and the shortest time in which x changes.
   { motion.panel(t) } -> std::convertible_to<Real>;
   { motion.resolution() } -> std::convertible_to<Real>;
 };

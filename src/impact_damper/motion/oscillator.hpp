@@ -24,7 +24,8 @@ struct Propagator {
   Real v{1};          // S' = C - 2 a S, which would cancel where overdamped
 };
 
-// Displacement and velocity, from rest, of an oscillator under f; for a short time also the integral of d.
+// Displacement d and velocity d1, from rest, of an oscillator under f; for a short time also the integral of
+// d.
 template <class Real>
 struct DrivenResponse {
   Real d{0}, d1{0};
@@ -53,7 +54,8 @@ class Oscillator {
   const Real& b() const { return b_; }
   const Real& root_b() const { return root_b_; }
   const Real& rate() const { return rate_; }  // modulus of the fastest eigenvalue
-  // Between zeros of a free motion and of each of its derivatives; infinity where overdamped: one at most.
+  // The time between zeros of a free motion, and of each of its derivatives. Infinite where overdamped: they
+  // have at most one.
   const Real& half_period() const { return half_period_; }
 
   // The first time >= 0 at which a free motion that begins with u and u', not both zero, falls through zero
@@ -63,22 +65,23 @@ class Oscillator {
     const Real phase = angle_of(Real(omega_ * u), Real(-(u1 + a_ * u)));
     return phase < 0 ? Real(phase * over_omega_ + 2 * half_period_) : Real(phase * over_omega_);
   }
-  // The first of these at or after a time `from` that is no such time itself, nor near one: whole periods are
-  // added to the first.
+  // Returns the first such fall at or after `from`, which must be no fall itself, nor near one: whole periods
+  // are added to first_fall().
   [[gnu::always_inline]] Real fall(const Real& u, const Real& u1, const Real& from = Real(0)) const {
     const Real first = first_fall(u, u1);
     if (!(first < from)) return first;
     const Real period = 2 * half_period_;
     return first + Real(whole_above(double((from - first) / period))) * period;
   }
-  // How long before a zero of u'' that of u' is, where a free motion turns between; only where underdamped.
+  // The time from a zero of u' to the next zero of u'' in a free motion; only where underdamped.
   const Real& turn_before() const { return turn_before_; }
-  // |u| at the turns of a free motion: after a time t at which u' is zero; only where underdamped.
+  // Returns |u| at a turning point, u' = 0, of a free motion, a time t after it began with u and u'; only
+  // where underdamped.
   Real height(const Real& u, const Real& u1, const Real& t) const {
     const Real along = (u1 + a_ * u) * over_omega_, height = square_root(Real(u * u + along * along));
     return a_ == 0 ? height : Real(height * exponential(Real(-a_ * t)) * omega_ / root_b_);
   }
-  // Bound on |free motion| that begins with u and u', from the time t on (M3.5).
+  // Upper bound of |u| from the time t on, of a free motion that begins with u and u' (M3.5).
   Real bound_after(const Real& u, const Real& u1, const Real& t) const {
     const Real along = absolute(u1 + a_ * u), rate = underdamped_ ? a_ : slow_rate_;
     const Real size =
@@ -139,7 +142,7 @@ class Oscillator {
     return p;
   }
 
-  // Response after a time t, from rest at the time when the forcing was in `phase`. `p` is propagate(t).
+  // Returns the response after a time t, from rest at the time when the force had `phase`. p: propagate(t).
   template <class Force>
   DrivenResponse<Real> respond(const Force& forcing, const SinCos<Real>& phase, const Real& t,
                                const Propagator<Real>& p) const {
@@ -226,9 +229,9 @@ class Oscillator {
       f_next = f_after;
       d_now = d_next;
       d_next = term;
-      // (M4.3) makes the terms to come of these four numbers. Fewer are not enough: where omega_f^2 = b, two
-      // successive terms of d vanish, of order 6 and 7 if a/sqrt(b) is sqrt(3)/2, of order 8 and 9 if it is
-      // sqrt(1/2), of order 10 and 11 if it is cos 18 or cos 54 degrees, and so on.
+      // (M4.3) makes the terms to come from these four numbers. Fewer are not enough: where omega_f^2 = b,
+      // two successive terms of d vanish, of order 6 and 7 if a/sqrt(b) is sqrt(3)/2, of order 8 and 9 if it
+      // is sqrt(1/2), of order 10 and 11 if it is cos 18 or cos 54 degrees, and so on.
       const Real force_to_come = (absolute(f_now) + absolute(f_next)) * (over[n + 2] * over[n + 3]);
       if (absolute(d_now) + absolute(d_next) + force_to_come <=
           std::numeric_limits<Real>::epsilon() / 64 * absolute(d))
@@ -313,7 +316,7 @@ class Oscillator {
   Real root_b_{1}, over_root_b_{1}, half_period_{0}, turn_before_{0};
 };
 
-// u, u' and, by the equation, the derivatives that follow of an oscillator without forcing.
+// Returns u, u' and, by the equation of an oscillator without a force, the derivatives that follow.
 template <std::size_t N, class Real>
 [[gnu::always_inline]] inline std::array<Real, N> derivatives(const Oscillator<Real>& oscillator,
                                                               const Real& u, const Real& u1) {
@@ -325,7 +328,7 @@ template <std::size_t N, class Real>
   }
   return d;
 }
-// The same under on_f f + on_f1 f', the derivatives of f given.
+// Returns the same under on_f f + on_f1 f'; f: the force and its derivatives.
 template <std::size_t N, class Real>
 [[gnu::always_inline]] inline std::array<Real, N> derivatives(const Oscillator<Real>& oscillator,
                                                               const Real& u, const Real& u1, const Real& on_f,
@@ -338,8 +341,8 @@ template <std::size_t N, class Real>
   return d;
 }
 
-// An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and what bounds them
-// from there on.
+// An oscillator under on_f f + on_f1 f' at one instant: the derivatives u^(n), n < N, and bounds on them from
+// there on.
 template <class Real, std::size_t N, class Force = Forcing<Real>>
 class Instant {
  public:
@@ -353,8 +356,8 @@ class Instant {
     const auto f = forcing.template derivatives<N + 1>(phase);
     d_ = impact_damper::derivatives<N>(oscillator, u, u1, on_f, on_f1, f);
     // The steady state is the imaginary part of (on_f + i omega_f on_f1) amplitude exp(i omega_f t) / H with
-    // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and this NaN: bound() then takes the
-    // other.
+    // H = b - omega_f^2 + 2 a i omega_f. In undamped resonance H is zero and the steady state NaN: bound()
+    // then takes the other bound.
     const Real frequency = forcing.frequency;
     const Real re = oscillator.b() - frequency * frequency, im = 2 * oscillator.a() * frequency;
     const Real h2 = re * re + im * im;
@@ -369,8 +372,8 @@ class Instant {
   const Real& operator[](std::size_t n) const { return d_[n]; }
   const std::array<Real, N>& derivatives() const { return d_; }
 
-  // Bound on |u^(n)| for a time `span`, without a force for ever (M3.4 and what follows it): the smaller of
-  // the energy with what the force can add, and the steady state with the energy of what is not steady.
+  // Upper bound of |u^(n)| for a time `span`, without a force for ever (M3.4 and what follows it): the
+  // smaller of two, the energy with what the force can add, and the steady state with the energy of the rest.
   Real bound(std::size_t n, const Real& span) const {
     const Real free = oscillator_.bound(d_[n], d_[n + 1]);
     if (!forcing_) return free;
@@ -380,14 +383,14 @@ class Instant {
                steady = steady_size_ * power + transient(n);
     return steady < growing ? steady : growing;  // growing where steady is NaN
   }
-  // The steady state that the forcing keeps up, and a bound on it.
+  // The n-th derivative of the steady state under the force, and an upper bound of it.
   const Real& steady(std::size_t n) const { return steady_[n]; }
   Real steady_bound(std::size_t n) const {
     Real size = steady_size_;
     for (std::size_t i = 0; i < n; ++i) size *= forcing_.frequency;
     return size;
   }
-  // What of u^(n) is not the steady state, at most, from here on.
+  // Upper bound of u^(n) without its steady state, from here on.
   Real transient(std::size_t n) const {
     return oscillator_.bound(d_[n] - steady_[n], d_[n + 1] - steady_[n + 1]);
   }

@@ -1,15 +1,15 @@
 // The short-contact map (M7.8): a contact that begins on the wall and lasts about T, half a period of the
-// fast mode. Most contacts do, and for these the whole contact is a linear map, tabulated once for a scene:
-// of x, v and w at the touch, and under a force also of its amplitude times the sine and times the cosine of
-// its phase then.
+// fast mode. Most contacts do. The whole contact is then a linear map of x, v and w at the touch and, under a
+// force, of the force's amplitude times the sine and times the cosine of its phase at the touch. The map is
+// tabulated once for a scene, in short_contact_table.hpp.
 //
-// The series in s, the time since T, has as many terms as it takes for the first one left out to be below
-// rounding. A rounding error that is the same in every impact adds up. So the table has, in place of x, the
-// change of the centre of both masses, which is small, and in place of w its difference from -E times the w
-// at the touch, E = exp(-a T). It is made in short_contact_table.hpp.
+// The series in s, the time since T, has as many terms as are needed for the first omitted one to be below
+// rounding. A rounding error of the table is the same in every impact, and adds up. So the table keeps small
+// quantities: in place of x the change of the centre of both masses, and in place of w its difference from -E
+// times the w at the touch, E = exp(-a T).
 //
-// That q has not been back at zero before is proved by Lemma L2 for exp(a t) q, a the decay rate of the fast
-// mode (docs/mathematics.md, 7.6).
+// Lemma L2 for exp(a t) q, with the decay rate a of the fast mode, proves that q has not been zero before the
+// end (docs/mathematics.md, 7.6).
 #pragma once
 
 #include <array>
@@ -34,48 +34,48 @@ struct ContactParts {
   ContactState<Real> slow, fast;
 };
 
-// The masses' centre X = x + nu/(1+nu) q, which the wall does not move.
+// The position and velocity of the masses' centre X = x + nu/(1+nu) q, which the wall's force does not move.
 template <class Real>
 struct Centre {
   Real x, v;
 };
 
-// One unit of x, of v or of w at the touch: its slow and its fast mode.
+// The slow and the fast mode of one unit of x, of v or of w at the touch.
 template <class Real>
 struct Touch {
   ContactState<Real> slow, fast;
 };
 
-// Bounds until `latest` on what a force of amplitude 1, from rest, adds to x'' and the next derivatives, and
+// Bounds until `latest` on what a force of amplitude 1 adds, from rest, to x'' and the next derivatives, and
 // to (a + d/dt)^4 q, which is exp(-a t) times the fourth derivative of exp(a t) q.
 template <class Real>
 struct DrivenBounds {
   Real fourth_of_q, second_of_x, third_of_x, fourth_of_x, fifth_of_x;
 };
 
-// How far from the time that it is about a series of so many pairs of terms is used, and the longest last
-// step to a zero of q; both times the rate. The same for all scenes.
+// The largest |s| at which a series of so many pairs of terms is used, and the longest last step to a zero of
+// q. Both are multiplied by the rate, and so the same for all scenes.
 template <class Real>
 struct ReachInRadians {
   Real s, last_step;
 };
 template <class Real, std::size_t pairs>
 inline const ReachInRadians<Real> reach_in_radians = [] {
-  // The first term left out of the velocity is (rate s)^(taken - 1) / (taken - 1)! of it.
+  // The first omitted term of the velocity is (rate s)^(taken - 1) / (taken - 1)! of it.
   const std::size_t taken = 2 * pairs;
   Real factorial{1};
   for (std::size_t n = 2; n < taken; ++n) factorial *= Real(double(n));
   const Real epsilon = std::numeric_limits<Real>::epsilon(), enough = factorial * epsilon / 16;
   const Real s = exponential(Real(logarithm(enough) / Real(double(taken - 1))));
-  // q is taken along the last step to second order: the third power of the step is then below rounding. Its
-  // velocity is so, too, with q''' to second order in s: (rate step)^2 (rate s)^3 / 12 of it is left out.
+  // The last step takes q and q' along to second order. In q the third power of the step is then below
+  // rounding. In q', with q''' summed to second order in s, (rate step)^2 (rate s)^3 / 12 of it is left out.
   const Real of_q = exponential(Real(logarithm(epsilon) * 2 / 5)),
              of_velocity = square_root(Real(3 * epsilon / (s * s * s)));
   return ReachInRadians<Real>{s, of_q < of_velocity ? of_q : of_velocity};
 }();
 
-// columns: how many numbers a contact depends on. 3: x, v and w at the touch; 5: also the force's amplitude
-// times the sine and times the cosine of its phase then.
+// The map of a contact that begins with `columns` numbers. 3: x, v and w at the touch. 5: also the force's
+// amplitude times the sine and times the cosine of its phase at the touch.
 template <class Real, std::size_t columns>
 class ShortContactMap {
  public:
@@ -83,8 +83,8 @@ class ShortContactMap {
   static constexpr std::size_t terms = 24;
 
   ShortContactMap() = default;
-  // `share`: nu/(1+nu). `zeta`: of the primary mass. `start`: the parts of one unit of x, of v and of w at
-  // the touch. driven(column, latest) bounds the last two columns.
+  // share: nu/(1+nu). zeta: of the primary mass. start: the modes of one unit of x, of v and of w at the
+  // touch. driven(column, latest) returns the bounds for the columns 3 and 4, those of the force.
   template <class Driven>
   ShortContactMap(const Oscillator<Real>& slow, const Oscillator<Real>& fast, const Real& share,
                   const Real& zeta, const ShortContactTable<Real>& table,
@@ -120,15 +120,17 @@ class ShortContactMap {
 
   explicit operator bool() const { return latest_ > 0; }
 
-  // No contact of the map is longer, but for its last correction of s. Under a force the bounds on x hold
-  // until then, without one for ever.
+  // An upper bound of the end of a contact that the map gives. Under a force the bounds on the derivatives of
+  // x hold until then; without a force they hold for ever.
   const Real& latest() const { return latest_; }
 
-  // The end of a contact; nothing if it is too long for the series, or not proved.
+  // The end of a contact: the time since the touch, and x, x' and q' then. There is none where |s| is beyond
+  // the reach of the series, or where Lemma L2 does not prove the end to be the first zero of q.
   struct End {
     Real time, x, v, w;
   };
-  // With the change of x (M17.15), of which dx errs by a rounding of x' times the time.
+  // The end with the change of x since the touch (M17.15). dx has an error of a rounding of x' times the
+  // time.
   struct EndAndChange {
     Real time, x, v, w;
     ChangeOfX<Real> change;
@@ -142,7 +144,7 @@ class ShortContactMap {
     if (absolute(s) < few_.s)
       if (const auto end = end_within<Result>(start, q, s, few_)) return end;
     if (!(absolute(s) < most_.s)) return {};
-    // A few terms bring s near enough to tell how many it takes.
+    // With the fewest terms two steps bring s near enough to choose the number of terms.
     for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
     if (absolute(s) < more_.s)
       if (const auto end = end_within<Result>(start, overlap_after<more>(start), s, more_)) return end;
@@ -151,14 +153,14 @@ class ShortContactMap {
     if (!(absolute(s) < most_.s)) return {};
     return end_within<Result>(start, overlap_after<most>(start), s, most_);
   }
-  // Bounds on the derivatives of x during the contact.
+  // Bounds on the absolute values of the derivatives of x during the contact.
   Real second_of_x(const Start& start) const { return bounds(second_and_third_of_x_, start)[0]; }
   Real third_of_x(const Start& start) const { return bounds(second_and_third_of_x_, start)[1]; }
   Real fourth_of_x(const Start& start) const { return bounds(fourth_and_fifth_of_x_, start)[0]; }
   Real fifth_of_x(const Start& start) const { return bounds(fourth_and_fifth_of_x_, start)[1]; }
 
-  // Whether the table's series hold at a time t after the touch that is before T, and what one unit of a
-  // column has become by then.
+  // Whether the table's series hold at a time t < T after the touch. unit_at(i, t) is the state then of a
+  // contact that begins with one unit of column i and nothing else.
   bool tells_before(const Real& t) const { return latest_ > 0 && !(most_.s < half_period_ - t); }
   ContactState<Real> unit_at(std::size_t i, const Real& t) const {
     const Real s = t - half_period_, v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
@@ -183,7 +185,7 @@ class ShortContactMap {
     return all;
   }
 
-  // The columns `first` and the next.
+  // Stores the columns `first` and `first` + 1 of q and of the centre.
   void tabulate(std::size_t first, const ShortContactColumn<Both, terms>& two) {
     for (const std::size_t i : {0, 1}) {
       for (std::size_t n = 0; n < most; ++n) {
@@ -193,13 +195,13 @@ class ShortContactMap {
     }
   }
 
-  // What a column contributes to the bounds on the fourth derivative of exp(a t) q, on x'' and on x'''.
+  // Sets what column i contributes to the bounds on the fourth derivative of exp(a t) q and on x'' to x'''''.
   void tabulate_bounds(std::size_t i, const Oscillator<Real>& slow, const Oscillator<Real>& fast,
                        const Touch<Real>& touch) {
     const ContactState<Real>&s = touch.slow, &f = touch.fast;
     const Real omega = half_turn<Real>() / half_period_;
     unweighted_ = fast.b() * fast.b() / (omega * omega * omega * omega);
-    // A derivative increases the size of a free motion at most by this factor (mathematics.md, 7.6).
+    // One differentiation increases the size of a free motion at most by this factor (mathematics.md, 7.6).
     const auto fastest = [](const Oscillator<Real>& o) {
       const Real root_b = square_root(o.b()), z = o.a() / root_b;
       return Real(root_b * (z + square_root(Real(1 + z * z))));
@@ -216,7 +218,7 @@ class ShortContactMap {
                                      slow_square * slow_rate * slow_x + fast_square * fast_rate * fast_x};
   }
 
-  // How far from T a series of so many terms is used.
+  // How far from T a series of so many pairs of terms is used.
   struct Reach {
     Real s{0};          // the longest |s|
     Real growth{0};     // exp(a s), by which exp(a t) grows from T on
@@ -229,16 +231,16 @@ class ShortContactMap {
     return {s, exponential(Real(fast.a() * s)), in_radians.last_step / fast.rate()};
   }
 
-  // The terms of q(T + s).
+  // Returns the terms of q(T + s) as a series in s.
   template <std::size_t pairs>
   PairedSeries<Real, pairs> overlap_after(const Start& start) const {
     PairedSeries<Real, pairs> q = combine<pairs>(q_, start);
     q[0] = q[0] - SimdPair<Real>{Real(0), decay_factor_ * start[2]};
     return q;
   }
-  // What is left from s to the zero of q, to second order, and q' and q'' at s.
+  // The step from s to the zero of q, to second order, and q' and q'' at s.
   struct Step {
-    Real rest, bend, w, w1;  // bend: by what part the second order shortens the step
+    Real rest, bend, w, w1;  // bend: the second-order correction, rest = Newton's step (1 - bend)
   };
   template <std::size_t pairs>
   static Step step_to_zero(const std::array<SimdPair<Real>, pairs>& q, const Real& s) {
@@ -259,7 +261,7 @@ class ShortContactMap {
     }
     // All other series are summed at s and moved on by the last step.
     const Real rest = step.rest, whole = s + rest, time = half_period_ + whole;
-    // A step may vanish where q does not, by its second order alone.
+    // The step also vanishes where bend = 1 and q is not zero. A small bend excludes that.
     if (!(absolute(step.bend) < Real(0.0625) && absolute(whole) < reach.s)) return {};
     const Real half_w2 = 3 * q[1][1] + s * (12 * q[2][0] + 30 * s * q[2][1]);
     const Real end_w = step.w + rest * (step.w1 + rest * half_w2);
@@ -267,12 +269,12 @@ class ShortContactMap {
     const Real inward = w < 0 ? -1 : 1, into = absolute(w), out = absolute(end_w);
     const Both fourth = bounds(fourth_of_q_, start);
     const Real fast_fourth = fourth[0], slow_fourth = fourth[1];
-    // The slope at the end is at least as steep as is taken here: exp(a s) >= 1 + a s.
+    // The slope of exp(a t) q at the end is at least as steep as this one: exp(a s) >= 1 + a s.
     bool proved = stays_open(Real(0), into, Real(0), Real(-growth_ * (1 + decay_ * whole) * out), time,
                              Real(fast_fourth + reach.growth * slow_fourth));
     if (!proved && whole > 0) {
-      // In two pieces: up to T, and from T on without the weight exp(a t). There the fourth derivative of the
-      // fast mode is at most b^2 N E, N being the amplitude of exp(a t) times the fast mode.
+      // Two pieces: up to T with the weight exp(a t), and from T on without it. There the fourth derivative
+      // of the fast mode is at most b^2 N E, N being the amplitude of exp(a t) times the fast mode.
       const Real depth = inward * q[0][0], slope = inward * q[0][1];
       proved = stays_open(Real(0), into, Real(growth_ * depth), Real(growth_ * (slope + decay_ * depth)),
                           half_period_, Real(fast_fourth + slow_fourth)) &&

@@ -1,8 +1,8 @@
-// What the short-contact map (M7.8) tabulates: for one unit of each number that a contact depends on, the
+// The tables of the short-contact map (M7.8): for one unit of each number that a contact depends on, the
 // Taylor coefficients of q and of the centre a time T after the touch.
 //
 // A rounding error of the table is the same in every impact of a run. So the table is made from the equations
-// themselves (M7.9) by Taylor series. Of the column of w, which is nearly all of an impact, the large terms
+// themselves (M7.9) by Taylor series. In the column of w, which is nearly all of an impact, the large terms
 // of q and q' are Extended<Real> and rounded once. Its other terms are smaller by 2^-10, all else by a factor
 // of T or more, and so are their roundings. T, E = exp(-a T) and the share theta of q in the centre are
 // given, rounded; the table is right for these rounded numbers.
@@ -19,8 +19,8 @@
 
 namespace impact_damper {
 
-// Coefficients of one power of time, of one column or of two: of the centre, its velocity, q and q', and of
-// the force, f' = omega_f g.
+// Coefficients of one power of time, in one column or in two: of the centre, its velocity, q and q', and of
+// the force f and g, f' = omega_f g.
 template <class Value, class Overlap>
 struct CentreAndOverlapTerm {
   Value x{}, v{};
@@ -33,7 +33,8 @@ struct CentreAndOverlapTerm {
   CentreAndOverlapTerm<Value, Value> rounded() const { return {x, v, Value(q), Value(w), f, g}; }
 };
 
-// The equations (M7.9) of the centre x + theta q and of q, time in units of h. Overlap: of q and q'.
+// The equations (M7.9) of the centre x + theta q and of q, with time in units of h. Overlap: the type of q
+// and q'.
 template <class Real, class Overlap>
 struct CentreAndOverlap {
   Overlap stiffness, damping;  // (1 + nu) K h^2, (1 + nu) c h
@@ -50,7 +51,7 @@ struct CentreAndOverlap {
     return {stiffness * (h * h), damping * h,     share,         rest_of_share,
             remainder,           spring * square, friction * by, frequency * by};
   }
-  // The term of the next power, which is 1/part.
+  // Returns the term of the next power n; part: 1/n.
   template <bool forced, class Value, class Q>
   CentreAndOverlapTerm<Value, Q> next(const CentreAndOverlapTerm<Value, Q>& t, const Overlap& part) const {
     const Q wall = t.w * damping + t.q * stiffness;
@@ -67,8 +68,7 @@ struct CentreAndOverlap {
   }
 };
 
-// The series of one column, or of two, in the time since T; of the centre: what it has changed by since the
-// touch.
+// The series of one column, or of two, in the time since T. centre: the change of the centre since the touch.
 template <class Value, std::size_t terms>
 struct ShortContactColumn {
   std::array<Value, terms> q, centre;
@@ -77,7 +77,7 @@ struct ShortContactColumn {
 template <class Real>
 class ShortContactTable {
  public:
-  // `share`: nu/(1+nu). `rate`: no mode and no force is faster.
+  // share: nu/(1+nu). rate: at least that of each mode and of the force.
   ShortContactTable(const Real& nu, const Real& zeta, const Real& k, const Real& zeta_m,
                     const Real& frequency, const Real& share, const Real& rate)
       : rate_(rate) {
@@ -92,12 +92,12 @@ class ShortContactTable {
                frequency};
   }
 
-  // Whether T takes few steps.
+  // Whether T takes at most `most_steps` steps.
   bool reaches(const Real& half_period) const {
     return half_period * rate_ <= Real(most_steps * longest_step);
   }
 
-  // The column of w. `decay_factor` is added to its q'.
+  // Returns the column of w. decay_factor: E, which is added to its q'.
   template <std::size_t terms>
   ShortContactColumn<Real, terms> column_of_w(const Real& half_period, const Real& decay_factor) const {
     // One unit of w gives the centre the velocity theta.
@@ -105,14 +105,14 @@ class ShortContactTable {
       return CentreAndOverlapTerm<Real, Number>{Real(0), Real(Real(h) * motion_.share), Number(0), h};
     });
   }
-  // The columns of x and v.
+  // Returns the columns of x and v.
   template <std::size_t terms>
   ShortContactColumn<SimdPair<Real>, terms> columns_of_x_and_v(const Real& half_period) const {
     return series<terms, false>(motion_.rounded(), half_period, Both{}, [](const Real& h) {
       return CentreAndOverlapTerm<Both, Both>{Both{Real(1), Real(0)}, Both{Real(0), h}};
     });
   }
-  // The columns of a force that is cos(omega_f t) or sin(omega_f t), from rest.
+  // Returns the columns of the forces cos(omega_f t) and sin(omega_f t), from rest.
   template <std::size_t terms>
   ShortContactColumn<SimdPair<Real>, terms> columns_of_force(const Real& half_period) const {
     return series<terms, true>(motion_.rounded(), half_period, Both{}, [](const Real&) {
@@ -125,7 +125,8 @@ class ShortContactTable {
   using Both = SimdPair<Real>;
   static constexpr double longest_step = 4, most_steps = 16;  // the first in units of 1/rate
 
-  // begin(h): the term of the power 0 at the touch, time in units of h. `kept` is added to q' at T.
+  // Returns the series about T. begin(h): the term of the power 0 at the touch, time in units of h. kept:
+  // added to q' at T.
   template <std::size_t terms, bool by_force, class Overlap, class Q, class Begin>
   auto series(const CentreAndOverlap<Real, Overlap>& motion, const Real& half_period, const Q& kept,
               Begin begin) const {
@@ -172,7 +173,8 @@ class ShortContactTable {
     }
     return all;
   }
-  // The sum of the terms of the power n and higher, while (rate h)^n / n!, their size, is above `until`.
+  // Returns the sum of the terms of the power n and higher, while (rate h)^n / n!, their size, is above
+  // `until`.
   template <bool by_force, class Overlap, class Term>
   static Term sum(const CentreAndOverlap<Real, Overlap>& motion, Term& term, std::size_t& n, Real& size,
                   const Real& rate, const Real& until) {

@@ -1,4 +1,4 @@
-// The state of both masses, and what ends a motion.
+// The state of both masses, and the events that end a motion.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ template <class Real>
 struct State {
   Real x, v, y, w;
 };
-// A copy, number by number. As a block it would be loaded in pairs, and each pair wait until its two numbers,
-// stored one by one just before, have reached the cache: each motion, a few nanoseconds for the one before.
+// Returns a copy made number by number. A block copy loads the numbers in pairs, and waits until both numbers
+// of a pair, stored one by one just before, have reached the cache: a few nanoseconds in each motion.
 template <class Real>
 State<Real> copied(const State<Real>& s) {
   return {s.x, s.v, s.y, s.w};
@@ -25,7 +25,7 @@ struct ChangeOfX {
   Real dx, dv;
 };
 
-// Where and when the secondary mass meets a wall, or leaves it.
+// An impact on a wall, or the end of a contact.
 template <class Real>
 struct WallEvent {
   Real time;

@@ -1,5 +1,5 @@
 // Sticking: both masses move as one, the secondary at rest on a wall (M2.3); y'' = 0 in place of the paper's
-// (10). Several dampers' secondary masses may stick at once (M17.1).
+// (10). The secondary masses of several dampers may stick at once (M17.1).
 #pragma once
 
 #include "impact_damper/motion/forced_motion.hpp"
@@ -7,26 +7,26 @@
 
 namespace impact_damper {
 
-// The primary mass and all that sticks to it. push: the way in which the walls push what sticks, 1 where that
-// is on left walls, -1 on right ones; 0 if nothing sticks.
+// The motion of the primary mass and the masses that stick to it. push: the direction in which the walls push
+// these, 1 on left walls, -1 on right ones; 0 if none sticks.
 template <class Real, class Force = Forcing<Real>>
 class JoinedMasses {
  public:
-  // oscillator, force: of all these masses together.
+  // oscillator, force: those of all these masses together.
   JoinedMasses(const Driven<Real, Force>& oscillator, const Force& force, const Real& begin, const Real& x,
                const Real& v, const Real& push)
       : primary_(oscillator, force, begin, x, v), push_(push) {}
 
   const ForcedMotion<Real, Force>& primary() const { return primary_; }
-  // Of several dampers each has y and y' for itself.
+  // y and y' are 0: with several dampers each mass has its own.
   State<Real> at(const Real& t) const {
     const auto now = primary_.at(t);
     return {now.x, now.v, Real(0), Real(0)};
   }
-  // When, in [from, horizon), the force with which the wall pushes the secondary mass vanishes: x'' does.
+  // Returns the first time in [from, horizon) at which x'', and with it the wall's push, falls through zero.
   std::optional<Real> release(const Real& from, const Real& horizon, Search<Real>& search) {
-    // The push with which the mass was held is that of the flight before: a rounding error may leave none. To
-    // look on from `from` > 0 would find the next time that it vanishes, a period later.
+    // The push that the mass sticks by was that of the flight before; rounding may leave none of it. A search
+    // from `from` > 0 would then find its next zero, a period later.
     const auto start = primary_.beginning();
     const Real push = push_ * start[2], change_of_push = push_ * start[3];
     const Lead<Real> lead = primary_.lead();
@@ -52,7 +52,8 @@ class JoinedMasses {
   Real one_turn_within(const Real& t) const { return primary_.one_turn_within(t); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
-    // Until then x'' keeps its sign, and so x' rises, the way the wall pushes, through one zero at most.
+    // Until the release x'' has the sign of push_, so sign x' falls through zero only for sign = -push_, and
+    // once at most.
     if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
     return primary_.falls(order, sign, from, until, search);
   }
@@ -70,7 +71,7 @@ class JoinedMasses {
   Real push_;
 
  private:
-  std::optional<Real> turn_;  // of x before the release, once that is known
+  std::optional<Real> turn_;  // turning point of x before the release, once that is known
 };
 
 template <class Real, class Force = Forcing<Real>>
@@ -87,7 +88,8 @@ class Stuck : public JoinedMasses<Real, Force> {
     const auto now = primary_.at(t);
     return {now.x, now.v, start_.y, Real(0)};
   }
-  // The state when it vanishes, release(): x' has its turn there, and x'' = 0 tells x, to the last bit.
+  // The state at the time t of release(). x'' = 0, so |x'| has a closed form, and x follows from x' to the
+  // last bit.
   State<Real> released(const Real& t) const {
     if (t == 0) return start_;
     const auto v = primary_.speed_at_turn(t);

@@ -1,10 +1,10 @@
-// The end of a contact that lasts longer than the short-contact map tells (docs/mathematics.md, 7.7): a
-// sustained contact, which ends where its slow mode falls through zero, or under a force also one that ends
-// while it still rings.
+// The end of a contact that is too long for the short-contact map (docs/mathematics.md, 7.7): a sustained
+// contact, which ends where its slow mode falls through zero, or under a force also one that ends while it
+// still rings.
 //
-// How deep the secondary mass is in the wall is the sum of a main part, which does not ring, and of the
-// ringing, a free motion of the fast mode. The main part is the slow mode, and under a force the steady state
-// of the fast mode with it.
+// The depth of the secondary mass in the wall is the sum of a main part, which does not ring, and of the
+// ringing, a free motion of the fast mode. The main part is the slow mode, under a force with the steady
+// state of the fast mode added.
 #pragma once
 
 #include <cstddef>
@@ -29,11 +29,11 @@ class SustainedContact {
  public:
   using End = typename ShortContactMap<Real, ContactModes<Real, Force>::columns>::End;
 
-  // Of a contact that begins on the wall.
+  // contact: one that begins on the wall.
   explicit SustainedContact(const Contact<Real, Force>& contact)
       : contact_(contact), walls_(contact.system()), inward_(contact.inward_) {}
 
-  // When and in what state the mass is back at the wall; nothing where that is not proved.
+  // Returns the end of the contact; nothing where it is not proved.
   std::optional<End> end() const {
     if constexpr (std::is_same_v<Force, NoForcing<Real>>)
       return end_without_force();
@@ -42,11 +42,11 @@ class SustainedContact {
   }
 
  private:
-  // How deep the mass is in the wall, or a part of that, and its derivative.
+  // The depth of the mass in the wall, or a part of it, and its derivative.
   struct Depth {
     Real q, w;
   };
-  // At a time, with a bound on the fourth derivative from then on.
+  // The depth at a time, with a bound on its fourth derivative from then on.
   struct Moment {
     Real time;
     Depth depth;
@@ -99,7 +99,7 @@ class SustainedContact {
     const auto derivative = [&](std::size_t n) { return inward_ * (slow_now[n] + fast_now.steady(n)); };
     const SeriesAt<Real> begin{derivative(0), derivative(1), derivative(2)};
     if (!(begin.u > 0)) return {};
-    // The main part obeys the equation of the slow mode, under what force its own derivatives tell.
+    // The main part obeys the equation of the slow mode, under a force that its own derivatives determine.
     const Real a2 = 2 * slow.a(), &b = slow.b();
     const Real force = begin.u2 + a2 * begin.u1 + b * begin.u,
                force1 = derivative(3) + a2 * begin.u2 + b * begin.u1;
@@ -142,9 +142,10 @@ class SustainedContact {
     return zero ? corrected_end(at, before, zero->time) : std::nullopt;
   }
 
-  // Piece by piece until the ringing can never reach the chord of the main part until `late`: `left` then
-  // bounds it from `late` on. Without `left`: whether the mass stays in the wall between these two moments is
-  // not proved. at(t): the moment t; next(t): both parts at the end of the next piece, the time t.
+  // Follows the contact in pieces until the ringing can no longer reach the chord of the main part until
+  // `late`. `left` then bounds the ringing from `late` on. Without `left` it is not proved that the mass
+  // stays in the wall between the moments `before` and `now`. at(t): the moment t; next(t): both parts at the
+  // end t of the next piece.
   struct Followed {
     Moment before, now;
     std::optional<Real> left;
@@ -166,7 +167,7 @@ class SustainedContact {
       if (!stays_in_wall(at, before, now, 4)) return Followed{before, now, {}};
       if (!(t < late && main.chord > 0)) continue;
       const Real left = fast.bound_after(rings.q, rings.w, Real(late - t));
-      // What does not oscillate, and was negative at touch, has its one zero behind it.
+      // A fast part that does not oscillate, and was negative at touch, has its one zero behind it.
       if (!oscillates && rings.q >= 0) return Followed{before, now, left};
       const Real wait = t < early ? Real(early - t) : Real(0);
       if (fast.bound_after(rings.q, rings.w, Real(0)) < main.chord * Real(0.75) &&
@@ -174,7 +175,8 @@ class SustainedContact {
         return Followed{before, now, left};
     }
   }
-  // The end near h by the equations, and that there is none from `begin` until then.
+  // Returns the end near h, corrected by (M7.7) on both modes, if Lemma L2 proves that there is none before
+  // it, from `begin` on.
   template <class At>
   std::optional<End> corrected_end(const At& at, const Moment& begin, Real h) const {
     const Real first = h, most = h - begin.time;
@@ -195,7 +197,8 @@ class SustainedContact {
     return {};
   }
 
-  // By two moments, or by them and one halfway, and so on.
+  // Whether Lemma L2 proves that the mass stays in the wall between two moments, halved `halvings` times at
+  // most.
   template <class At>
   static bool stays_in_wall(const At& at, const Moment& from, const Moment& to, int halvings) {
     const Real h = to.time - from.time;

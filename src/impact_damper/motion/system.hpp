@@ -39,13 +39,14 @@ struct System {
   Driven<Real, Force> stuck;  // (M2.3), the paper's (9) with the factor 1/(1+nu) that its force lacks
 };
 
-// Calls `then` with the scene's numbers, whose type tells whether there is a forcing.
+// Calls `then` with the scene's numbers, in a type that has a force or none.
 template <class Real, class Then>
 auto with_system(const Scene& scene, Then&& then) {
   return scene.force_amplitude == 0 ? then(System<Real, NoForcing<Real>>(scene)) : then(System<Real>(scene));
 }
 
-// How far ahead a bound is asked for: without forcing it holds for ever, with forcing it grows with the span.
+// The time for which bounds on derivatives are made: without a force they hold for ever, under one they grow
+// with it.
 template <class Real, class Force>
 Real bounded_span(const System<Real, Force>& system) {
   return system.forcing ? Real(2) : std::numeric_limits<Real>::infinity();

@@ -8,9 +8,9 @@
 namespace impact_damper {
 namespace {
 
-// The velocity with which a unit velocity comes back from the wall, in time units of 1/omega_m:
-// q'' + 2 zeta q' + q = 0, q(0) = 0, q'(0) = -1, until q = 0 again at t = pi/omega, omega^2 = 1 - zeta^2.
-// Walked through in `steps` equal closed-form steps, as the paper's subroutine does.
+// Returns the velocity with which a unit velocity comes back from the wall, in time units of 1/omega_m: q'' +
+// 2 zeta q' + q = 0, q(0) = 0, q'(0) = -1, until q = 0 again at t = pi/omega, omega^2 = 1 - zeta^2. It is
+// reached in `steps` equal closed-form steps, as in the paper's subroutine.
 double rebound_velocity(double zeta, int steps) {
   const double omega = std::sqrt((1 - zeta) * (1 + zeta));
   const double h = std::numbers::pi / omega / steps;

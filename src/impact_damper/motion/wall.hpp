@@ -19,9 +19,9 @@ Real zeta_m_closed_form(const Real& restitution) {
   return l / square_root(Real(p * p + l * l));
 }
 
-// The same number as the paper's subroutine finds it: simulate the impact of a unit velocity on the
-// spring and damper by stepping closed-form solutions through at least 100 steps, compare the velocity
-// at the return to the wall with e, and correct zeta_m until they agree.
+// The same number, found as the paper's subroutine does: simulate the impact of a unit velocity on the spring
+// and damper by stepping closed-form solutions through at least 100 steps, compare the velocity at the return
+// to the wall with e, and correct zeta_m until they agree.
 struct IterativeZeta {
   double zeta_m = 0;
   double velocity_error = 0;  // |rebound velocity - e| at the end, <= tolerance
@@ -43,8 +43,8 @@ Real zeta_m(const Scene& scene, Calibration calibration) {
   return fixed;
 }
 
-// omega_m = sqrt(k/nu), and what a contact between two otherwise free masses makes of it:
-// omega_c = omega_m sqrt(1 + nu), damping ratio zeta_m sqrt(1 + nu).
+// omega_m = sqrt(k/nu). In a contact between two otherwise free masses the frequency is omega_c = omega_m
+// sqrt(1 + nu) and the damping ratio zeta_m sqrt(1 + nu).
 double omega_m(const Scene& scene);
 
 // pi / omega_c: half a period of the contact, the nominal duration of one impact.

@@ -1,6 +1,5 @@
 // x in a contact of the short-contact map under a force, by its Taylor series about a time in the contact
-// (M7.10). Where x and x' fall through zero is asked of this series, which needs neither the modes nor a
-// sine.
+// (M7.10). Zeros of x and x' are found on this series, which needs neither the modes nor a sine.
 #pragma once
 
 #include <array>
@@ -12,8 +11,8 @@
 
 namespace impact_damper {
 
-// As in the map: of x, v and w at the touch, and of the force's amplitude times sine and times cosine of its
-// phase then, made once for a scene.
+// The columns of the series, made once for a scene: one for each number that the map depends on, x, v and w
+// at the touch and the force's amplitude times the sine and times the cosine of its phase then.
 template <class Real>
 class XInShortContactTable {
  public:
@@ -39,7 +38,7 @@ class XInShortContactTable {
     tabulate(3, 4, by_force, rates);
   }
 
-  // Until when after the touch the series holds; 0: never.
+  // The time after the touch until which the series holds; 0: it is not used.
   const Real& end() const { return end_; }
   const Real& about() const { return about_; }
   const Real& rate() const { return rate_; }
@@ -57,7 +56,7 @@ class XInShortContactTable {
   struct Rates {
     Real nu, both, friction, stiffness, damping, frequency;
   };
-  // Coefficients of one power of time, of two columns: of x, x', q, q' and the force, f' = omega_f g.
+  // Coefficients of one power of time, in two columns: of x, x', q, q' and the force f and g, f' = omega_f g.
   struct Term {
     Pair x, v, q, w, f{Real(0), Real(0)}, g{Real(0), Real(0)};
     Term(const ContactState<Real>& a, const ContactState<Real>& b)
@@ -88,7 +87,7 @@ class XInShortContactTable {
   std::array<Series, 5> columns_{};
 };
 
-// Of one contact.
+// The series of one contact.
 template <class Real>
 class XInShortContact {
  public:
@@ -96,11 +95,11 @@ class XInShortContact {
   XInShortContact(const Table& table, const typename Table::Map::Start& start, const Real& end)
       : about_(table.about()), end_(end), x_(table.series_of(start)) {}
 
-  // The contact's.
+  // The end of the contact.
   const Real& end() const { return end_; }
-  // x and its first two derivatives.
+  // x and its first two derivatives at t.
   SeriesAt<Real> x_at(const Real& t) const { return sum<Real>(x_, Real(t - about_)); }
-  // The same of x'.
+  // x' and its first two derivatives at t.
   SeriesAt<Real> v_at(const Real& t) const {
     if (!v_) {
       v_.emplace();
