@@ -46,13 +46,13 @@ struct impact_damper_run {
   std::optional<impact_damper::Scales> scales;
   std::vector<impact_damper::Column> columns;  // of `run` and of `converted`, in the order of a run file
   std::list<std::vector<double>>
-      converted;  // what `run` has no doubles of; a list, so that they stay in place
+      converted;  // columns that `run` does not have as doubles; a list, so that they stay in place
 };
 
 namespace impact_damper {
 namespace {
 
-// Lists columns of what is in `all`, which must stay where it is.
+// Lists the columns in `all`, which must not be moved afterwards.
 class Columns {
  public:
   explicit Columns(impact_damper_run& all) : all_(all) {}
@@ -153,7 +153,7 @@ class Columns {
   }
 
   bool several() const { return !all_.run.scene.dampers.empty(); }
-  // Calls add_columns(the first part of their names, each).
+  // Calls add_columns(prefix of the names, damper) for each damper.
   template <class Of, class Add>
   static void for_each_damper(const std::string& section, const std::vector<Of>& dampers,
                               const Add& add_columns) {

@@ -14,7 +14,7 @@ typedef struct impact_damper_run impact_damper_run;
 
 /* Equally spaced samples of the motion, both ends included: 0 <= begin < end <= 1e12, 2 <= count <= 500000,
  * of a scene with a list of n dampers count <= 500000 / n. Times are dimensionless, also for a scene in
- * units: divided by 1/Omega_n. Samples after the end of the run are not there. */
+ * units: divided by 1/Omega_n. Samples after the end of the run are left out. */
 typedef struct impact_damper_window {
   double begin, end;
   size_t count;
@@ -35,7 +35,7 @@ typedef enum impact_damper_status {
  * run, to be freed by impact_damper_free(). Without success it becomes NULL, and `error` says why, one line
  * for each problem, cut to `error_size` - 1 bytes and ended by '\0'. `error` may be NULL if `error_size` is
  * 0; `run` must not be NULL, nor may any argument of the functions below unless they say so. A run that
- * reaches one of its budgets is a success: impact_damper_stop_reason() tells it. */
+ * reaches one of its budgets is a success: impact_damper_stop_reason() reports it. */
 impact_damper_status impact_damper_simulate(const char* scene, const char* engine,
                                             const impact_damper_window* history, impact_damper_run** run,
                                             char* error, size_t error_size);
@@ -47,7 +47,7 @@ typedef enum impact_damper_record {
   IMPACT_DAMPER_ENERGY = 4
 } impact_damper_record;
 
-/* The same, recording only `record`, a sum of the above or 0. */
+/* The same, but records only `record`, a sum of the above or 0. */
 impact_damper_status impact_damper_simulate_recording(const char* scene, const char* engine, unsigned record,
                                                       const impact_damper_window* history,
                                                       impact_damper_run** run, char* error,
@@ -55,7 +55,7 @@ impact_damper_status impact_damper_simulate_recording(const char* scene, const c
 
 /* A column by its names in a run file, "half_cycles/amplitude", "history/x", and its number of rows. A number
  * that stands alone is a column of one row: "end_time", "energy/residual". All numbers are dimensionless,
- * also of a scene in units, except "units/length_m" and the others that say what a unit is in SI. An absent
+ * also of a scene in units, except "units/length_m" and the other sizes of a unit in SI. An absent
  * number is NaN; a wall is 0 (left) or 1 (right). Several dampers are numbered from 1, in "impacts/damper" as
  * in the names of their own columns: "history/dampers/1/y". The result is NULL, with 0 rows, if the run has
  * no column of that name; it is not NULL for an existing column of 0 rows. It points into the run and is

@@ -12,7 +12,7 @@ std::vector<Engine> one_of_each(const std::variant<Options...>&) {
   return {Options{}...};
 }
 
-// Words and flags are always allowed, and so is a number that is not there.
+// Adds a problem if a number is out of its range. Words, flags and absent numbers are always valid.
 template <class Value>
 void check(const OptionInfo& option, const Value& value, std::vector<Problem>& problems) {
   if constexpr (std::is_same_v<Value, std::optional<double>>) {

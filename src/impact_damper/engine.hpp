@@ -15,19 +15,19 @@
 
 namespace impact_damper {
 
-// How the wall's damping ratio zeta_m follows from the restitution e (motion/wall.hpp, M2.4).
+// The rule by which the wall's damping ratio zeta_m follows from the restitution e (motion/wall.hpp, M2.4).
 enum class Calibration {
   fixed_wall,  // the paper's: an impact has the restitution e exactly if the primary mass is held still
   two_body,    // an impact has the restitution e exactly if both masses are otherwise free
 };
 
-// Which velocity the wall damper of the component element method sees.
+// The velocity that the wall's damper of the component element method uses.
 enum class Damper {
   centred,  // (y_{n+1} - y_{n-1}) / 2h: implicit in the new step, second order
   lagged,   // (y_n - y_{n-1}) / h: one step behind, explicit
 };
 
-// Limits that end a run which nothing else ends before. Reaching one is a stop reason, not an error. With the
+// Limits that end a run if nothing else ends it before. Reaching one is a stop reason, not an error. With the
 // defaults a run takes about two seconds at most, and its record 200 MB; a decay of the paper's needs a few
 // thousand impacts and a time of 1200.
 struct Budget {
@@ -79,11 +79,12 @@ struct Cem {
   Damper damper = Damper::centred;
   bool locate = false;  // locate touch and release inside the step
   // The large step, > time_step, < 2, and <= pi/omega_f with a force. While no wall can be met the steps are
-  // whole multiples of time_step, at most this long (cem_rates.hpp). Absent: all steps are time_step.
+  // whole multiples of time_step, at most this long; in a sustained contact, once the masses follow (M17.23),
+  // they are half the stability limit (cem_rates.hpp). Absent: all steps are time_step.
   std::optional<double> large_step;
   // The paper's stuck regime, equation (9): an impact with a relative speed below u, while the wall pushes
-  // the secondary mass, joins both masses until x'' changes its sign. u > 0 and finite, divided by epsilon
-  // Omega_n. Absent: sticking is a sustained contact with the compliant wall.
+  // the secondary mass, joins both masses (M9.10), at a loss of (M9.11), until x'' changes its sign. u > 0
+  // and finite, divided by epsilon Omega_n. Absent: sticking is a sustained contact with the compliant wall.
   std::optional<double> stuck_speed;
   bool unstable = false;  // run even with a step beyond the stability limit
   Calibration calibration = Calibration::fixed_wall;
@@ -93,9 +94,9 @@ struct Cem {
   bool operator==(const Cem&) const = default;
 };
 
-// The u of `--stuck paper` without --stuck-speed. From a relative acceleration a towards the wall an impact
-// slower than about 2 a / omega_c does not separate (docs/mathematics.md, 9.1): 0.014 for a = 5, k = 1e4,
-// nu = 0.02, near which the paper's bounce-down ends.
+// The default u of `--stuck paper`. From a relative acceleration a towards the wall an impact slower than
+// about 2 a / omega_c does not separate (docs/mathematics.md, 9.1): 0.014 for a = 5, k = 1e4, nu = 0.02, near
+// which the paper's bounce-down ends.
 inline constexpr double usual_stuck_speed = 0.01;
 
 using Engine = std::variant<Exact, Restitution, Cem>;
@@ -104,11 +105,11 @@ using Engine = std::variant<Exact, Restitution, Cem>;
 const std::vector<Engine>& default_engines();
 std::vector<std::string_view> engine_names();
 
-// What is wrong with the options, each checked by itself; reported as by problems_of(Scene). What depends on
-// the scene, or on what is recorded, simulate() checks.
+// The problems of the options, each checked by itself; reported as by problems_of(Scene). simulate() checks
+// what depends on the scene or on what is recorded.
 std::vector<Problem> problems_of(const Engine& engine);
 bool has_rigid_walls(const Engine& engine);
-Calibration calibration_of(const Engine& engine);  // the default where it has none
+Calibration calibration_of(const Engine& engine);  // the default for an engine without one
 
 std::string_view name_of(const Engine& engine);
 std::string_view name_of(Calibration calibration);  // "fixed-wall", "two-body"

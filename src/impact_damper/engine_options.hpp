@@ -18,7 +18,7 @@
 
 namespace impact_damper {
 
-// All that describes an option, except where it is kept.
+// The description of an option, except for the member that holds its value.
 struct OptionInfo {
   std::string_view name{};    // key in a run file; option of the command line with '-' for '_'
   std::string_view symbol{};  // stands for its number in help; words and flags have none

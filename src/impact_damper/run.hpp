@@ -1,4 +1,4 @@
-// A run: what an engine made of a scene, as columns. Written to and read from JSON by io/run_file.hpp.
+// A run: the result of an engine for a scene, as columns. Written to and read from JSON by io/run_file.hpp.
 // Dimensionless throughout: times in units of 1/Omega_n, lengths of epsilon, velocities of epsilon Omega_n,
 // energies of K epsilon^2. x and v = x' belong to the primary mass; y is the distance of a secondary mass
 // from its left wall, w = y' its velocity relative to the cavity.
@@ -34,7 +34,7 @@ struct HalfCycles {
   std::vector<double> peak_time;      // when the amplitude is reached
   std::vector<double> amplitude;      // largest |x| in the row, divided by epsilon
   std::vector<std::int64_t> impacts;  // impacts in the row; a sustained contact counts as one
-  // The same of each of several dampers, by its number in the scene; empty where the scene has one.
+  // The same for each damper of a list, by its number in the scene; empty where the scene has one.
   std::vector<std::vector<std::int64_t>> impacts_by_damper;
 };
 
@@ -47,7 +47,7 @@ struct Impacts {
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // of that half cycle; absent only in the unfinished one
   std::vector<double> displacement;              // x at the impact, divided by epsilon
-  // Which of several dampers, by its number in the scene, from 0; empty where the scene has one. Impacts that
+  // The damper of a list, by its number in the scene, from 0; empty where the scene has one. Impacts that
   // coincide are in this order; those that follow from them at the same time come after them.
   std::vector<std::int32_t> damper;
 };
@@ -68,7 +68,7 @@ struct History {
   struct Damper {
     std::vector<double> y, w;
   };
-  std::vector<Damper> dampers;  // of several, and then the two above are empty
+  std::vector<Damper> dampers;  // of a list; then the two above are empty
 };
 
 // Energies divided by K epsilon^2, at one instant.
@@ -80,7 +80,7 @@ struct Energy {
   double total() const { return kinetic + spring + wall; }
 };
 
-// What one of several dampers has to do with an EnergyBalance, divided by K epsilon^2.
+// The share of one damper of a list in an EnergyBalance, divided by K epsilon^2.
 struct DamperEnergy {
   double initial_kinetic = 0, final_kinetic = 0;  // nu (v + w)^2 / 2
   double impact_loss = 0;                         // of all its impacts
@@ -89,7 +89,7 @@ struct DamperEnergy {
   double bounce_down_loss = 0;                    // in the impacts jumped over
 };
 
-// Those that are energies, by their names in a run file.
+// The members of DamperEnergy that are energies, with their names in a run file.
 struct DamperEnergyField {
   std::string_view name;
   double DamperEnergy::*member;
@@ -112,13 +112,13 @@ struct EnergyBalance {
   double bounce_down_loss = 0;    // restitution: loss in the impacts jumped over
   double viscous_work = 0;        // taken out by the primary mass's damper, integral of 2 zeta v^2
   double forcing_work = 0;        // put in by the forcing, integral of f0 sin(omega_f t) v
-  // Left minus right side of the equation above, divided by the sum of the initial energy and the integral of
-  // the forcing's |power|; 0 if that sum is 0.
+  // The residual of the balance: left minus right side of the equation above, divided by the sum of the
+  // initial energy and the integral of the forcing's |power|; 0 if that sum is 0.
   double residual = 0;
-  // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it tells the
-  // fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
+  // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it determines
+  // the fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
   double reactive_work = 0;
-  std::vector<DamperEnergy> dampers;  // of several, by number in the scene; empty where the scene has one
+  std::vector<DamperEnergy> dampers;  // of a list, by number in the scene; empty where the scene has one
 };
 
 // Largest allowed number of rows that budgets may give a recorded section, and of samples of a history in
@@ -126,24 +126,24 @@ struct EnergyBalance {
 // default budgets allow beside it, takes less than 200 MB, and its file is short enough to be read
 // (io/run_file.hpp).
 inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
-// Of half cycles: each of several dampers has a column of its own. 0 dampers: the scene has no list of them.
+// Largest allowed number of half cycles: each damper of a list has a column. 0 dampers: no list.
 constexpr std::int64_t most_half_cycles(std::size_t dampers) {
   return dampers == 0 ? most_rows : most_rows / static_cast<std::int64_t>(dampers);
 }
 
-// `count` >= 2 equally spaced samples, both ends included; 0 <= begin < end <= 1e12. Samples after the end of
-// the run are not there.
+// `count` >= 2 equally spaced samples of the motion, both ends included; 0 <= begin < end <= 1e12. Samples
+// after the end of the run are left out.
 struct HistoryWindow {
   double begin = 0, end = 0;
   std::int64_t count = 0;
 };
-// The same over `length` > 0, from the zero crossing that ends the first half cycle below `amplitude` > 0;
-// from the end of the window before, if that is later.
+// `count` samples in the same way over `length` > 0, from the zero crossing that ends the first half cycle
+// below `amplitude` > 0; from the end of the window before, if that is later.
 struct AmplitudeWindow {
   double amplitude = 0, length = 0;
   std::int64_t count = 0;
 };
-// What a run is asked to record. Nothing else is computed.
+// What a run records. Nothing else is computed.
 struct Record {
   bool half_cycles = true;
   bool impacts = false;
@@ -162,7 +162,8 @@ struct Outcome {
   double end_time = 0;
 };
 
-// When and why a run ends if nothing else ends it before: by until_time or, if earlier, by Budget::max_time.
+// The end of a run, and its reason, if nothing else ends it before: until_time or, if earlier,
+// Budget::max_time.
 Outcome horizon_of(const Scene& scene, const Budget& budget);
 // The budget with max_time filled in if absent.
 Budget budget_for(const Scene& scene, Budget budget);

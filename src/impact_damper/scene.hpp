@@ -1,9 +1,9 @@
-// A scene: the one system that is simulated, and when to stop looking at it.
+// A scene: the system that is simulated, its initial condition, and when the run stops.
 //
-// A primary mass on a spring (and, if zeta > 0, a viscous damper) carries a cavity in which a
-// secondary mass travels freely between two walls; or several such cavities, each with a secondary mass of
-// its own. Everything is dimensionless: lengths are divided by the free travel (clearance) epsilon = D - d,
-// with several dampers by one reference length for all, times by 1/Omega_n = sqrt(M/K), velocities by epsilon
+// A primary mass on a spring (and, if zeta > 0, a viscous damper) carries a cavity in which a secondary mass
+// travels freely between two walls; or several such cavities, each with a secondary mass of its own.
+// Everything is dimensionless: lengths are divided by the free travel (clearance) epsilon = D - d, with
+// several dampers by one reference length for all, times by 1/Omega_n = sqrt(M/K), velocities by epsilon
 // Omega_n, forces by K epsilon. Small letters and capitals are the paper's: m secondary, M primary mass; K
 // spring, C damper of the primary mass, C_c its critical damping; K_M stiffness of a wall.
 #pragma once
@@ -32,8 +32,8 @@ struct SceneDamper {
   bool operator==(const SceneDamper&) const = default;
 };
 inline constexpr std::size_t most_dampers = 1000;
-// Of what may be negative: a number closer to 0 is neither 0 nor more than the rounding errors of what the
-// others do, and its squares may underflow.
+// Least magnitude, except 0, of a number that may be negative: a smaller one would do no more than the
+// rounding errors of the others, and its square may underflow.
 inline constexpr double least_magnitude = 1e-30;
 constexpr bool is_too_small(double value) {
   return value != 0 && value < least_magnitude && value > -least_magnitude;
@@ -76,7 +76,7 @@ struct SceneField {
 };
 extern const std::array<SceneField, 10> scene_fields;
 
-// The same for one of several dampers.
+// One number of a damper of a list, in the same way.
 struct SceneDamperField {
   std::string_view name;
   double SceneDamper::*member;
@@ -95,7 +95,7 @@ struct SceneNumber {
   // NOLINTNEXTLINE(google-explicit-constructor)
   SceneNumber(double Scene::*its) : own(its) {}  // cppcheck-suppress noExplicitConstructor
   SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
-  // That of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
+  // The name of its field; for a list with the damper's number behind it, from 1: clearance_2.
   std::string name() const;
   // cppcheck-suppress constParameter
   double& in(Scene& scene) const { return of_damper ? scene.dampers[damper].*of_damper : scene.*own; }
@@ -108,13 +108,13 @@ struct NamedSceneNumber {
   SceneNumber number;
   double least, most;  // smallest and largest allowed value
 };
-// All of a scene, in the order of the two tables; of one with several dampers each damper's in place of those
-// of its one damper.
+// All numbers of a scene in the order of the two tables; with a list, those of each damper in place of those
+// of the one damper.
 std::vector<NamedSceneNumber> numbers_of(const Scene& scene);
 
-// Whether the scene's field is that of its one damper, which each of several has for itself.
+// Whether the scene's field belongs to its one damper, so that each damper of a list has its own.
 bool is_of_one_damper(const SceneField& field);
-// How a damper's field is named in a Problem: "dampers[2].clearance", counted from 0.
+// The name of a damper's field in a Problem: "dampers[2].clearance", counted from 0.
 std::string damper_field(std::size_t damper, std::string_view name);
 
 // All secondary masses together, divided by the primary one.
@@ -124,13 +124,13 @@ double secondary_mass(const Scene& scene);
 // Scene's defaults, so it must not be simulated as it is.
 Scene with_alone(const Scene& scene, const SceneDamper& damper);
 
-// Whether who asks can treat a scene with several dampers.
+// Whether the caller can treat a scene with a list of dampers.
 enum class DamperList { rejected, allowed };
 
-// What is wrong with a scene: one entry per offending field ("mass_ratio", "must be ..., got ...").
-// A NaN is always an offence. With DamperList::rejected a list of dampers is a problem itself. Empty means
-// that the exact engine may run the scene. simulate() checks what the others ask for besides: the restitution
-// engine 0 <= y0 <= clearance, the component element method a time step within its stability limit.
+// The problems of a scene: one entry per invalid field ("mass_ratio", "must be ..., got ..."). A NaN is
+// always invalid. With DamperList::rejected a list of dampers is a problem itself. Empty means that the exact
+// engine may run the scene. simulate() checks what the others require besides: the restitution engine 0 <= y0
+// <= clearance, the component element method a time step within its stability limit.
 std::vector<Problem> problems_of(const Scene& scene, DamperList dampers = DamperList::rejected);
 
 }  // namespace impact_damper

@@ -37,7 +37,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const
   const Budget& budget =
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
 
-  // What would not fit into memory is not begun.
+  // Rejects budgets whose records would not fit into memory.
   const std::int64_t dampers = std::max<std::int64_t>(1, std::int64_t(scene.dampers.size()));
   const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what,
                            std::int64_t most = most_rows) {

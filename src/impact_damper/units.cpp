@@ -14,7 +14,7 @@ namespace {
 constexpr double small = 1e-15, large = 1e15;
 constexpr double metres = 1e-3;  // per millimetre
 
-// The field that `field` of the dimensionless scene was made of.
+// The field of the scene in units that `field` of the dimensionless scene was made from.
 std::string maker_of(const SceneInUnits& scene, std::string_view field) {
   if (const std::size_t point = field.find('.'); point != std::string_view::npos) {  // "dampers[2].clearance"
     const auto* const maker =
@@ -27,7 +27,7 @@ std::string maker_of(const SceneInUnits& scene, std::string_view field) {
   return std::string(maker);
 }
 
-// Notes that it is missing, if it is needed, or what is wrong with its value.
+// Adds a problem if a needed value is missing or a given one is not valid.
 void check(std::vector<Problem>& problems, const std::string& name, const UnitField& field,
            const std::optional<double>& value, bool needed) {
   const NumberRange range{field.least, field.most, field.least_is_allowed};

@@ -16,7 +16,8 @@
 
 namespace impact_damper {
 
-// What one dimensionless unit is in engineers' units: a dimensionless number times the scale is the quantity.
+// The size of one dimensionless unit in engineers' units: a dimensionless number times the scale is the
+// quantity.
 struct Scales {
   double mass = 1;       // M, kg
   double stiffness = 1;  // K, N/m
@@ -55,8 +56,7 @@ inline constexpr std::array<SiUnit, 6> si_units{{{"length_m", &SiUnits::length},
                                                  {"force_N", &SiUnits::force},
                                                  {"energy_J", &SiUnits::energy}}};
 
-// One of several dampers, by the names that a scene's one damper has, in SceneInUnits, with the same
-// defaults.
+// One damper of a list, with the names and defaults that the one damper has in SceneInUnits.
 struct DamperInUnits {
   std::optional<double> secondary_mass, clearance;  // kg, mm: both required
   std::optional<double> restitution, contact_stiffness, secondary_displacement, secondary_velocity;
@@ -104,14 +104,14 @@ struct DamperUnitField {
 };
 extern const std::array<DamperUnitField, 6> damper_unit_fields;
 
-// What is wrong with a number of a scene's one damper beside a list of several.
+// The problem of a number of a scene's one damper that is given beside a list.
 inline constexpr std::string_view beside_dampers =
     "must not be given beside dampers, each of which has its own";
 
-// What is wrong with it, one entry per offending field, as by problems_of(Scene, DamperList): required
-// numbers that are missing, numbers out of range, both dampings given, no stop, a list of dampers beside
-// numbers of one, and numbers that make a Scene which is not valid. Empty means that the two functions below
-// may be called; otherwise their behaviour is undefined.
+// The problems of a scene in units, one entry per invalid field, as by problems_of(Scene, DamperList):
+// required numbers that are missing, numbers out of range, both dampings given, no stop, a list of dampers
+// beside numbers of one, and numbers that make a Scene which is not valid. Empty means that the two functions
+// below may be called; otherwise their behaviour is undefined.
 std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers = DamperList::rejected);
 
 Scales scales_of(const SceneInUnits& scene);

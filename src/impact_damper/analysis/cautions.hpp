@@ -10,9 +10,9 @@
 
 namespace impact_damper {
 
-// One sentence of plain text for each of these that the scene has; empty if it has none:
+// One sentence of plain text for each of these cautions that the scene gives rise to; empty if there is none:
 //
-//   a secondary mass that begins outside its cavity, y0 < 0 or y0 > 1, of one in a list y0 > its clearance:
+//   a secondary mass that begins outside its cavity, y0 < 0 or y0 > 1, for one in a list y0 > its clearance:
 //   with compliant walls it begins by pressing a wall together, which then holds the energy k q^2 / 2, q
 //   being the distance from the cavity;
 //

@@ -11,7 +11,7 @@
 namespace impact_damper {
 namespace {
 
-// Numbers that two computations give differ by the rounding of a few dozen operations.
+// Relative difference of numbers that two computations give: the rounding of a few dozen operations.
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
 class Examination {
@@ -68,7 +68,7 @@ class Examination {
     return require(std::abs(given - wanted) <= tolerance, field, got(number_text(wanted) + of, given));
   }
 
-  // Where a section's file has what is the damper's own.
+  // The JSON pointer of one damper's part of a section; the section itself where the scene has one damper.
   std::string of_damper(const std::string& section, std::size_t damper) const {
     return several_ ? section + "dampers/" + std::to_string(damper) + '/' : section;
   }
@@ -100,12 +100,12 @@ class Examination {
     return energy;
   }
 
-  // How far two events may be apart in time that are one: rounding, and the component element method sees an
+  // How far two records of one event may be apart in time: rounding, and the component element method sees an
   // event up to a step late.
   double instant(double time) const { return rounding * (1 + time) + 2 * step_; }
-  // By how much x may differ between two ways to read it off the same motion, of which `scale` is the size of
-  // x, x' and the force: rounding, and with the component element method the parabola through three steps,
-  // whose curvature the walls make as large as k nu.
+  // How far two values of x from the same motion may be apart, `scale` being the size of x, x' and the force:
+  // rounding, and with the component element method the parabola through three steps, whose curvature the
+  // walls make as large as k nu.
   double blur(double time, double scale) const {
     double curvature = 1;
     for (const SceneDamper& damper : dampers_) curvature += damper.wall_stiffness * damper.mass_ratio * step_;
@@ -156,7 +156,7 @@ class Examination {
     if (run_.impacts) {
       const auto impacts = static_cast<std::int64_t>(run_.impacts->time.size());
       const bool used_up = run_.stop_reason == StopReason::impact_budget;
-      // Of several at one instant all are recorded, or none.
+      // Of several impacts at one instant all are recorded, or none.
       const auto at_once = static_cast<std::int64_t>(dampers_.size());
       require(impacts <= budget_.max_impacts && (!used_up || impacts > budget_.max_impacts - at_once),
               "/impacts/time",
@@ -209,7 +209,7 @@ class Examination {
     }
     if (rows.amplitude.empty()) return;
     const double first = rows.amplitude[0], x0 = std::abs(scene_.x0);
-    // An impact at the release may turn x so early that the time of the peak is rounded to zero.
+    // An impact at the release may reverse x' so early that the time of the peak is rounded to zero.
     const bool is_x0 = std::abs(first - x0) <= 4 * std::numeric_limits<double>::epsilon() * x0;
     require(rows.peak_time[0] == 0 ? is_x0 : first >= x0, section + "amplitude/0",
             got((rows.peak_time[0] == 0 ? "|x0| = " : ">= |x0| = ") + number_text(x0), first));
@@ -235,7 +235,7 @@ class Examination {
     }
     for (std::size_t i = 0; i < impacts.time.size(); ++i) {
       const double w = impacts.relative_velocity[i], into = impacts.wall[i] == Wall::left ? -w : w;
-      // The component element method may see a mass that hardly moves arrive as it goes away again.
+      // The component element method may record the impact of a slow mass when it moves away again.
       const double least =
           -step_ * (1 + std::abs(impacts.displacement[i]) + std::abs(scene_.force_amplitude));
       if (!require(
@@ -245,7 +245,7 @@ class Examination {
     }
   }
 
-  // Without rows: which impacts have a phase and an amplitude.
+  // Without half cycles: checks which impacts have a phase and an amplitude.
   void examine_phases(const Impacts& impacts) {
     std::size_t i = 0;
     const std::size_t count = impacts.time.size();
@@ -388,7 +388,7 @@ class Examination {
     }
   }
 
-  // Between rigid walls, but for the rounding of the flight there.
+  // Checks that a mass lies between its rigid walls, to within the rounding of its flight.
   void examine_place(const History& history, std::size_t damper) {
     const double clearance = dampers_[damper].clearance, near = rounding * (clearance + 2 * fastest());
     const std::vector<double>& y = y_of(history, damper);
@@ -402,10 +402,11 @@ class Examination {
   void examine_samples(const HalfCycles& rows, const History& history) {
     const std::vector<double>& crossings = rows.zero_crossing;
     const double f0 = std::abs(scene_.force_amplitude);
-    // A wall may make x' as large as it ever is within a rounding of time. Between samples no more bounds it
-    // with central differences, which see a crossing late, than the energy at the release and the force;
-    // where they have put in more, nothing does.
-    double fastest = std::max(f0, 2 * std::abs(scene_.w0));  // as an impact at the release may make it
+    // `fastest` bounds |x| near a zero crossing by |x'|, which a wall can raise to its largest value within a
+    // rounding of time. With central differences, which see a crossing late, only the energy at the release
+    // and the work of the force bound |x'| between samples. Where recorded numbers exceed that bound, x at
+    // zero crossings is not checked.
+    double fastest = std::max(f0, 2 * std::abs(scene_.w0));  // as after an impact at the release
     if (several_) fastest = std::max(f0, this->fastest());
     for (const auto* column : {&rows.amplitude, &history.x, &history.v})
       for (const double value : *column) fastest = std::max(fastest, std::abs(value));
@@ -416,12 +417,12 @@ class Examination {
       fastest = bound;
     }
     std::size_t row = 0;        // of the sample
-    bool side_is_told = false;  // that of the last sample whose sign is no matter of rounding
+    bool side_is_told = false;  // whether last_x is set: x of the last sample with a certain sign
     double last_time = 0, last_x = 0, largest = 0;
     bool signs_hold = true, heights_hold = true, zeros_hold = true;
     for (std::size_t i = 0; i < history.time.size(); ++i) {
       const double time = history.time[i], x = history.x[i], near = instant(time);
-      // An impact may have left no more of x and x' than the rounding of what they were.
+      // An impact can reduce x and x' to the rounding errors of their earlier values.
       const double size = std::abs(x) + std::abs(history.v[i]) + f0;
       largest = std::max(largest, size);
       while (row < crossings.size() && crossings[row] < time) ++row;
@@ -461,8 +462,8 @@ class Examination {
     examine_kinetic("initial_kinetic", &DamperEnergy::initial_kinetic, scene_.v0, w, rounding);
     if (run_.history && !run_.history->time.empty() && run_.history->time.back() == run_.end_time) {
       const History& history = *run_.history;
-      // Near resonance or in an overdamped motion a state carries the rounding of more than it is made of at
-      // last; velocities of central differences are of second order.
+      // Near resonance or in an overdamped motion the final state carries rounding errors of larger numbers
+      // before it; velocities of central differences are of second order.
       for (std::size_t i = 0; i < w.size(); ++i) w[i] = w_of(history, i).back();
       const double part = 1e-9 + step_ * step_;
       examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), w,
@@ -487,7 +488,8 @@ class Examination {
     examine_residual(balance);
   }
 
-  // The w are those of all dampers, at one instant.
+  // Compares the energies at one instant with those of the state; w: of all dampers; part: relative
+  // tolerance.
   void examine_energy_at(const std::string& section, const Energy& energy, double x, double v,
                          const std::vector<double>& w, double wall, double part) {
     double moving = v * v, kinetic = moving, paper = moving;
@@ -515,9 +517,9 @@ class Examination {
     }
   }
 
-  // What an impact on a rigid wall loses, nu (1 - e^2) w^2 m/(m + nu)/2, where m, in units of the primary
-  // mass, is what is struck: the primary mass and any secondary masses that rest on the other side. Of
-  // several impacts at the same time only the sign is told.
+  // Checks the loss of each impact on a rigid wall, nu (1 - e^2) w^2 m/(m + nu)/2, where m, in units of the
+  // primary mass, is what is struck: the primary mass and any secondary masses that rest on the other side.
+  // Of several impacts at the same time only the sign is checked.
   void examine_losses(const Impacts& impacts, const std::vector<double>& losses) {
     double all = 1;
     for (const SceneDamper& damper : dampers_) all += damper.mass_ratio;
@@ -542,7 +544,7 @@ class Examination {
     }
   }
 
-  // What the dampers have to do with the balance is together what stands in it.
+  // Checks that the dampers' shares of the energy balance add up to its entries.
   void examine_sums(const EnergyBalance& balance) {
     const std::vector<DamperEnergy>& dampers = balance.dampers;
     std::vector<double> losses(dampers.size());
@@ -577,10 +579,10 @@ class Examination {
             "must be " + std::to_string(bounce_downs) + of + ", got " + std::to_string(balance.bounce_downs));
   }
 
-  // What it is divided by, the initial energy and the integral of the force's |power|, is not recorded. It is
-  // at least |the force's work| and at most what the force can do to a mass that keeps all it is given: v^2/2
-  // <= D and D <= E + f0 T sqrt(2 D) bound D. With the component element method it is the largest energy
-  // seen.
+  // Compares the recorded residual with the one of the recorded terms. Its divisor, the initial energy plus
+  // the integral of the force's |power|, is not recorded. It is at least the initial energy plus |the force's
+  // work|, and at most what the force can do to a mass that keeps all energy: v^2/2 <= D and D <= E + f0 T
+  // sqrt(2 D) bound D. With the component element method it is the largest energy seen.
   void examine_residual(const EnergyBalance& balance) {
     const std::vector<double>& losses = balance.impact_loss;
     const double begin = balance.initial.total(), end = balance.final.total(), put_in = balance.forcing_work;
@@ -590,7 +592,7 @@ class Examination {
     const double push = std::abs(scene_.force_amplitude) * run_.end_time / std::sqrt(2.0);
     const double root = push + std::sqrt(push * push + begin);
     const double least = cem_ ? std::max({begin, end, std::abs(put_in)}) : begin + std::abs(put_in);
-    // The component element method's energy is its own but for an error of the order of the step.
+    // The energy of the component element method has an error of the order of the step.
     const double bound = scene_.force_amplitude == 0 ? begin : root * root;
     const double most = cem_ ? 2 * std::max(bound, least) : bound;
     double handled = begin + std::abs(put_in) + end + std::abs(balance.contact_loss) +
@@ -609,10 +611,10 @@ class Examination {
   const Run& run_;
   const Scene& scene_;
   const bool several_;
-  std::vector<SceneDamper> dampers_;  // of a scene with one damper this
+  std::vector<SceneDamper> dampers_;  // the list, or the one damper of the scene
   const Cem* const cem_;
   Budget budget_;
-  double step_ = 0;  // the longest of the component element method, else 0
+  double step_ = 0;  // the longest step of the component element method, else 0
   std::vector<Problem> problems_;
 };
 

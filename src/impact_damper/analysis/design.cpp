@@ -14,7 +14,7 @@ namespace impact_damper {
 namespace {
 
 double loss_at(double restitution, double amplitude) {
-  // At the fold itself rounding decides; a little above there is a motion.
+  // At the fold itself rounding decides whether there is a motion; a little above it there is one.
   const auto motion = single_impact(restitution, amplitude * (1 + 1e-12));
   return motion ? motion->loss : 0;
 }

@@ -1,4 +1,4 @@
-// For the design of an impact damper: which clearance, which forces, and what amplitude is left under an
+// Design of an impact damper: its clearance, its contact forces, and the amplitude that is left under an
 // exciting force. Dimensionless as in run.hpp, forces divided by K epsilon; the equations are in
 // docs/mathematics.md, chapter 12. No function checks its arguments: scenes must be valid (problems_of) and
 // have one damper, not a list, whose numbers are those of the scene.
@@ -11,7 +11,7 @@
 namespace impact_damper {
 
 // --- Clearance --------------------------------------------------------------------------------------------
-// How far a damper that is built, and its motion, may deviate from the nominal numbers.
+// How far a damper as built, and its motion, may deviate from the nominal numbers.
 struct Tolerances {
   double restitution = 0.05;  // absolute, either way
   double clearance = 0.1;     // relative, either way
@@ -20,7 +20,7 @@ struct Tolerances {
 
 // The clearance for an amplitude that is to be damped (M12.3). Amplitudes in units of the clearance.
 struct ClearanceRule {
-  double fold = 0;  // fold_amplitude(e): below it one impact per half cycle cannot go on
+  double fold = 0;  // fold_amplitude(e): below it there is no motion with one impact per half cycle
   // Recommended amplitude divided by the fold: least_margin, or more where the tolerances need more.
   double margin = 0;
   double amplitude = 0;  // margin * fold: what the amplitude to be damped should be
@@ -43,7 +43,7 @@ struct ShortContact {
   std::optional<double> duration;
 };
 ShortContact short_contact(const Scene& scene, Calibration calibration, double speed);
-// A contact that lasts longer, in units of 1/Omega_n, is not short beside the primary mass's period.
+// The longest contact, in units of 1/Omega_n, that is short compared with the primary mass's period.
 inline constexpr double longest_short_contact = 0.15;
 
 // Magnitude of the wall's force at the release; 0 if y0 is in the cavity.
@@ -57,8 +57,8 @@ double linear_response(double force, double mass, double damping_ratio, double f
 struct WorstResponse {
   double frequency = 0, amplitude = 0;
 };
-// Where linear_response is largest (M12.7): at frequency 0 if 2 zeta^2 >= mass. Without damping the amplitude
-// is infinite.
+// The frequency at which linear_response is largest, and that maximum (M12.7): frequency 0 if 2 zeta^2 >=
+// mass. Without damping the amplitude is infinite.
 WorstResponse worst_linear_response(double force, double mass, double damping_ratio);
 
 // Smallest, mean and largest amplitude of the last quarter of a run's half cycles.
@@ -66,7 +66,7 @@ struct SteadyAmplitude {
   double least = 0, mean = 0, greatest = 0;
   bool settled = false;  // the mean of the quarter before differs by at most 2 %
 };
-// Absent with fewer than 12 half cycles.
+// Of a run's half cycles; absent with fewer than 12.
 std::optional<SteadyAmplitude> steady_amplitude(const HalfCycles& half_cycles);
 
 }  // namespace impact_damper

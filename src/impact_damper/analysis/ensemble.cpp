@@ -18,8 +18,8 @@ std::uint64_t draw(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
-// All that sets the scene moving, times `factor`: a part of it that hardly does may be lost in the rounding
-// of others.
+// The scene with all that sets it moving multiplied by `factor`: a change of a small part alone may be lost
+// in the rounding of others.
 Scene scaled(Scene scene, double factor) {
   for (double Scene::*const part : {&Scene::x0, &Scene::v0, &Scene::w0, &Scene::force_amplitude})
     scene.*part *= factor;
@@ -42,7 +42,7 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
         1 + static_cast<double>((drawn >> 1) % static_cast<std::uint64_t>(options.most_steps));
     const double shift = options.step * (drawn & 1 ? steps : -steps);
     const Scene shifted = scaled(scene, 1 + shift);
-    // Beyond the largest number that a scene allows there is none: then the other way.
+    // Where a number would exceed the largest that a scene allows, the other sign is taken.
     const bool is_beyond =
         problems_of(shifted, DamperList::allowed).size() > problems_of(scene, DamperList::allowed).size();
     scenes.push_back(is_beyond ? scaled(scene, 1 - shift) : shifted);

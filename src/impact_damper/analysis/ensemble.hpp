@@ -18,7 +18,7 @@ struct EnsembleOptions {
   double step = 1e-9;              // relative change of one step
   std::int64_t most_steps = 1000;  // >= 1: a member is changed by up to so many steps, up or down
   std::uint64_t seed = 1;
-  Threads threads;  // that simulate the members; no result depends on it
+  Threads threads;  // for simulating the members; no result depends on their number
 };
 
 // The scene itself, then members - 1 perturbed ones: x0, v0, each w0, the force's amplitude and, unless the
@@ -37,7 +37,7 @@ std::vector<Run> simulate_scenes(const std::vector<Scene>& scenes, const Engine&
 std::vector<Run> simulate_ensemble(const Scene& scene, const Engine& engine, const Record& record,
                                    const EnsembleOptions& options = {});
 
-// What an ensemble says about a number: median (mean of the two middle values), smallest, largest.
+// The summary of a number over an ensemble: median (mean of the two middle values), smallest, largest.
 struct Spread {
   double median = 0, low = 0, high = 0;
 };

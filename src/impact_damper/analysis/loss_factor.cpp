@@ -107,7 +107,7 @@ LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, s
   for (auto* column : {&loss.amplitude, &loss.time, &loss.eta}) column->resize(time.size() - 2);
   for (std::size_t i = 1; i + 1 < time.size(); ++i) {
     const std::size_t farthest = std::min({most, i, time.size() - 1 - i});
-    // Times and logarithms are counted from the middle peak's, so that the sums lose nothing.
+    // Times and logarithms are counted from the middle peak's, so that the sums lose no digits.
     double sum_t = 0, sum_l = 0, sum_tt = 0, sum_tl = 0;
     std::size_t reach = 0;
     do {

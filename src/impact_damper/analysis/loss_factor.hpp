@@ -33,8 +33,8 @@ struct LossFactor {
 LossFactor averaged_loss_factor(const std::vector<double>& peak_time, const std::vector<double>& amplitude,
                                 const LossFactorOptions& options = {});
 
-// The same from a run's half cycles. Rows of amplitude 0, and rows whose peak is not later than the one
-// before (they occur at the start of a run), are left out.
+// The averaged loss factor from a run's half cycles. Rows of amplitude 0, and rows whose peak is not later
+// than the one before (they occur at the start of a run), are left out.
 LossFactor averaged_loss_factor(const HalfCycles& half_cycles, const LossFactorOptions& options = {});
 
 // The loss factor without the parabola's bias, for strong damping too: a straight line is fitted by least
@@ -46,14 +46,14 @@ struct LogarithmicFit {
   double factor = 2;          // >= 1, largest ratio of the first to the last amplitude
   int most_half_cycles = 10;  // even, >= 2
 };
-// From the rows [first, last) of the half cycles, last <= their number, without those left out above. One row
-// per peak that has a neighbour on either side; its amplitude is the geometric mean of the peaks that its
-// line is fitted to. Nothing is checked or thrown.
+// The loss factor by this fit from the rows [first, last) of the half cycles, last <= their number, without
+// those left out above. One row per peak that has a neighbour on either side; its amplitude is the geometric
+// mean of the peaks that its line is fitted to. Nothing is checked or thrown.
 LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, std::size_t last,
                              const LogarithmicFit& fit = {});
 
-// The same of a run, before impact failure and above its amplitude (regimes.hpp). Row 0, which is less than a
-// half cycle, is left out. Needs half_cycles.
+// local_loss_factor() of a run before impact failure and above its amplitude (regimes.hpp). Row 0, which is
+// less than a half cycle, is left out. Needs half_cycles.
 LossFactor loss_before_failure(const Run& run);
 
 // eta / nu: "specific total loss factor".

@@ -16,7 +16,7 @@
 
 namespace impact_damper {
 
-// How many threads work. Absent: one for each processor. A number below 1 counts as 1.
+// Number of threads. Absent: one for each processor. A number below 1 counts as 1.
 using Threads = std::optional<std::int64_t>;
 
 inline std::int64_t number_of(const Threads& threads) {
@@ -62,7 +62,7 @@ void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
       for (std::int64_t n = std::min(number_of(threads), count); n > 1; --n)
         helpers.threads.emplace_back(take_indices);
     } catch (const std::system_error&) {
-      // No more threads are to be had: those that there are do the work.
+      // No more threads can be started: those that there are do the work.
     }
     take_indices();
   }
@@ -70,13 +70,13 @@ void for_each_index(std::int64_t count, const Threads& threads, Work&& work) {
 }
 
 // Calls make(i) as for_each_index does work(i), and take(result) for the results in the order of i, one at a
-// time. Where one takes long, only so many results of later ones are kept waiting for it.
+// time. While one takes long, no more than most_ahead results of later ones wait for it.
 template <class Make, class Take>
 void for_each_in_order(std::int64_t count, const Threads& threads, Make&& make, Take&& take) {
   constexpr std::int64_t most_ahead = 1 << 14;
   std::mutex mutex;
   std::condition_variable moved;
-  std::deque<std::optional<decltype(make(count))>> waiting;  // of `next`, next + 1, ...
+  std::deque<std::optional<decltype(make(count))>> waiting;  // results of `next`, next + 1, ...
   std::int64_t next = 0;
   bool failed = false;
   for_each_index(count, threads, [&](std::int64_t i) {

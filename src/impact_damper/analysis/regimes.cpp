@@ -13,7 +13,7 @@ const HalfCycles& half_cycles_of(const Run& run) {
   return *run.half_cycles;
 }
 
-// For each stuck interval its parts in rows 1, 2, ...: visit(row, begin, end) in the order of time.
+// Calls visit(row, begin, end) for the parts of each stuck interval in rows 1, 2, ..., in the order of time.
 template <class Visit>
 void for_each_stuck_part(const Run& run, const RegimeOptions& options, Visit visit) {
   const std::vector<double>& crossing = half_cycles_of(run).zero_crossing;

@@ -1,9 +1,9 @@
-// The regimes a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and its
-// end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to the
-// first zero crossing, is less than a half cycle, so the regimes leave it out; only first_row_below()
+// The regimes that a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and
+// its end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to
+// the first zero crossing, is less than a half cycle, so the regimes leave it out; only first_row_below()
 // includes it. "Needs" names the sections that the run must have recorded; without one of them the function
-// throws std::invalid_argument. The scene must have one damper, not a list; of several, each by itself is
-// asked about with the run that one_of_several.hpp makes of it.
+// throws std::invalid_argument. The scene must have one damper; a run with a list is divided by
+// one_of_several.hpp first.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,8 @@ struct StuckPhases {
   std::vector<double> amplitude;           // of the half cycle
   std::vector<double> begin_deg, end_deg;  // as Impacts::phase_deg, 0 <= begin < end <= 180
 };
-// Needs half_cycles and contacts. Row 0, which no zero crossing began, gives none.
+// The stuck phases of all half cycles but row 0, which no zero crossing began. Needs half_cycles and
+// contacts.
 StuckPhases stuck_phases(const Run& run, const RegimeOptions& options = {});
 
 // A half cycle of a run.
@@ -63,7 +64,7 @@ struct ImpactFailure {
 };
 // Needs half_cycles.
 ImpactFailure impact_failure(const Run& run, const RegimeOptions& options = {});
-// The row of the first missed impact, else of failure for good; the number of rows without one. Needs
+// The row of the first missed impact, else of failure for good; without either the number of rows. Needs
 // half_cycles.
 std::size_t failure_row(const Run& run);
 
@@ -73,7 +74,7 @@ struct RegularWindow {
   std::size_t first = 0, last = 0;  // rows, both included
   double upper = 0, lower = 0;      // amplitudes of these rows
 };
-// In the order of time. Needs half_cycles.
+// The regular windows of a run, in the order of time. Needs half_cycles.
 std::vector<RegularWindow> regular_windows(const Run& run, const RegimeOptions& options = {});
 
 // The longest regular window with `impacts` impacts per half cycle, the earlier of two equals.

@@ -22,7 +22,7 @@ double time_to_accumulation(double e, double a, const Bounce& at) {
   return accumulation_time(e, a * sin_cos(at.time).sin, e * at.speed);
 }
 
-// Absent if the mass is not back before t = pi.
+// The bounce after `at`; absent if the mass is not back at the wall before t = pi.
 std::optional<Bounce> next_bounce(double e, double a, const Bounce& at) {
   const double t = at.time, u = e * at.speed, left = pi - t;
   const SinCos<double> turn = sin_cos(t);
@@ -37,9 +37,9 @@ std::optional<Bounce> next_bounce(double e, double a, const Bounce& at) {
     return After{u * s + a * (cos_t * (2 * sin * cos - s) - sin_t * 2 * square(sin)),
                  u - 2 * a * sin * (sin_t * cos + cos_t * sin)};
   };
-  // Behind the return is where an acceleration that falls evenly from A sin(t) to 0 would bring the mass
-  // back, as the sine lies above its chord: u = A sin(t) (s / 2 - s^2 / (6 left)). It does within `left` if
-  // r = u / (A sin(t)) is below a third of that.
+  // Newton's method starts behind the return: where an acceleration that falls linearly from A sin(t) to 0
+  // would bring the mass back, as the sine lies above its chord: u = A sin(t) (s / 2 - s^2 / (6 left)). That
+  // s exists within `left` if r = u / (A sin(t)) is below a third of that.
   const double r = u / (a * sin_t);
   double s = left;
   if (r < left / 3) {

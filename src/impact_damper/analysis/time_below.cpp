@@ -10,7 +10,7 @@
 namespace impact_damper {
 namespace {
 
-// (M15.13), without the square root: what x^2 cannot exceed from then on, without a force.
+// The square of (M15.13): an upper bound of x^2 from then on, without a force.
 double bound_of_square(const Run& run, std::size_t row) {
   const Scene& scene = run.scene;
   const History& history = *run.history;
@@ -71,8 +71,8 @@ std::optional<double> time_below(const Run& run, double amplitude) {
       return rows.peak_time[row];
     return last_time_at(run, rows.peak_time[row - 1], rows.zero_crossing[row - 1], amplitude, true);
   }
-  // The half cycle under way, or the one before, is no swing if it lasts longer than one of all masses locked
-  // and undamped, and more.
+  // The half cycle under way, or the one before, is no oscillation if it lasts more than 1.1 times as long as
+  // an undamped one with all masses locked.
   const std::size_t count = rows.zero_crossing.size();
   const double since = count > 0 ? rows.zero_crossing[count - 1] : 0;
   const double before = count > 1 ? rows.zero_crossing[count - 2] : 0;

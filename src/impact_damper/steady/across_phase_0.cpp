@@ -11,13 +11,13 @@
 namespace impact_damper {
 namespace {
 
-// One event.
+// The state after one event, and its derivative by the state before.
 struct Step {
   StateMatrix by_state;
   StateVector state;
 };
 
-// What one of the dampers and its cavity are like.
+// The numbers of one damper and its cavity.
 struct Cavity {
   std::size_t damper;
   double mass_ratio, restitution, clearance, wall_damping;
@@ -45,8 +45,8 @@ Matrix identity_of(std::size_t n) {
   return one;
 }
 
-// Of a mass that lies beyond a rigid wall: its impact was to come and has just been, or the other way round
-// (M13.13). All others fly.
+// Takes a mass that lies beyond a rigid wall across its impact (M13.13), or back if it moves away from the
+// wall. All others fly. Nothing if it has no speed, or an impact with e = 0 would have to be undone.
 std::optional<Step> across_impact(double zeta, const Cavity& cavity, const StateVector& s) {
   const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
   const double wall = s[y] < 0 ? 0 : cavity.clearance, away = s[y] < 0 ? 1 : -1, e = cavity.restitution;
@@ -74,7 +74,7 @@ std::optional<Step> across_impact(double zeta, const Cavity& cavity, const State
   const StateVector at_wall = product(jump, moved(s, before, -since));
   const StateVector after = rates(at_wall);
   Step step{jump, moved(at_wall, after, since)};
-  for (std::size_t i = 0; i < s.size(); ++i) {  // (M13.4)
+  for (std::size_t i = 0; i < s.size(); ++i) {  // (M13.4); kick: row i of F^+ - D F^-
     double kick = after[i];
     for (std::size_t k = 0; k < s.size(); ++k) kick -= jump[i][k] * before[k];
     step.by_state[i][y] += kick / s[w];
@@ -82,7 +82,8 @@ std::optional<Step> across_impact(double zeta, const Cavity& cavity, const State
   return step;
 }
 
-// Of one that has come into contact with a compliant wall, or out of it (M13.6): the branch has a kink there.
+// Takes a mass across the touch of a compliant wall, or the end of the contact (M13.6), to first order: the
+// branch has a kink there.
 Step across_edge(const Cavity& cavity, bool into_contact, StateVector s) {
   const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
   const double force = (into_contact ? 1 : -1) * cavity.wall_damping, shared = cavity.mass_ratio * force;

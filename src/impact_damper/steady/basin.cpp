@@ -16,7 +16,7 @@ namespace {
 // Points along each axis of the grid from which the motions of a scene are collected first.
 constexpr std::int64_t coarse = 16;
 
-// Whether no secondary mass is ever struck again (M14.5).
+// Whether no secondary mass ever has an impact again (M14.5).
 class Idle {
  public:
   explicit Idle(const Scene& scene) : omega_(scene.force_frequency), dampers_(scene.dampers) {
@@ -29,7 +29,7 @@ class Idle {
   }
   bool holds(const SceneState& s) const {
     const double x = s.x - behind_, v = s.v - omega_ * in_phase_;
-    const double reach = steady_ + square_root(x * x + v * v);  // (M3.4) on what is not steady
+    const double reach = steady_ + square_root(x * x + v * v);  // (M3.4) for the transient
     // False where resonance makes the reach infinite, or a NaN.
     const auto is_out_of_reach = [&](double y, double w, double clearance) {
       const double z = s.x + y;
@@ -42,19 +42,20 @@ class Idle {
   }
 
  private:
-  // Speed in space below which a mass counts as at rest: rounding of a velocity, some periods long.
+  // Speed in space below which a mass counts as at rest: rounding errors of a velocity over some periods.
   static constexpr double at_rest = 64 * std::numeric_limits<double>::epsilon();
   double omega_;
   std::vector<SceneDamper> dampers_;
   double in_phase_, behind_, steady_;
 };
 
+// The attractor of a steady motion, with its states at phase 0 if they are wanted.
 Attractor attractor_of(const ForcedScene& scene, const SteadyState& steady, bool with_states) {
   Attractor found{steady.impacts == ImpactCounts{} && steady.period == 1, *steady.period, steady.impacts,
                   steady.symmetric};
   if (!found.idle) found.impacts_by_damper = steady.impacts_by_damper;
   for (SceneState state = steady.state; with_states && std::ssize(found.states) < found.period;) {
-    const ForcedScene::Watched passed = *scene.pass_periods(state);  // as often before, to find the period
+    const ForcedScene::Watched passed = *scene.pass_periods(state);  // does not fail: it found the period
     for (const SceneState& each : passed.states)
       if (std::ssize(found.states) < found.period) found.states.push_back(each);
     state = passed.states.back();
@@ -73,7 +74,7 @@ bool same_kind(const Attractor& a, const Attractor& b) {
   return a.symmetric == b.symmetric || !all_are_struck(a);  // a mass may rest in the middle by chance
 }
 
-// The state without what tells nothing: where a mass rests that is never struck.
+// The state with y and w of dampers without impacts reset: where they rest does not distinguish motions.
 SceneState of_struck(SceneState state, const Attractor& attractor) {
   for (std::size_t i = 0; i < state.dampers.size(); ++i)
     if (attractor.impacts_by_damper[i] == ImpactCounts{}) state.dampers[i] = {};
@@ -99,7 +100,7 @@ std::int32_t index_of(std::vector<Attractor>& all, const Attractor& found, doubl
   return static_cast<std::int32_t>(all.size()) - 1;
 }
 
-// The known motion that a trajectory nears, state by state.
+// Decides, from state to state at phase 0, which known motion captures a trajectory.
 class Capture {
  public:
   Capture(const std::vector<Attractor>& known, double radius) : known_(known), radius_(radius) {}
@@ -112,7 +113,7 @@ class Capture {
       candidate_ = -1;
     }
     for (std::size_t i = 0; candidate_ < 0 && i < known_.size(); ++i) {
-      // A mass that seems to rest may yet drift into a wall: then only a steady motion tells.
+      // A mass that seems to rest may still drift into a wall: such a motion is decided by SteadyRule only.
       if (known_[i].idle || !all_are_struck(known_[i])) continue;
       for (std::size_t phase = 0; phase < known_[i].states.size(); ++phase) {
         const double far = distance(state, known_[i].states[phase]);
@@ -136,13 +137,14 @@ class Capture {
   double distance_ = 0;
 };
 
-// What a point ends in: a known motion, by its index; or another one; or neither.
+// The motion that a point ends in: a known one, by its index; or another one; or neither.
 struct Decision {
   std::optional<std::int32_t> known{};
   std::optional<Attractor> found{};
   bool stopped = false;  // by a budget
 };
 
+// Simulates from a state at phase 0 until one of the rules of basin() decides the point.
 Decision decide(const ForcedScene& scene, const SceneState& start, const Idle& idle,
                 const std::vector<Attractor>& known, const BasinRule& rule, bool with_states) {
   Decision decision;
@@ -266,7 +268,7 @@ Basin basin(const Scene& scene, const Engine& engine, const Axis& first, const A
     progress(done += first.count);
   });
 
-  // In the order of the rows, so that numbers do not depend on which was ready first.
+  // In the order of the rows, so that indices do not depend on which row was finished first.
   std::vector<Attractor>& all = basin.attractors;
   for (const Row& row : rows) {
     std::vector<std::int32_t> index_in_all(known.size());

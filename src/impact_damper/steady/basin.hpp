@@ -1,5 +1,5 @@
-// Which steady motion a scene ends in, over two of its numbers: a map of basins of attraction over two
-// initial values, or of the motions over two parameters.
+// The steady motion that a scene ends in, as a function of two of its numbers: a map of basins of attraction
+// over two initial values, or of the motions over two parameters.
 #pragma once
 
 #include <functional>
@@ -23,11 +23,11 @@ struct Attractor {
   std::int64_t period = 1;  // in periods of the force
   ImpactCounts impacts{};   // in one period of the motion, of all dampers together
   bool symmetric = false;
-  std::int64_t points = 0;  // of the map
-  // Its states at phase 0, `period` of them; none where the map varies the scene's parameters: then equal
-  // periods, impacts and symmetry are one and the same motion.
+  std::int64_t points = 0;  // how many points of the map end in it
+  // Its states at phase 0, `period` of them; none where the map varies the scene's parameters: motions with
+  // equal periods, impacts and symmetry then count as one.
   std::vector<SceneState> states{};
-  // Of each of several dampers. Motions that differ only in where a mass rests that is never struck are one.
+  // Impacts of each damper of a list. Motions that differ only in where an idle mass rests are one.
   std::vector<ImpactCounts> impacts_by_damper{};
 };
 
@@ -39,7 +39,7 @@ struct Basin {
   std::int64_t stopped = 0;  // points that a budget of the engine ended; they are undecided
 };
 
-// A point of the map is decided as soon as
+// The steady motion of each point of the map over two axes. A point is decided as soon as
 // - each secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
 // - over initial values: it is within the capture radius of a known motion, and nearer to it a period of that
 //   motion later. Known are those that a coarse grid of points ends in, each followed until it is steady by

@@ -10,8 +10,8 @@
 namespace impact_damper {
 namespace {
 
-constexpr double points_along_range = 100;  // at least: no step is longer than the range divided by it
-// How far beyond the end of a branch is simulated, in units of the range.
+constexpr double points_along_range = 100;  // no step exceeds the range divided by it
+// Distance beyond the end of a branch at which a simulation looks for another, in units of the range.
 constexpr double beyond_end = 1e-3;
 
 struct PeriodicMotion {
@@ -30,7 +30,8 @@ class BranchSearch {
   }
   double value_of(const Orbit& orbit) const { return orbit.scene.*member_of(range_.parameter); }
 
-  // What a simulation ends in, and the orbit there.
+  // The steady state of a simulation from `state` and, if it is periodic, the orbit that Newton's method
+  // finds.
   PeriodicMotion settled(const Scene& scene, const SceneState& state) const {
     const ForcedScene forced(scene, engine_);
     PeriodicMotion motion;
@@ -60,19 +61,19 @@ class BranchSearch {
     return motion;
   }
 
-  // The branch on which an orbit lies that simulations keep to, if it is known.
+  // The index of the known branch on which an orbit lies, if there is one.
   std::optional<std::int64_t> known(const std::vector<FollowedBranch>& branches, const Orbit& orbit) const {
     for (std::size_t i = 0; i < branches.size(); ++i)
       if (lies_on(branches[i].branch, orbit)) return std::int64_t(i);
     return std::nullopt;
   }
-  // Whether a known branch ended where another would begin.
+  // Whether a known branch ended by joining at this event, so that the one that begins here is known.
   bool is_joined(const std::vector<FollowedBranch>& branches, const BranchEvent& event) const {
     return std::ranges::any_of(branches, [&](const FollowedBranch& each) {
       const Branch& branch = each.branch;
       if (branch.end != BranchEnd::joined) return false;
       const BranchEvent& end = branch.events.back();
-      // Both are known to 1e-10 in the parameter, and to the root of that in the state.
+      // Both are known to 1e-10 in the parameter, and to the square root of that in the state.
       return end.kind == event.kind && std::abs(end.parameter - event.parameter) <= 1e-8 * event.parameter &&
              is_twin(event.orbit, release_of(end.orbit.scene), 1e-3);
     });
@@ -91,8 +92,9 @@ class BranchSearch {
     return follow(orbit, range_.parameter, options);
   }
 
-  // What simulation ends in a little beyond where a branch ends by a grazing, or where none was found near
-  // enough to the last orbit. Nothing where that is not in the range.
+  // The orbit that a simulation ends in a little beyond the end of a branch, where that is a grazing, a
+  // coincidence or a step that became too small. Nothing if there is none, or that is not in the range.
+  // `upwards`: whether the parameter rose there.
   std::optional<Orbit> beyond(const Branch& branch, bool& upwards) const {
     if (branch.end != BranchEnd::grazing && branch.end != BranchEnd::coincidence &&
         branch.end != BranchEnd::step_too_small)
@@ -108,7 +110,7 @@ class BranchSearch {
     return **std::move(motion.orbit);
   }
 
-  // The orbit of half the length at which a branch ends, joining another.
+  // The orbit at which a branch ends by joining another, as an orbit of that other branch.
   std::optional<Orbit> joined(const Branch& branch) const {
     if (branch.end != BranchEnd::joined) return {};
     const BranchEvent& end = branch.events.back();
@@ -120,7 +122,7 @@ class BranchSearch {
   }
 
   double amplitude_of(const Orbit& orbit) const {
-    // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
+    // Over two periods: a half cycle that is not complete in the first is in the second.
     const auto watched =
         ForcedScene(orbit.scene, engine_).watch(release_of(orbit.scene), std::int64_t{2} * orbit.periods);
     if (!watched)
@@ -130,7 +132,7 @@ class BranchSearch {
   }
 
  private:
-  // Whether a state is one of the orbit's at phase 0, or of its mirror image's, to within `gap`.
+  // Whether a state is one of the orbit at phase 0, or of its mirror image, to within `gap` of its size.
   bool is_twin(const Orbit& orbit, const SceneState& state, double gap) const {
     const PoincareMap half(orbit.scene, engine_, 1);
     SceneState s = release_of(orbit.scene);
@@ -142,6 +144,7 @@ class BranchSearch {
     }
     return false;
   }
+  // Whether Newton's method leads from a branch, at its point nearest in the parameter, to the orbit.
   bool lies_on(const Branch& branch, const Orbit& orbit) const {
     const double value = value_of(orbit);
     for (std::size_t i = 0; i < branch.orbits.size(); ++i) {
@@ -236,7 +239,7 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
     all.starts.push_back(start);
   }
 
-  // What begins at the events and at the end of each branch, those that are found meanwhile included.
+  // The branches that begin at the events and at the end of each branch, including those found on the way.
   for (std::int64_t n = 0; n < std::ssize(all.branches); ++n) {
     const Branch branch = all.branches[static_cast<std::size_t>(n)].branch;
     const auto add_both_ways = [&](BranchOrigin origin, std::optional<std::int64_t> event,

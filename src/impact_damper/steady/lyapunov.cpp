@@ -26,9 +26,9 @@ double dot(const Column& a, const Column& b) {
   return sum;
 }
 
-// Makes a column that has been carried along orthogonal to the ones before it, and of length 1: by modified
-// Gram-Schmidt, twice, as an impact that is slow shears so much that once would leave rounding errors. Adds
-// the logarithm of what it has been stretched by (M13.15).
+// Makes column j orthogonal to those before it by modified Gram-Schmidt, scales it to length 1, and adds the
+// logarithm of the length that it had, its stretch (M13.15). Two passes: a slow impact shears so much that
+// one would leave rounding errors.
 template <class Columns>
 void orthonormalise(Columns& columns, std::size_t j, double& logarithm_of_stretch) {
   auto& column = columns[j];
@@ -39,18 +39,18 @@ void orthonormalise(Columns& columns, std::size_t j, double& logarithm_of_stretc
     }
   }
   const double size = std::sqrt(dot(column, column));
-  if (!(size > 0)) return;  // lost
+  if (!(size > 0)) return;  // the direction is lost
   for (double& entry : column) entry /= size;
   logarithm_of_stretch += logarithm(size);
 }
 
-// Puts changes into the columns from `first` on, which have been lost, that are orthonormal to the others.
+// Replaces the columns from `first` on, whose directions are lost, by vectors orthonormal to the others.
 template <class Columns>
 void replace_lost(Columns& columns, std::size_t first) {
   for (std::size_t j = first; j < columns.size(); ++j) {
     auto& column = columns[j];
     double largest = 0;
-    for (std::size_t k = 0; k < column.size(); ++k) {  // of the units the one that is least along the others
+    for (std::size_t k = 0; k < column.size(); ++k) {  // the unit vector that is least along the others
       double left = 1;
       for (std::size_t i = 0; i < j; ++i) left -= columns[i][k] * columns[i][k];
       if (!(left > largest)) continue;
@@ -63,7 +63,7 @@ void replace_lost(Columns& columns, std::size_t first) {
   }
 }
 
-// Four orthonormal changes of the state, and the logarithms of what they have been stretched by.
+// The frame Q of (M13.15): four orthonormal changes of the state, and the logarithms of their stretches.
 class Frame final : public VariationReceiver {
  public:
   Frame() : VariationReceiver(false) {}
@@ -96,7 +96,7 @@ class Frame final : public VariationReceiver {
   std::size_t dimensions_ = 4;
 };
 
-// A motion that is followed from period to period. Each is a run of its own, so that the phase of the force
+// A scene with one damper, period by period. Each period is a run of its own, so that the phase of the force
 // does not drift.
 class OneDamper {
  public:
@@ -124,6 +124,7 @@ class OneDamper {
   Frame frame_;
 };
 
+// A scene with a list of dampers, in the same way, from the record of each period.
 class SeveralDampers {
  public:
   SeveralDampers(const Scene& scene, const Engine& engine)
@@ -166,7 +167,7 @@ class SeveralDampers {
 
 constexpr std::int64_t error_blocks = 10;
 
-// What an exponent's means over blocks say of the error of the mean over all.
+// The standard error of exponent j from its means over the blocks.
 double standard_error(const std::vector<std::vector<double>>& means, std::size_t j) {
   const auto count = double(means.size());
   double mean = 0, squares = 0;

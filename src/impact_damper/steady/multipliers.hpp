@@ -1,4 +1,4 @@
-// Eigenvalues and linear equations that orbits need.
+// Floquet multipliers, and the linear solver that Newton's method for orbits uses.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace impact_damper {
 
-// A Floquet multiplier: by what a small departure from an orbit is multiplied each time it is completed.
+// A Floquet multiplier of an orbit, an eigenvalue of its monodromy matrix: the factor by which a small
+// departure from the orbit along the eigenvector grows in each period.
 struct Multiplier {
   double re = 0, im = 0;
   double modulus() const;  // |re + i im|
 };
 using Multipliers = std::vector<Multiplier>;
 
-// The eigenvalues of a matrix, the largest modulus first; of a conjugate pair the one with
-// im > 0 first.
+// The eigenvalues of a matrix, the largest modulus first; of a conjugate pair the one with im > 0 first.
 Multipliers multipliers_of(const Matrix& matrix);
 
 // The solution of a x = b; nothing if it is not finite. By Gaussian elimination with row pivots.

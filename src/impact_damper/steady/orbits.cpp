@@ -13,7 +13,7 @@
 namespace impact_damper {
 namespace {
 
-using Point = std::vector<double>;  // a state, and the parameter
+using Point = std::vector<double>;  // the components of a state, then the parameter
 
 double dot(const Point& a, const Point& b) {
   double sum = 0;
@@ -48,7 +48,7 @@ Point point_at(StateVector s, double parameter) {
   return s;
 }
 
-// The equation H^n(s) - s = 0 for states and values of one parameter.
+// The equation H^n(s; p) - s = 0, n = half_periods, for states s and values of one parameter p.
 struct Equation {
   Scene scene;
   Engine engine;
@@ -61,7 +61,7 @@ struct Equation {
     changed.*member_of(parameter) = value;
     return {changed, engine, half_periods};
   }
-  // The dampers that rest in whole periods: in half of one they are mirrored.
+  // The idle dampers to which (M13.28) applies. For odd n there are none: the mirror determines their place.
   std::vector<std::size_t> resting(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
@@ -69,7 +69,7 @@ struct Equation {
       const Point& p, PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
     return map(p.back())(state_of(state_at(p), scene), wanted);
   }
-  // Whether an iterate is one that a scene may have.
+  // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
   bool allows(const Point& p) const {
     for (const SceneField& field : scene_fields)
       if (field.member == member_of(parameter) &&
@@ -79,13 +79,13 @@ struct Equation {
   }
 };
 
-// A plane in the space of points, on which a solution is looked for.
+// The plane of points p with dot(normal, p - through) = 0, on which the corrector looks for a solution.
 struct Plane {
   Point through, normal;
 };
 
-// Takes an iterate that came from `before` to where the equation holds that led it there, and the plane with
-// it. False: that is not possible.
+// Takes an iterate, reached by a linear step from `before`, and the plane across the events that passed phase
+// 0 in that step (across_phase_0.hpp). False if it cannot.
 bool carry_across(const Equation& equation, const Point& before, Point& p, Plane& plane) {
   const std::optional<Crossing> crossing =
       across_phase_0(equation.scene, equation.engine, state_at(before), state_at(p));
@@ -115,9 +115,9 @@ using Solved = Expected<Solution, NoOrbit>;
 const StateVector& by_parameter(const PoincareImage& image, Parameter parameter) {
   return parameter == Parameter::force_frequency ? image.by_frequency : image.by_amplitude;
 }
-// The derivative of H^n(s) - s by s and the parameter, and a last row. In whole periods a mass that is not
-// struck keeps y + x and y' + x' (M13.28): for the latter, which is zero anyhow, the equation is that the
-// former stays.
+// The bordered matrix of (M13.11): the derivative of H^n(s) - s by s and the parameter, and a last row. In
+// whole periods an idle damper keeps y + x and y' + x', and its row of w is redundant. (M13.28) takes the
+// place of that row: y + x does not change.
 Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last) {
   const std::size_t n = image.by_state.size();
   Matrix a = image.by_state;
@@ -134,6 +134,7 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
   return a;
 }
 
+// The residual of an iterate.
 struct Rest {
   StateVector state;  // H^n(s) - s
   double off = 0;     // distance from the plane
@@ -148,8 +149,8 @@ Rest rest_of(const Solution& at) {
   return rest;
 }
 
-// Newton's step (M13.10). Written as the image and A times the change: where masses stick y and w are then
-// those of the image, to the bit.
+// The next iterate of Newton's method (M13.10); nothing if the bordered matrix is singular. Written as the
+// image plus A times the change, so that y and w of masses that stick are those of the image, to the bit.
 std::optional<Point> newton_step(const Equation& equation, const Solution& at, const Rest& rest) {
   std::vector<double> missing;
   for (const double r : rest.state) missing.push_back(-r);
@@ -165,8 +166,8 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
   return next;
 }
 
-// Solves H^n(s) = s on a plane by Newton's method from `start`, which a prediction from `before` led to. A
-// step that raises the rest is halved.
+// The corrector: solves H^n(s) = s on a plane by Newton's method from `start`, which was predicted from
+// `before`. A step after which the residual is at least twice the least so far is halved, at most six times.
 Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane) {
   Solution best, now;
   now.point = start;
@@ -183,7 +184,7 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
     const Rest rest = rest_of(now);
     residuals.push_back(rest.size);
     const bool tolerated = least <= equation.options.tolerance;
-    if (tolerated && !(rest.size < least / 2)) break;  // rounding errors are all that is left
+    if (tolerated && !(rest.size < least / 2)) break;  // only rounding errors are left
     if (i > 0 && !(rest.size < 2 * least) && fraction > 1.0 / 64) {
       fraction /= 2;
       now.point = along(best.point, fraction, step);
@@ -205,11 +206,11 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
   return best;
 }
 
-// Across the parameter: a plane on which it has one value.
+// The plane on which the parameter has the value that it has in p.
 Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 1)}; }
 
-// How far a point of n half periods is from being one of m, wherever masses rest that are not struck; nothing
-// where the run does not get that far.
+// The residual H^m(s) - s, m = half_periods, in which idle dampers count as staying where they rest; nothing
+// if a budget ends the run before.
 std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
@@ -223,14 +224,14 @@ std::optional<StateVector> rest_after(const Equation& equation, const Point& p, 
   }
   return rest;
 }
-// Whether it is one, to within `gap` in units of the larger of 1 and |s|.
+// Whether that residual is at most `gap`, in units of the larger of 1 and |s|.
 bool closes_after(const Equation& equation, const Point& p, int half_periods, double gap) {
   const auto rest = rest_after(equation, p, half_periods);
   return rest && largest(*rest) <= gap * std::max(1.0, largest(state_at(p)));
 }
 
-// The numbers of the state without those of masses that are not struck, and the derivative of these alone:
-// the others do not act on them, and add two multipliers that are 1, or -1 in half a period.
+// Indices of the state's components without those of idle dampers, and A restricted to these. Idle dampers do
+// not act on the others, and each adds two multipliers that are 1, or -1 for odd n.
 std::vector<std::size_t> moving_in(const PoincareImage& image) {
   std::vector<bool> rests(image.by_state.size(), false);
   for (const std::size_t damper : image.idle) rests[index_of_y(damper)] = rests[index_of_w(damper)] = true;
@@ -252,6 +253,7 @@ Multipliers multipliers_of(const PoincareImage& image) {
   return impact_damper::multipliers_of(derivative_of_moving(image));
 }
 
+// The orbit of a solution. Of a symmetric one the solution is half, and its mirror image the other half.
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
   Orbit orbit;
   orbit.residuals = found.residuals;
@@ -270,7 +272,6 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.least_interval = found.image.least_interval;
   if (!symmetric) return orbit;
 
-  // The other half is the mirror image of this one.
   orbit.scene.until_time = 2 * map.duration();
   for (const OrbitImpact& impact : found.image.impacts)
     orbit.impacts.push_back({impact.time + map.duration(),
@@ -279,15 +280,16 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.sticking *= 2;
   orbit.half_multipliers = orbit.multipliers;
   for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im + 0.0};
-  // A square may lie below the real axis where the number does not; the + 0.0 makes no -0.
+  // Squaring can move the first of a conjugate pair below the real axis: then the two are swapped. The + 0.0
+  // turns -0 into 0.
   for (std::size_t i = 0; i + 1 < orbit.multipliers.size(); ++i)
     if (orbit.multipliers[i].im < 0 && orbit.multipliers[i + 1].im == -orbit.multipliers[i].im)
       std::swap(orbit.multipliers[i], orbit.multipliers[i + 1]);
   return orbit;
 }
 
-// The eigenvector of -1, of length 1, of a derivative that has this eigenvalue nearly; by inverse iteration.
-// Masses that are not struck stay where they rest.
+// The unit eigenvector of A for its eigenvalue next to -1, by inverse iteration; nothing if that fails. Idle
+// dampers stay where they rest.
 std::optional<StateVector> reversed_by(const PoincareImage& image) {
   StateMatrix a = derivative_of_moving(image);
   constexpr double shift = 1e-9;  // so that the matrix is not singular
@@ -320,8 +322,8 @@ std::vector<Problem> problems_of(const OrbitOptions& options) {
   return problems;
 }
 
-// The products of (1 - m), (1 + m) and (1 - m m') over all multipliers m and all pairs of them (M13.12). They
-// are real, as conjugates come in pairs.
+// Test functions whose zeros are bifurcation points: the products of (1 - m), (1 + m) and (1 - m m') over all
+// multipliers m and all pairs of them (M13.12). They are real, as conjugates come in pairs.
 struct Products {
   double fold, flip, pairs;
 };
@@ -342,11 +344,13 @@ Products products_of(const PoincareImage& image) {
   return {fold.re, flip.re, pairs.re};
 }
 
-// What distinguishes orbits between which there is a grazing. Complete chattering has no number of impacts.
+// Whether two orbits have equally many impacts; if not, a grazing lies between them. Orbits with sticking
+// always count as equal: complete chattering has no number of impacts.
 bool of_one_kind(const PoincareImage& a, const PoincareImage& b) {
   return a.sticking > 0 || b.sticking > 0 || a.impacts.size() == b.impacts.size();
 }
 
+// The continuation of one branch, with control of the step length and the search for events.
 class Follower {
  public:
   Follower(const Orbit& orbit, Parameter parameter, const FollowOptions& options)
@@ -370,7 +374,7 @@ class Follower {
     double step = options_.first_step;
     branch.end = BranchEnd::points;
     while (tangent && int(branch.orbits.size()) < options_.max_points) {
-      // Smaller where the parameter changes more, but not for it alone too small to go on.
+      // `largest_change` limits the step, but does not by itself make it too small to go on.
       const double share = std::fabs((*tangent).back());
       if (step * share > options_.largest_change)
         step = std::max(options_.largest_change / share, options_.smallest_step);
@@ -423,6 +427,7 @@ class Follower {
   Orbit orbit_at(const Solution& at) const {
     return orbit_of(equation_, at, first_.periods, first_.symmetric);
   }
+  // The number that FollowOptions::max_multiplier limits.
   static double instability(const Orbit& orbit) {
     const double speed = std::min(1.0, orbit.slowest_impact.value_or(1));
     return orbit.multipliers[0].modulus() * (orbit.symmetric ? speed * speed : speed);
@@ -433,33 +438,34 @@ class Follower {
            !(image.nearest_miss && *image.nearest_miss < far);
   }
   bool in_range(const Point& p) const { return p.back() >= options_.least && p.back() <= options_.most; }
-  // Whether `next` is near enough to where it was expected, and of the same kind if a grazing ends branches.
+  // Whether the corrector ended within step / 2 of the prediction and, with rigid walls, where a grazing ends
+  // the branch, with as many impacts as before.
   bool follows(const Solution& now, const Solution& next, double step) const {
     return distance(next.point, next.plane.through) < step / 2 &&
            (!has_rigid_walls(equation_.engine) || of_one_kind(now.image, next.image));
   }
-  // The determinant of the bordered matrix keeps its sign along a branch, and is the product of (1 - m)
-  // divided by the parameter's share of the direction (M13.11). So if one of the two changes its sign and
-  // not the other, the step has led to another branch; or across a junction, where the branch ends.
+  // Whether the step led to another branch. The determinant of the bordered matrix keeps its sign along a
+  // branch, and is the product of (1 - m) divided by the parameter's component of the tangent (M13.11): both
+  // change their signs together. Across a junction they do not, but there the branch ends.
   bool jumped(const Solution& now, double share, const Solution& next, double next_share) const {
     if (now.image.impacts.empty() || crosses(now, next)) return false;
     return products_of(now.image).fold * share * products_of(next.image).fold * next_share < 0;
   }
-  // The direction of the branch, (M13.11), the one that `like` points to.
+  // The unit tangent of the branch (M13.11) on the side to which `like` points.
   std::optional<Point> tangent_at(const Solution& at, const Point& like) const {
     const auto direction =
         solution(bordered(equation_, at.image, like), point_at(StateVector(like.size() - 1), 1));
     return direction ? std::optional(normalized(*direction)) : std::nullopt;
   }
 
-  // The solution at a distance s from `now`, along the tangent there.
+  // Predictor and corrector: the solution at a distance s from `now`, along the tangent there.
   Solved between(const Solution& now, const Point& tangent, double s) const {
     const Point from = along(now.point, s, tangent);
     return solve(equation_, now.point, from, {from, normal_at(now, tangent)});
   }
-  // Where an orbit that is not symmetric is about to become so, and so to meet the branch of symmetric ones,
-  // the plane is laid across what is not symmetric: no orbit of the other branch lies in it. The same where
-  // an orbit is about to meet the branch of those of half its period.
+  // The normal of the corrector's plane. It is the tangent, except where an asymmetric orbit is about to meet
+  // the branch of symmetric ones, or an orbit that of half its period. There it is the residual H^(n/2)(s) -
+  // s, which vanishes on the other branch, so that no orbit of that branch lies in the plane.
   Point normal_at(const Solution& now, const Point& tangent) const {
     if (first_.symmetric) return tangent;
     const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
@@ -470,11 +476,11 @@ class Follower {
     return along_tangent > 0 ? across : along(Point(across.size()), -1, across);
   }
 
-  // Those in the range between two orbits, of which the second may lie beyond it.
+  // Adds the events in the range between two successive orbits, of which the second may lie beyond it.
   void add_events(Branch& branch, const Solution& now, const Point& tangent, double step,
                   const Solution& next) const {
     if (!of_one_kind(now.image, next.image)) add_grazing(branch, now, tangent, step);
-    if (now.image.impacts.empty() || next.image.impacts.empty()) return;  // linear: nothing can change
+    if (now.image.impacts.empty() || next.image.impacts.empty()) return;  // linear: no bifurcation
     if (const auto at = junction_between(now, next, step)) {
       if (!in_range(at->point)) return;
       branch.events.push_back(
@@ -495,9 +501,10 @@ class Follower {
     const auto pairs = [](const Solution& at) { return products_of(at.image).pairs; };
     add_event(branch, now, tangent, step, BranchEventKind::neimark_sacker, pairs(now), pairs(next), pairs);
   }
-  // Where the branch meets that of orbits of half its length, from which it branches off: H^n(s) - s changes
-  // its sign, and a multiplier of H^n is -1 (M13.21). The bordered matrix is singular there, that of H^n is
-  // not: so the point is found along the other branch, as a root of the parameter by the secant method.
+  // The bifurcation point at which this branch, of H^(2n), joins that of H^n from which it branches off.
+  // There H^n(s) - s reverses, and a multiplier of H^n is -1 (M13.21). The bordered matrix of H^(2n) is
+  // singular there, that of H^n is not. So the point is found along the other branch, as a root in the
+  // parameter by the secant method.
   std::optional<Solution> junction_between(const Solution& now, const Solution& next, double step) const {
     if (!crosses(now, next)) return {};
     Equation half = equation_;
@@ -525,7 +532,7 @@ class Follower {
     at->image = *std::move(image);
     return *std::move(at);
   }
-  // Whether H^n(s) - s has turned round.
+  // Whether H^n(s) - s reverses between two orbits of H^(2n): its scalar product is negative.
   bool crosses(const Solution& now, const Solution& next) const {
     if (first_.symmetric) return false;
     const auto before = rest_after(equation_, now.point, equation_.half_periods / 2),
@@ -542,7 +549,7 @@ class Follower {
     });
   }
 
-  // If the test changes its sign.
+  // Adds the event between two orbits if its test function changes sign from `before` to `after`.
   template <class Test>
   void add_event(Branch& branch, const Solution& now, const Point& tangent, double step, BranchEventKind kind,
                  double before, double after, Test&& test) const {
@@ -552,13 +559,13 @@ class Follower {
     if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
     branch.events.push_back({kind, at->point.back(), orbit_at(*at), std::ssize(branch.orbits)});
   }
-  // Of two real multipliers, one the inverse of the other, the product is 1 as well.
+  // Whether two conjugate multipliers have modulus 1. The product of two real ones can be 1 as well.
   static bool on_unit_circle(const PoincareImage& image) {
     const Multipliers all = multipliers_of(image);
     return std::any_of(all.begin(), all.end(),
                        [](const Multiplier& m) { return m.im > 1e-6 && std::fabs(m.modulus() - 1) < 1e-6; });
   }
-  // By the Illinois variant of regula falsi.
+  // The solution within the step at which value_of() is zero, by the Illinois variant of regula falsi.
   template <class Value>
   std::optional<Solution> root_between(const Solution& now, const Point& tangent, double step, double at_low,
                                        double at_high, Value&& value_of) const {
@@ -590,7 +597,7 @@ class Follower {
     }
     return found;
   }
-  // Compliant walls: the number of impacts changes between; by bisection.
+  // Compliant walls: adds the grazing at which the number of impacts changes, by bisection of the step.
   void add_grazing(Branch& branch, const Solution& now, const Point& tangent, double step) const {
     double low = 0, high = step;
     Solution last = now;
@@ -610,14 +617,15 @@ class Follower {
         {BranchEventKind::grazing, last.point.back(), orbit_at(last), std::ssize(branch.orbits)});
   }
 
-  // Rigid walls: the branch ends where the speed of an impact, or a distance from a wall, vanishes. The
-  // parameter is a smooth function of it (M13.14), so a polynomial through a few orbits before leads there.
+  // Finds out whether a branch that no step continues ends at a coincidence or a grazing. Rigid walls: it
+  // ends where the speed of an impact, or a distance from a wall, vanishes. The parameter is a smooth
+  // function of it (M13.14), and is extrapolated by a polynomial through orbits before.
   void add_grazing_at_end(Branch& branch, const Solution& last) const {
-    // Beyond it the other one is first, and the state jumps.
+    // Beyond it the two impacts are in the other order, and the state jumps.
     if (last.image.least_interval && *last.image.least_interval < 1e-6) branch.end = BranchEnd::coincidence;
     if (!has_rigid_walls(equation_.engine)) {
-      // The branch has a kink where it grazes. Where that is too sharp for the last step, all that is left of
-      // it is below these, which are of the order of smallest_step and of its root.
+      // The branch has a kink at a grazing. If that is what stopped it, the distance or speed left is below
+      // these limits, which are of the order of smallest_step and of its square root.
       if (!(last.image.nearest_miss && *last.image.nearest_miss < 1e-8) &&
           !(last.image.slowest_impact && *last.image.slowest_impact < 1e-4))
         return;
@@ -640,8 +648,8 @@ class Follower {
       return;
     }
   }
-  // The parameter at which a size vanishes, by Neville's scheme for five orbits before the grazing, and by
-  // how much the last order changed it.
+  // The parameter at which a speed or a distance vanishes, by Neville's scheme for five orbits before the
+  // grazing, and by how much the last order changed it.
   struct Extrapolated {
     double parameter = 0, error = 0;
   };
@@ -653,7 +661,7 @@ class Follower {
       size[i] = *(at->image.*size_of);
       value[i] = at->point.back();
     }
-    // It must be on its way to zero: a first impact of chattering may be slow all along a branch.
+    // It must tend to zero: the first impact of a chattering may be slow all along a branch.
     const auto [least, most] = std::ranges::minmax(size);
     if (!(4 * (most - least) > least)) return {};
     double before = 0;
@@ -668,6 +676,7 @@ class Follower {
     return all;
   }
 
+  // Ends the branch with the orbit at the end of the parameter's range, which the step to `next` has passed.
   void finish_at_end_of_range(Branch& branch, const Solution& now, const Solution& next) {
     const double end = next.point.back() > options_.most ? options_.most : options_.least;
     const double share = (end - now.point.back()) / (next.point.back() - now.point.back());
@@ -681,7 +690,8 @@ class Follower {
   FollowOptions options_;
   Orbit first_;
   Equation equation_;
-  Solution anchor_;  // the last that is not so near grazing that rounding errors, which grow as 1/speed, show
+  Solution anchor_;  // the last solution so far from grazing that rounding errors, which grow as 1/speed, do
+                     // not matter
   Point anchor_tangent_{};
 };
 
@@ -719,7 +729,7 @@ Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, in
   Solved found = solve(equation, start, start, at_value(start));
   if (!found) return found.failure();
 
-  // The least number of half periods after which it closes.
+  // The least number of half periods after which the orbit closes.
   for (int n = 1; n < equation.half_periods; ++n) {
     const bool divides = equation.half_periods % n == 0;
     if (!divides || !closes_after(equation, found->point, n, 100 * options.tolerance)) continue;
@@ -772,8 +782,7 @@ Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter param
     const Point start = along(origin, gap, normal);
     const Solved found = solve(equation, origin, start, {start, normal});
     if (!found) continue;
-    // On the branch from which it comes the state would be the same after half of the time, here it is on
-    // the other side.
+    // H^n(s) - s is zero on the branch of H^n. On the new one it leads to the other side, by about 2 gap.
     const auto rest = rest_after(equation, found->point, half_periods);
     if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, *found, half_periods, false);
   }

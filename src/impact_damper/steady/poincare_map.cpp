@@ -12,7 +12,7 @@
 namespace impact_damper {
 namespace {
 
-// The product of all steps, and what the parameters add up to.
+// The product of the matrices of all steps, and the derivatives by the parameters that they add up to.
 class Product final : public VariationReceiver {
  public:
   using VariationReceiver::VariationReceiver;
@@ -36,7 +36,8 @@ struct Sticking {
   std::size_t impacts_before;  // of all dampers
   std::int32_t damper;
 };
-// Complete chattering counts with its first impact only: those behind it are as slow as one likes.
+// The least impact speed. Complete chattering counts with its first impact only: the later ones become
+// arbitrarily slow.
 std::optional<double> slowest(const std::vector<OrbitImpact>& impacts, const std::vector<Sticking>& all) {
   std::vector<bool> counts(impacts.size(), true);
   for (const Sticking& each : all) {
@@ -54,7 +55,7 @@ std::optional<double> slowest(const std::vector<OrbitImpact>& impacts, const std
   return least;
 }
 
-// Without those that stick from the beginning, which no impact of theirs precedes.
+// The number of times that masses come to stick, without those that stick from the beginning.
 std::int64_t comes_to_stick(const std::vector<Sticking>& all) {
   return std::ranges::count_if(all, [](const Sticking& each) { return each.impacts_before > 0; });
 }
@@ -114,7 +115,7 @@ Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s,
   if (!end) return end.failure();
   PoincareImage image = std::move(end->image);
 
-  // The end of the time moves with omega_f (M13.8).
+  // The end time n pi / omega_f depends on omega_f (M13.8).
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
   for (std::vector<double>& row : image.by_state)
     for (double& entry : row) entry *= mirror;

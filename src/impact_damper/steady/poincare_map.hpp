@@ -1,8 +1,9 @@
-// The Poincare map of a scene under a force, with its exact derivative (docs/mathematics.md, chapter 13).
+// The Poincare map of a scene under a force, with its exact derivative, which at a periodic orbit is the
+// monodromy matrix (docs/mathematics.md, chapter 13).
 //
-// A force f0 sin(omega_f t) changes its sign after half a period, and the system looks the same in a mirror:
-// x -> -x, y -> 1 - y, or its clearance less y for each of several dampers; velocities change their sign. H
-// is half a period of motion followed by that mirror (M13.1); H applied twice is one period. A motion of m
+// A force f0 sin(omega_f t) changes its sign after half a period, and the equations are the same in the
+// mirror x -> -x, y -> 1 - y (clearance - y for each damper of a list); velocities change their sign. H is
+// half a period of motion followed by that mirror (M13.1); H applied twice is one period. A motion of m
 // periods that repeats itself is a fixed point of H^(2m); one that is its own mirror image half a period
 // later, of H^m with m odd.
 #pragma once
@@ -24,7 +25,7 @@ namespace impact_damper {
 using StateVector = std::vector<double>;
 using StateMatrix = Matrix;
 StateVector vector_of(const SceneState& s);
-// s has as many numbers as a state of the scene, with its one damper or all of its list.
+// The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
 SceneState state_of(const StateVector& s, const Scene& scene);
 StateVector product(const StateMatrix& a, const StateVector& s);
 
@@ -38,33 +39,34 @@ struct OrbitImpact {
 struct PoincareImage {
   SceneState state{};    // H^n(s)
   StateMatrix by_state;  // its derivative by s
-  // By omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked for.
+  // Its derivatives by omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked
+  // for.
   StateVector by_frequency, by_amplitude;
   std::vector<OrbitImpact> impacts;  // in these n half periods, not mirrored
   // Rigid walls: how often a secondary mass comes to stick. One that sticks when the run begins does not
   // count.
   std::int64_t sticking = 0;
-  // Of several dampers, by number, those that meet no wall while others do, and that no wall holds.
+  // Lists only: numbers of the dampers with neither impact nor contact while others have impacts.
   std::vector<std::size_t> idle;
-  // Of several dampers: whether some met rigid walls at one instant. The derivative is then that of changes
-  // after which they still do.
+  // Lists only: whether several masses met rigid walls at one instant. The derivative is then that of changes
+  // that keep them together.
   bool one_sided = false;
   // How near the motion is to grazing, where the derivative by s has no bound (rigid walls) or jumps
-  // (compliant walls), and to a coincidence. Each is absent where the motion has no such event.
+  // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
   std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
-  // Least distance from a wall at which a mass turns back in flight. Of several dampers only with rigid
-  // walls, and only with Derivatives::by_state_and_parameters.
+  // Least distance from a wall at which a mass turns back in flight. With a list only for rigid walls and
+  // Derivatives::by_state_and_parameters.
   std::optional<double> nearest_miss;
-  // Of several dampers with rigid walls: the least time between two impacts, one after the other, of
-  // different ones; the last and the first count, as on an orbit. Where these change their order the map
-  // jumps.
+  // Lists with rigid walls: the least time between two successive impacts of different dampers; the first
+  // follows the last, as on an orbit. Where they change their order the map jumps.
   std::optional<double> least_interval;
 };
 
-// Largest number of dampers for which exponents and branches are worked out: the time for a period grows with
-// its fourth power, and takes seconds then.
+// Largest number of dampers for which exponents and branches are computed: the time for a period grows with
+// the fourth power of their number, and takes seconds at this one.
 inline constexpr std::size_t most_dampers_with_changes = 100;
 
+// The map H^n of a scene, n = half_periods, and its derivatives.
 class PoincareMap {
  public:
   // half_periods: n >= 1. Throws InvalidArguments if n, the scene or the engine's options are not valid,
@@ -72,8 +74,9 @@ class PoincareMap {
   PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
 
   enum class Derivatives { by_state, by_state_and_parameters };
-  // s: at phase 0 of the force, of as many dampers as the scene has, which is not checked. With rigid walls a
-  // mass lies between them: y from 0 to 1, or to its clearance. Or which budget ended the run before.
+  // The image of s, or the budget that ended the run before. s: the state at phase 0 of the force, with as
+  // many dampers as the scene has, which is not checked. With rigid walls a mass lies between them: y from 0
+  // to 1, or to its clearance.
   Expected<PoincareImage, StopReason> operator()(const SceneState& s,
                                                  Derivatives wanted = Derivatives::by_state) const;
 
@@ -83,7 +86,7 @@ class PoincareMap {
   double duration() const { return *scene_.until_time; }  // n pi / omega_f
 
  private:
-  // An image before it is mirrored, with derivatives by the parameters for an end that does not move.
+  // An image before it is mirrored. Its derivatives by the parameters are for a fixed end time.
   struct End {
     PoincareImage image;
     StateVector rates;  // x', x'', then y' and y'' of each damper

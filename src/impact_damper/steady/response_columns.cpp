@@ -35,14 +35,14 @@ RowColumn<Row> optional(RowColumn<Row> column) {
   return column;
 }
 
-// Of a state or of an orbit's point, the number `member` of its state.
+// The component `member` of the state of a steady state or of an orbit's point.
 template <class Row, auto member>
 RowColumn<Row> of_state(std::string_view name, const UnitInSi& unit) {
   return always<Row>(
       name, unit, any, [](const Row& row) { return std::optional(row.state.*member); },
       [](Row& row, double value) { row.state.*member = value; });
 }
-// What is not known where a budget ended a run.
+// A number that is absent where a budget ended the run.
 template <auto member>
 RowColumn<SteadyState> mean(std::string_view name, const UnitInSi& unit, NumberRange range) {
   return always<SteadyState>(
@@ -67,7 +67,7 @@ RowColumn<SteadyState> impacts_on(std::string_view name) {
       [](SteadyState& s, double value) { s.impacts[wall] = std::int64_t(value); }));
 }
 
-// Of one of several dampers.
+// The impacts of one damper of a list on a wall.
 template <std::size_t wall>
 RowColumn<DamperOfMotion> of_damper_impacts(std::string_view name) {
   using D = DamperOfMotion;

@@ -12,42 +12,42 @@
 
 namespace impact_damper {
 
-// What a column measures: its suffix in SI, and what one dimensionless unit of it is there.
+// The SI unit of a column: its suffix, and the size in it of one dimensionless unit.
 struct UnitInSi {
   std::string_view suffix;
   double (*size)(const SiUnits&);
 };
 UnitInSi unit_in_si_of(const SceneNumber& number);
 
-// A column over rows of some kind. Of a row whose period, means or other numbers are absent `get` is absent
-// where the number belongs to them.
+// A column over rows of type Row. `get` returns nothing if the number belongs to a part of the row that is
+// absent, such as its period or means.
 template <class Row>
 struct RowColumn {
   std::string_view name;
   UnitInSi unit;
   NumberRange range;  // of what a file may hold
   bool is_whole;
-  // Whether a number may be absent on its own, not only where `get` of a row says so whose other numbers are
-  // read.
+  // Whether the number may be absent although the part of the row to which it belongs is there.
   bool may_be_absent;
   std::optional<double> (*get)(const Row&);
   void (*set)(Row&, double);
 };
-// Of a scene with several dampers without y and w, which each of them has for itself: damper_columns().
+// The columns of steady states and orbits. several: for a list of dampers, without y and w, which are in
+// damper_columns().
 std::span<const RowColumn<SteadyState>> steady_columns(bool several);
 std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several);
-// What one of several dampers does in a steady state or an orbit.
+// One damper of a list in a steady state or an orbit.
 struct DamperOfMotion {
-  bool is_known = false;  // whether the impacts are: not where a budget ended the run
+  bool is_known = false;  // whether the impacts are known: not where a budget ended the run
   ImpactCounts impacts{};
   PlaceInCavity place{};
 };
 std::span<const RowColumn<DamperOfMotion>> damper_columns();
-// Of the states of a way, or of the points of a branch, those of one damper, by number.
+// The rows of one damper, by number, for the states of a way or the points of a branch.
 std::vector<DamperOfMotion> of_damper(const std::vector<SteadyState>& way, std::size_t number);
 std::vector<DamperOfMotion> of_damper(const std::vector<OrbitPoint>& points, std::size_t number);
 
-// Numbers under a name.
+// A column of numbers under a name.
 struct Column {
   std::string_view name;
   UnitInSi unit;
@@ -65,11 +65,11 @@ std::vector<Column> columns_of(std::span<const RowColumn<Row>> table, const std:
   return columns;
 }
 
-// The amplitude without dampers and with their masses locked in, (M12.6), at each value of the axis. Infinite
-// at the resonance of an undamped oscillator: absent.
+// The amplitude without dampers and with their masses locked in, (M12.6), at each value of the axis. Absent
+// at the resonance of an undamped oscillator, where it is infinite.
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis);
 
-// What happened at a value of a sweep, in a word: "periodic", "not_periodic" or the budget that ended it.
+// How the simulation at a value of a sweep ended: "periodic", "not_periodic" or the budget that ended it.
 std::string_view end_of(const SteadyState& steady);
 
 }  // namespace impact_damper

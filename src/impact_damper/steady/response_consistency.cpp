@@ -67,8 +67,9 @@ class Examination {
                      const Scene& scene, const SteadyState& s) {
     const SteadyMeans& means = *s.means;
     const double f0 = std::abs(scene.force_amplitude), omega = scene.force_frequency;
-    // Mean of f0 sin(omega t) times the velocity of (M14.4), 1e-9 of the largest that it can be: lag and
-    // fundamental are rounded, and their part that is in quadrature may be much larger.
+    // The power of the force, the mean of f0 sin(omega t) times the velocity of (M14.4), to 1e-9 of the
+    // largest that it can be: lag and fundamental are rounded, and their part in quadrature may be much
+    // larger.
     const auto [behind, in_phase] = sin_cos(means.lag_deg * (half_turn<double>() / 180));
     const double power = f0 * omega * means.fundamental * behind / 2;
     const double scale = f0 * omega * means.fundamental * (std::abs(behind) + std::abs(in_phase));
@@ -79,7 +80,7 @@ class Examination {
             "must be " + std::string(scene.damping_ratio > 0 ? ">= 0" : "0 without damping") + ", got " +
                 number_text(means.viscous_power));
     if (!s.period) return;
-    // What is missing to the periodic motion changes the energy, of the order of the state squared.
+    // The distance left to the periodic motion changes the energy, of the order of the state squared.
     const double size = size_of(s.state), allowed = 100 * response.rule.tolerance * size * size * (1 + omega);
     const double out = means.viscous_power + means.impact_power;
     require(std::abs(means.power - out) <= allowed, place(way, "power", row),
@@ -147,7 +148,7 @@ class Examination {
               "must not exceed the one before in modulus");
     examine_sum(branch, row, point.impacts, point.impacts_by_damper);
     examine_symmetry(place(branch, "symmetric", row), point.symmetric, point.period, point.impacts);
-    // A simulation drifts away from what is unstable (FollowedBranch::amplitudes).
+    // A simulation drifts away from an unstable orbit (FollowedBranch::amplitudes).
     require(std::abs(point.state.x) <= point.amplitude + 1e-5, place(branch, "x", row),
             "must not exceed the amplitude, " + number_text(point.amplitude) + ", got " +
                 number_text(point.state.x));
@@ -157,7 +158,7 @@ class Examination {
     const LyapunovExponents& found = response.found;
     const bool is_complete = found.stop_reason == StopReason::time;
     const std::size_t count = found.exponents.size();
-    // Masses that stick take two each.
+    // Each mass that sticks takes two exponents away.
     const std::size_t most = response.scene.dampers.empty() ? 4 : dimensions_of(response.scene);
     const std::string allowed = !is_complete ? "none"
                                 : most == 4  ? "four or two"

@@ -183,7 +183,7 @@ void write_rule(JsonWriter& out, const LyapunovResponse& response) {
   out.object("rule", Layout::one_line, "periods", response.periods, "discard", response.discard);
 }
 
-// What stands behind the rule.
+// Writes the parts of the response that come after its rule.
 void write_rest(JsonWriter& out, const SweepResponse& response) {
   out.open_object("axis", Layout::one_line);
   write_axis(out, response.axis);

@@ -22,8 +22,8 @@ namespace impact_damper {
 inline constexpr std::string_view response_schema = "impact-damper/response/1";
 inline constexpr FileKind response_kind{"response", std::size_t{1} << 27};
 
-// What a file holds, by kind: what was asked for, and what was found. The stops of a scene do not count, and
-// no file has them.
+// The contents of a file by kind: the parameters of a computation, and its results. The stops of a scene are
+// not used, and no file has them.
 struct SweepResponse {
   static constexpr std::string_view kind = "sweep";
   Scene scene;
@@ -39,7 +39,7 @@ struct BasinResponse {
   Engine engine;
   BasinRule rule;
   Axis first, second;
-  Basin basin;  // of an attractor's states the first one only; no `stopped`
+  Basin basin;  // only the first of an attractor's states; no `stopped`
 };
 
 // A point of a branch.
@@ -47,13 +47,13 @@ struct OrbitPoint {
   double value = 0;         // of the number that varies
   std::int64_t period = 1;  // in periods of the force
   bool symmetric = false, stable = false;
-  ImpactCounts impacts{};                    // in one period of its own
-  std::int64_t sticking = 0;                 // in one period of its own
+  ImpactCounts impacts{};                    // in one period of the orbit
+  std::int64_t sticking = 0;                 // in one period of the orbit
   double amplitude = 0;                      // largest |x|
-  Multipliers multipliers = Multipliers(4);  // of several dampers those four that are largest
+  Multipliers multipliers = Multipliers(4);  // with a list the four largest
   std::optional<double> slowest_impact, nearest_miss, least_interval;
   SceneState state;                             // at phase 0 of the force
-  std::vector<ImpactCounts> impacts_by_damper;  // the same of each of several
+  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper of a list
 };
 struct OrbitEvent {
   BranchEventKind kind = BranchEventKind::fold;
@@ -92,8 +92,8 @@ struct LyapunovResponse {
   static constexpr std::string_view kind = "lyapunov";
   Scene scene;
   Engine engine;
-  // Of the force: averaged over, 10 to 1e9, and before these, 0 to 1e9. The reader
-  // rejects fewer.
+  // Periods of the force over which is averaged, 10 to 1e9, and which are skipped before, 0 to 1e9. The
+  // reader rejects other numbers.
   std::int64_t periods = 0, discard = 0;
   LyapunovExponents found;
 };
@@ -101,21 +101,22 @@ struct LyapunovResponse {
 using Response = std::variant<SweepResponse, BasinResponse, OrbitsResponse, LyapunovResponse>;
 std::string_view kind_of(const Response& response);
 
-// The same question with what is found, in place of whatever it holds. Throws InvalidArguments as sweep(),
-// basin(), find_branches() and lyapunov_exponents() do.
+// Does the computation that `asked` describes, and returns it with these results in place of its own. Throws
+// InvalidArguments as sweep(), basin(), find_branches() and lyapunov_exponents() do.
 Response found_for(Response asked, const Threads& threads);
 
-// The text of its file. Throws NumericalError, with the name of the column, if a number is not finite.
+// The text of a response's file. Throws NumericalError, with the name of the column, if a number is not
+// finite.
 std::string response_text(const Response& response, const std::optional<Scales>& scales = {});
 
-// What was asked for: each part as JSON, under its pointer. Two responses of the same parts are of the same
-// question, so they are equal.
+// The parameters of the computation: each part as JSON, under its pointer. Responses with the same parts are
+// results of the same computation, so they are equal.
 std::vector<std::pair<std::string, std::string>> asked_of(const Response& response);
 
 // The response in a file or a text. The check is strict: every key is known and none missing, columns are
-// equally long, whatever follows from what was asked for (the axis's values, the linear amplitudes) is so,
-// and the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a line for
-// each of the first 50 problems; these lines begin with the name of the file, or with `name`.
+// equally long, whatever follows from the parameters (the axis's values, the linear amplitudes) has that
+// value, and the digest is that of the content. Throws IoError if `file` cannot be read, InputError, with a
+// line for each of the first 50 problems; these lines begin with the name of the file, or with `name`.
 Response read_response(const std::filesystem::path& file);
 Response parse_response(const std::string& name, const std::string& text);
 
@@ -126,8 +127,8 @@ Response parse_response(const std::string& name, const std::string& text);
 //     the rule says; only a motion that is not periodic scatters; |x| does not exceed the amplitude;
 //   basin: no motion without impacts but the idle one; a symmetric one strikes both walls equally often;
 //     those that most points end in come first;
-//   orbits: the multipliers descend and tell whether an orbit is stable; a symmetric orbit strikes both
-//     walls equally often; |x| does not exceed the amplitude; branches and events refer to what is there;
+//   orbits: the multipliers descend and agree with the stability; a symmetric orbit strikes both
+//     walls equally often; |x| does not exceed the amplitude; branches and events refer to existing ones;
 //   lyapunov: as many exponents as errors, none unless the run was completed.
 std::vector<Problem> inconsistencies_of(const Response& response);
 

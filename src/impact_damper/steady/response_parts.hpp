@@ -1,4 +1,4 @@
-// Parts of a response that the catalogue has, too, read from an object of a document, which collects the
+// Readers of the parts of a response that the catalogue has, too. The document of the object collects
 // problems.
 #pragma once
 
@@ -14,7 +14,7 @@ SceneState read_state(ObjectReader object, std::size_t dampers = 0);
 // {"number", "from", "to", "count"} of a scene, {"number", "from", "to"}; absent if there are problems.
 std::optional<Axis> read_axis(ObjectReader& object, const Scene& scene);
 std::optional<ParameterRange> read_range(ObjectReader& object);
-// What is not given keeps its default, unless nothing may be missing.
+// Reads a rule. A missing key keeps its default, or is a problem unless `may_be_missing`.
 void read_rule(ObjectReader& object, bool may_be_missing, SteadyRule& rule);
 void read_rule(ObjectReader& object, bool may_be_missing, BasinRule& rule);
 void read_rule(ObjectReader& object, bool may_be_missing, BranchRule& rule);

@@ -17,7 +17,7 @@ constexpr NumberRange counts = within(0, 9e15);
 constexpr std::array budgets{StopReason::impact_budget, StopReason::half_cycle_budget,
                              StopReason::time_budget, StopReason::step_budget};
 
-// Every number of the scene; the stops do not count, and are not there.
+// Reads the numbers of a scene. All must be there, except the stops, which a response does not have.
 Scene read_forced_scene(ObjectReader object) {
   Scene scene;
   const bool several = object.has("dampers");
@@ -53,8 +53,8 @@ std::optional<std::int64_t> read_index(ObjectReader& object, std::string_view ke
   return index && *index >= 0 && *index < 1e15 ? std::optional(std::int64_t(*index)) : std::nullopt;
 }
 
-// The rows that the columns of `object` make. What `row` has before it is read tells which numbers are
-// absent.
+// The rows that the columns of `object` make. The parts that `row` has before it is read determine which
+// numbers are absent.
 template <class Row>
 void read_columns(ObjectReader& object, std::span<const RowColumn<Row>> table, std::vector<Row>& rows) {
   for (const RowColumn<Row>& column : table) {
@@ -89,7 +89,7 @@ std::vector<SteadyState> read_way(ObjectReader object, std::size_t dampers) {
   std::vector<std::size_t> ends;
   std::vector<SteadyState> way;
   if (!object.require("end") || !object.words("end", words, ends)) {
-    object.keys();  // how many there are, and which numbers are absent, depends on it
+    object.keys();  // the number of rows, and which numbers are absent, depends on "end"
     return way;
   }
   for (const std::size_t end : ends) {
@@ -120,7 +120,7 @@ void require_length(ObjectReader& object, std::string_view way, std::size_t give
                            std::to_string(given));
 }
 
-// A column that follows from what was asked for.
+// Checks a column whose numbers follow from the parameters of the computation.
 void check_column(ObjectReader& object, std::string_view name,
                   const std::vector<std::optional<double>>& wanted) {
   std::vector<std::optional<double>> given;
@@ -140,7 +140,7 @@ void check_column(ObjectReader& object, std::string_view name,
   }
 }
 
-// Whether the scene is valid at both ends of the axis; says so if it is not.
+// Whether the scene is valid at both ends of the axis; adds a problem if it is not.
 bool check_axis(ObjectReader& root, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
     for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {

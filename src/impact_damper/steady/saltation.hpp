@@ -1,4 +1,4 @@
-// What an event does to small changes of the state (docs/mathematics.md, 13.3).
+// Saltation matrices: what an event does to small changes of the state (docs/mathematics.md, 13.3).
 #pragma once
 
 #include <array>
@@ -37,14 +37,14 @@ Rates<Real> rates_in_flight(const Real& zeta, const State<Real>& s, const Real& 
   return {s.v, a, s.w, -a};
 }
 
-// D + (after - D before) n^T / w, n^T the row of y (M13.4). jump: D; before, after: the rates at the event;
-// w, y' before it, is not 0.
+// The saltation matrix D + (after - D before) n^T / w, n^T the row of y (M13.4). jump: D, the derivative of
+// the state's jump; before, after: the rates F^-, F^+ at the event; w, y' before it, is not 0.
 template <class Real>
 RowsOfState<Real, 4> saltation(const RowsOfState<Real, 4>& jump, const Rates<Real>& before,
                                const Rates<Real>& after, const Real& w) {
   RowsOfState<Real, 4> s = jump;
   for (std::size_t i = 0; i < 4; ++i) {
-    Real kick = after[i];
+    Real kick = after[i];  // row i of F^+ - D F^-
     for (std::size_t k = 0; k < 4; ++k) kick -= jump[i][k] * before[k];
     s[i][2] += kick / w;
   }
@@ -60,14 +60,14 @@ RowsOfState<Real, 4> impact_jump(const Real& nu, const Real& e) {
   jump[3][3] = -e;
   return jump;
 }
-// Of both masses joining: their centre goes on, y and w no longer vary (M13.7).
+// The D of both masses joining: their centre of mass goes on, y and w no longer vary (M13.7).
 template <class Real>
 RowsOfState<Real, 4> joining_jump(const Real& nu) {
   const Real share = nu / (1 + nu);
   return {{{1, 0, share, 0}, {0, 1, 0, share}, {0, 0, 0, 0}, {0, 0, 0, 0}}};
 }
-// Of touch (sign 1) or end (-1) of a contact with a compliant wall of the damping c (M13.6): the force of the
-// wall's damper alone jumps.
+// The saltation matrix of touch (sign 1) or end (-1) of a contact with a compliant wall of the damping c
+// (M13.6): only the force of the wall's damper jumps.
 template <class Real>
 RowsOfState<Real, 4> contact_edge(const Real& nu, const Real& c, int sign) {
   RowsOfState<Real, 4> s = identity<Real>();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t blocks = 10;
 
-// An engine's run of a scene whose numbers, but for release and stops, are always the same.
+// A function that runs the engine for scenes that differ from `scene` in initial condition and stops only.
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Exact& options) {
   const ForcedSystem system(scene);
   if (!scene.dampers.empty()) {
@@ -42,7 +42,7 @@ std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const
   };
 }
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene&, const Cem&) {
-  return {};  // never asked for: problems_of() tells
+  return {};  // never called: problems_of() rejects cem
 }
 
 Scene without_stops(Scene scene) {
@@ -135,9 +135,9 @@ std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
   states_[static_cast<std::size_t>(last_)] = state;
   ++count_;
   const double size = size_of(state), allowed = tolerance_ * size;
-  // Below it the differences no longer shrink: some rounding errors of a whole period.
+  // The differences no longer shrink below some rounding errors of a whole period.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * size;
-  // A period whose divisor may turn out to be one, too, waits for that.
+  // A period does not count as long as one of its divisors may turn out to be a period, too.
   const auto may_be_shorter = [&](std::int64_t m) {
     for (std::int64_t d = 1; d < m; ++d)
       if (m % d == 0 && distance(state, before(d)) <= 100 * allowed) return true;
@@ -145,7 +145,7 @@ std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
   };
   for (std::int64_t m = 1; m <= longest_ && differences * m < count_; ++m) {
     const SceneState& earlier = before(m);
-    if (!(std::abs(state.x - earlier.x) <= allowed)) continue;  // most often this tells
+    if (!(std::abs(state.x - earlier.x) <= allowed)) continue;  // rejects most m cheaply
     if (!(distance(state, earlier) <= allowed) || may_be_shorter(m)) continue;
     const auto largest_of = [&](std::int64_t from, std::int64_t to) {
       double largest = 0;
@@ -153,7 +153,8 @@ std::optional<Recurrence::Repeats> Recurrence::add(const SceneState& state) {
         largest = std::max(largest, distance(before(j * m), before((j + 1) * m)));
       return largest;
     };
-    // (M14.1), of several differences each, because they may turn while they shrink.
+    // The contraction (M14.1) from the largest of four differences each, as they may rotate while they
+    // shrink.
     const double last = largest_of(0, differences / 2), first = largest_of(differences / 2, differences);
     if (std::max(last, first) <= rounding) return Repeats{m, std::nullopt};
     if (!(last <= allowed && last < first)) continue;
@@ -171,7 +172,7 @@ bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b) {
 }
 
 std::optional<bool> is_balanced(const SteadyState& steady) {
-  // Over 500 periods the energy of a chaotic motion may differ at both ends.
+  // The energy of a chaotic motion may differ between the two ends of 500 periods.
   constexpr double largest_imbalance = 0.2;
   if (!steady.means) return std::nullopt;
   const double fed = steady.means->power, lost = steady.means->viscous_power + steady.means->impact_power;
@@ -318,7 +319,7 @@ void ForcedScene::measure(SteadyState& steady, const SteadyRule& rule) const {
   }
 }
 
-// (M14.3), (M14.4).
+// The power by (M14.3), and the component at the force's frequency by (M14.4).
 SteadyMeans ForcedScene::means_of(const Watched& watched, const State<double>& begin,
                                   std::int64_t periods) const {
   const double duration = double(periods) * period_, omega = scene_.force_frequency,
@@ -343,7 +344,7 @@ SteadyMeans ForcedScene::means_of(const Watched& watched, const State<double>& b
 void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) const {
   const std::int64_t m = *steady.period;
   steady.measured_periods = m;
-  // Twice as long as it takes to repeat: a half cycle that is not complete in the one is in the other.
+  // Over two periods: a half cycle that is not complete in the first is in the second.
   const auto watched = watch(steady.state, 2 * m);
   if (!watched) {
     steady.stop_reason = watched.failure();
@@ -353,7 +354,7 @@ void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) 
   steady.impacts_by_damper = watched->by_damper_until_half_way;
   steady.means = means_of(*watched, steady.state, 2 * m);
   if (m % 2 == 1) {
-    const Watched half = *watch(steady.state, m);  // no budget ended twice as many
+    const Watched half = *watch(steady.state, m);  // does not fail: twice as many periods did not
     const double near = 100 * rule.tolerance * size_of(steady.state);
     steady.symmetric = distance(mirrored(half.states[0], scene_), steady.state) <= near;
   }

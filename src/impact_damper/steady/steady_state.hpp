@@ -21,8 +21,8 @@
 
 namespace impact_damper {
 
-// The state of a scene: x, x', y, y', or of several dampers y and y' of each, by number in the scene; the two
-// of State mean nothing then.
+// The state of a scene: x, x', y, y'. With a list of dampers y and y' of each are in `dampers`, by number in
+// the scene, and y and w of State mean nothing.
 struct SceneState : State<double> {
   SceneState() : SceneState(0, 0, 0, 0) {}
   // A state of one damper is a state of a scene.
@@ -38,7 +38,7 @@ struct SceneState : State<double> {
   std::vector<PlaceInCavity> dampers;
 };
 
-// When a motion counts as steady.
+// The criteria by which a motion counts as steady.
 struct SteadyRule {
   // Largest estimated distance of the state from the periodic motion, in units of the larger of the clearance
   // and the largest number of the state. In (0, 1e-2].
@@ -46,25 +46,25 @@ struct SteadyRule {
   std::int64_t longest_period = 16;  // in periods of the force, 1 to 64
   // Periods of the force after which a motion that has not repeated counts as not periodic. 1 to 1e9.
   std::int64_t max_periods = 5000;
-  // Over so many periods a motion that is not periodic is then averaged, in ten blocks. 10 to 1e6.
+  // Number of periods over which a motion that is not periodic is averaged, in ten blocks. 10 to 1e6.
   std::int64_t mean_periods = 500;
 };
-// Of its whole numbers, by name.
+// Valid ranges of its whole numbers.
 inline constexpr NumberRange longest_periods = within(1, 64), most_periods = within(1, 1e9),
                              mean_periods = within(10, 1e6);
-// What is wrong with it, one entry for each member.
+// The problems of a rule, one for each member that is not valid.
 std::vector<Problem> problems_of(const SteadyRule& rule);
 
 // Impacts on the left and on the right wall.
 using ImpactCounts = std::array<std::int64_t, 2>;
 
-// Over whole periods of the force.
+// Averages over whole periods of the force.
 struct SteadyMeans {
-  double amplitude = 0;  // largest |x|; of a block of means in the half cycles that are complete in it
+  double amplitude = 0;  // largest |x|; without a period, in the half cycles that are complete in a block
   // The component of x at the force's frequency is fundamental * sin(omega_f t - lag), 0 <= fundamental,
   // -180 < lag <= 180 degrees (M14.4). A negative force_amplitude counts as a force of half a turn later.
   double fundamental = 0, lag_deg = 0;
-  double power = 0;          // put in by the force, per unit of time
+  double power = 0;          // work of the force per unit of time
   double viscous_power = 0;  // taken out by the damper of the primary mass
   double impact_power = 0;   // taken out by impacts and contacts
 };
@@ -74,20 +74,20 @@ struct SteadyState {
   StopReason stop_reason = StopReason::time;
   std::optional<std::int64_t> period;  // m in periods of the force; absent: not periodic
   std::int64_t transient_periods = 0;  // until that was known
-  // By which the distance to the periodic motion shrinks in m periods; absent: it repeats to rounding.
+  // Factor by which the distance to the periodic motion shrinks in m periods; absent: it repeats to rounding.
   std::optional<double> contraction;
   std::int64_t measured_periods = 0;            // m, or SteadyRule::mean_periods
-  ImpactCounts impacts{};                       // in these
-  std::vector<ImpactCounts> impacts_by_damper;  // the same of each of several
-  bool symmetric = false;  // half of an odd number of periods later it is its own mirror image
+  ImpactCounts impacts{};                       // in the measured periods
+  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper of a list
+  bool symmetric = false;  // it is its own mirror image half of an odd number of periods later
   std::optional<SteadyMeans> means;
   // Standard deviation of the ten blocks of a motion that is not periodic.
   double amplitude_scatter = 0, power_scatter = 0;
   SceneState state{};  // at phase 0, at the end
 };
 
-// Whether two largest |x| with their scatter are of different motions: they differ by more than
-// visible_difference of the larger one, and by more than three standard deviations (M12.8).
+// Whether two amplitudes belong to different motions: they differ by more than visible_difference of the
+// larger one, and by more than three standard deviations, given their scatter (M12.8).
 inline constexpr double visible_difference = 0.05;
 bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b);
 
@@ -95,42 +95,42 @@ bool amplitudes_differ(double a, double scatter_a, double b, double scatter_b);
 // means. A motion that is not periodic and not balanced either is still growing or decaying.
 std::optional<bool> is_balanced(const SteadyState& steady);
 
-// What forbids a scene, whose stops do not count, to be followed from period to period: it has no force, it
-// or the engine is not valid, or it is the component element method, whose steps would begin anew with each
+// Why a scene cannot be followed from period to period: it has no force, it (except for its stops) or the
+// engine is not valid, or the engine is the component element method, whose steps would begin anew with each
 // run.
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 
-// A scene and an engine, with all that does not depend on the state made once. It may be copied, and used by
-// several threads at a time.
+// A scene and an engine, with all that does not depend on the state computed once. It may be copied, and used
+// by several threads at a time.
 class ForcedScene {
  public:
-  // Throws InvalidArguments if there are problems_of() the two; NumericalError if this process's arithmetic
-  // is not IEEE 754's (floating_point.hpp).
+  // Throws InvalidArguments if problems_of(scene, engine) finds any; NumericalError if this process's
+  // arithmetic is not IEEE 754's (floating_point.hpp).
   ForcedScene(const Scene& scene, const Engine& engine);
 
-  // Goes on to the steady state by `rule`, and measures it.
+  // Simulates from a state at phase 0 until the motion is steady by `rule`, and measures it.
   SteadyState settle(const SceneState& state, const SteadyRule& rule) const;
-  // The first half of that alone: everything but what is measured. Ends without a period as soon as
-  // enough(state) is true of the state at phase 0, the first one included.
+  // The simulation without the measurement. Ends without a period as soon as enough(state) is true of the
+  // state at phase 0, the first one included.
   SteadyState follow(const SceneState& state, const SteadyRule& rule,
                      const std::function<bool(const SceneState&)>& enough) const;
-  // The second half.
+  // The measurement alone, of a motion that follow() has found.
   void measure(SteadyState& steady, const SteadyRule& rule) const;
 
   static constexpr std::size_t periods_at_once = 8;
-  // A run of some periods of the force. Each of these functions returns this, or which budget ended the run
-  // before.
+  // The result of a run of some periods of the force. The functions that make such a run return it, or the
+  // budget that ended the run before.
   struct Watched {
     std::array<SceneState, periods_at_once> states{};  // after each period, or half way and at the end
     ImpactCounts impacts{}, impacts_until_half_way{};
-    std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // of each of several
+    std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // for each damper of a list
     double amplitude = 0;                                           // of the half cycles that are complete
     EnergyBalance energy;
   };
-  // The states at phase 0 after each of the next periods, and no amplitude or energy. Fewer runs cut fewer
-  // flights in two.
+  // The states at phase 0 after each of the next periods_at_once periods, and nothing else. One run for
+  // several periods cuts fewer flights in two than one for each.
   Expected<Watched, StopReason> pass_periods(const SceneState& state) const;
-  // All but the states after each period.
+  // All of Watched, with the states half way and at the end, after `periods` periods.
   Expected<Watched, StopReason> watch(const SceneState& state, std::int64_t periods) const;
   // The run from phase 0 until a time, with its impacts and contacts, a sample at its beginning and one at
   // its end.
@@ -139,7 +139,8 @@ class ForcedScene {
 
  private:
   Scene released(const SceneState& state, double until) const;
-  // So many equally spaced states, the last one at the end.
+  // Runs `periods` periods of the force. `states`: how many equally spaced ones are kept, the last at the
+  // end.
   Expected<Watched, StopReason> run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
                                          bool measures) const;
   SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
@@ -149,13 +150,13 @@ class ForcedScene {
   Scene scene_;
   Engine engine_;
   double period_ = 0;   // of the force, 2 pi / omega_f
-  bool rigid_ = false;  // walls, which leave no room for a state beyond them
+  bool rigid_ = false;  // rigid walls: a state must lie between them
   std::function<Outcome(const Scene&, Recorder&)> run_;
 };
 
 // The state in a row of a history.
 SceneState state_in(const History& history, std::size_t row);
-// A scene's initial state, and the scene with another one, in which 0 stands for what is_too_small().
+// A scene's initial state, and the scene with another one, in which numbers with is_too_small() become 0.
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);
 
@@ -164,11 +165,11 @@ template <class Real>
 State<Real> mirrored(const State<Real>& s) {
   return {-s.x, -s.v, 1 - s.y, -s.w};
 }
-// Of a state of the scene.
+// The mirror image of a state of the scene.
 SceneState mirrored(const SceneState& s, const Scene& scene);
-// The largest difference of two states' numbers.
+// The largest difference of two states' components.
 double distance(const SceneState& a, const SceneState& b);
-// The larger of 1 and the largest number of a state.
+// The larger of 1 and the largest component of a state.
 double size_of(const SceneState& s);
 
 // Finds the smallest number of periods after which states repeat (M14.1, M14.2).
@@ -180,16 +181,16 @@ class Recurrence {
     std::int64_t period;
     std::optional<double> contraction;
   };
-  // The next state at phase 0; what it shows with those before.
+  // Adds the next state at phase 0. Returns the period and the contraction if it repeats earlier states.
   std::optional<Repeats> add(const SceneState& state);
 
  private:
-  static constexpr std::int64_t differences = 8;  // that are looked at
+  static constexpr std::int64_t differences = 8;  // between successive repeats, that are compared
   const SceneState& before(std::int64_t periods) const;
 
   double tolerance_;
   std::int64_t longest_, count_ = 0;
-  std::vector<SceneState> states_;  // the last ones, in turn
+  std::vector<SceneState> states_;  // the last ones, as a ring buffer
   std::int64_t last_ = -1;          // the index of the latest
 };
 

@@ -61,7 +61,7 @@ std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& a
                          const std::vector<SweepStart>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress) {
   require_none(problems_of(rule));
-  // What is not valid throws here, before anything is simulated.
+  // Throws for all that is not valid before anything is simulated.
   for (const SweepStart& start : starts) require_valid(released_from(scene, start), engine, axis);
 
   progress(0);

@@ -1,5 +1,6 @@
-// The steady states of a scene along one of its numbers, for instance the frequency of the force: up, and
-// down again, with the state carried along. Where two motions coexist the two ways differ.
+// Response sweeps: the steady states of a scene along one of its numbers, for instance the frequency of the
+// force, up and down again, with the state carried along. Where two motions coexist the two ways differ: the
+// response has hysteresis.
 #pragma once
 
 #include <functional>
@@ -11,7 +12,7 @@
 namespace impact_damper {
 
 // A number of a scene, and the values it takes: `count` >= 2, equally spaced, both ends included, from < to.
-inline constexpr std::int64_t most_values = 100'000;  // that command line and files allow
+inline constexpr std::int64_t most_values = 100'000;  // largest count that command line and files allow
 struct Axis {
   SceneNumber number = &Scene::force_frequency;
   double from = 0, to = 0;
@@ -26,10 +27,10 @@ struct Axis {
 // (numbers_of).
 void require_valid(const Scene& scene, const Engine& engine, const Axis& axis);
 
-// Where a sweep begins. `nudge`, at least 0 and finite, is a displacement: at each value of a way, up or
-// down, but its first it is added to x of the state that comes from the value before. Two sweeps that pass
-// through the same strongly stable motion leave it in the same state, to the last bit, and differ no more; if
-// their nudges differ they do, where the motion is irregular.
+// The state in which a sweep begins, and its `nudge`, a displacement >= 0 and finite: at each value of a way,
+// up or down, except the first it is added to x of the state that comes from the value before. Two sweeps
+// through the same strongly stable motion leave it in the same state, to the last bit, and differ no more.
+// With different nudges they differ again where the motion is irregular.
 struct SweepStart : SceneState {
   // A state alone is a start without a nudge.
   // NOLINTNEXTLINE(google-explicit-constructor)
@@ -37,7 +38,7 @@ struct SweepStart : SceneState {
       : SceneState(state), nudge(of_nudge) {}
   double nudge = 0;
 };
-inline constexpr NumberRange nudges{0, 1, false};  // that command line and catalogue allow
+inline constexpr NumberRange nudges{0, 1, false};  // allowed by command line and catalogue
 // These states as starts, the first without a nudge, the n-th after it with n times `nudge`.
 std::vector<SweepStart> nudged(const std::vector<SceneState>& starts, double nudge);
 
@@ -50,16 +51,16 @@ std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& e
                                              const SteadyRule& rule, const SweepStart& start,
                                              const std::function<void()>& after_each);
 
-// What a scene does along an axis: up[i] and down[i] are its steady states at axis.value(i).
+// The result of a sweep along an axis: up[i] and down[i] are the steady states at axis.value(i).
 struct Sweep {
   SweepStart start;               // where the way up begins, at the axis's first value
   std::vector<SteadyState> up;    // made from the first value to the last
   std::vector<SteadyState> down;  // made from the last value, where `up` has ended, back to the first
 };
 
-// A sweep from each of `starts`, at the same time on several threads. `progress` is told how many steady
-// states are done, of 2 axis.count for each start: first 0, then from any of the threads, even from two at
-// once. Throws InvalidArguments if the rule is not valid, or the scene at one of the values.
+// A sweep from each of `starts`, at the same time on several threads. `progress` is called with the number of
+// steady states that are done, of 2 axis.count for each start: first 0, then from any of the threads, even
+// from two at once. Throws InvalidArguments if the rule is not valid, or the scene at one of the values.
 std::vector<Sweep> sweep(const Scene& scene, const Engine& engine, const Axis& axis, const SteadyRule& rule,
                          const std::vector<SweepStart>& starts, const Threads& threads,
                          const std::function<void(std::int64_t done)>& progress);

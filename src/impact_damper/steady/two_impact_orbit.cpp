@@ -8,7 +8,7 @@
 namespace impact_damper {
 namespace {
 
-// What (M13.16) and (M13.17) are made of.
+// The coefficients of (M13.16) and (M13.17).
 struct Coefficients {
   double nu, e, b, omega, half_period;
   Propagator<double> p;  // of the primary mass, over half a period
@@ -32,7 +32,7 @@ struct Coefficients {
   }
 };
 
-// One of the two, counted from the time at which the left wall is left.
+// One of the two motions; its time counts from the departure from the left wall.
 struct Motion {
   const Coefficients& c;
   double zeta, amplitude, speed;  // the linear response's, signed as f0 is; V
@@ -58,7 +58,8 @@ struct Motion {
     return {x, v, x0 + speed * t - x, speed - v};
   }
 
-  // From one departure to the next, mirrored: of the time of it, x, x' and the absolute velocity z' (M13.20).
+  // The derivative of the map from one departure to the next, mirrored: of its time, x, x' and the absolute
+  // velocity z' (M13.20).
   Matrix from_wall_to_wall() const {
     const double omega = c.omega, steady_v = omega * cos, steady_a = -omega * omega * sin;
     const double v = v0 + 2 * c.nu * speed;  // -x' just before the impact at the right wall

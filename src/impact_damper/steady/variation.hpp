@@ -1,5 +1,5 @@
-// What a small change of the state, of omega_f or of f0 becomes along a run, in linear approximation
-// (docs/mathematics.md, 13.2 to 13.4): an observer of the closed-form engines, which are told nothing of it.
+// The variational equations along a run: what a small change of the state, of omega_f or of f0 becomes, to
+// first order (docs/mathematics.md, 13.2 to 13.4). An observer of the closed-form engines computes it.
 //
 // Each motion is linear, so its derivative is the propagator of the motion itself; each event adds a
 // saltation matrix (M13.4). Nothing is approximated by differences.
@@ -21,24 +21,25 @@
 
 namespace impact_damper {
 
-// `receiver` is given, in their order:
+// `receiver` is called in the order of time:
 //   receiver.step(a, by_parameters)  a change s of the state becomes a s; by_parameters(), if called, returns
 //                                    what changes of omega_f and f0, 4 x 2, add to it in this step
-//   receiver.joined()                from here on y and w do not vary: two dimensions are lost
-//   receiver.pieces(loss)            in how many steps a motion is given that contracts volumes by exp(-loss)
+//   receiver.joined()                from now on y and w do not vary: two dimensions are lost
+//   receiver.pieces(loss)            number of steps for a motion that contracts volumes by exp(-loss)
 template <class Real, class Receiver>
 class Variation {
  public:
   using Force = Forcing<Real>;
   using UnforcedModes = ContactModes<Real, NoForcing<Real>>;
 
-  // zeta_m: of compliant walls; absent for rigid ones.
+  // zeta_m: damping ratio of compliant walls; absent for rigid ones.
   Variation(const Scene& scene, const std::optional<Real>& zeta_m, Receiver& receiver)
       : system_(scene),
         unforced_(scene),
         contact_(zeta_m ? std::optional<UnforcedModes>(std::in_place, unforced_, *zeta_m) : std::nullopt),
         receiver_(receiver) {}
 
+  // The observer's functions: a motion that has ended, with its beginning, its duration and its last state.
   void passed(const Flight<Real, Force>& flight, const Real& begin, const Real& duration,
               const State<Real>& end) {
     const State<Real> start = flight.at(Real(0));
@@ -52,7 +53,7 @@ class Variation {
       return RowsOfState<Real, 4>{
           {{p.c, p.s, 0, 0}, {-p.s, p.v, 0, 0}, {-p.c1, -p.s1, 1, t}, {p.s, -slowed, 0, 1}}};
     };
-    const auto kick = [&](const Real& t) {
+    const auto kick = [&](const Real& t) {  // impulse response, as in move()
       const Propagator<Real> p = system_.free.propagate(t);
       return Rates<Real>{p.s, p.v, -p.s, -p.v};
     };
@@ -74,7 +75,7 @@ class Variation {
       return RowsOfState<Real, 4>{
           {{p.c, p.s, 0, 0}, {-system_.stuck.b() * p.s, p.v, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
     };
-    const auto kick = [&](const Real& t) {
+    const auto kick = [&](const Real& t) {  // impulse response, as in move()
       const Propagator<Real> p = system_.stuck.propagate(t);
       const Real joined = 1 + system_.nu;
       return Rates<Real>{p.s / joined, p.v / joined, 0, 0};
@@ -115,8 +116,9 @@ class Variation {
     receiver_.step(a, [] { return RowsOfState<Real, 2>{}; });
   }
 
-  // propagator(t): the derivative of the motion after a time t by its beginning. kick(t): the state at t that
-  // a unit impulse of the force at 0 leaves. rate_of_loss: minus the divergence.
+  // Passes a motion to the receiver. propagator(t): the derivative of the state after a time t by that at its
+  // beginning. kick(t): the impulse response, the state at t that a unit impulse of the force at 0 leaves.
+  // rate_of_loss: minus the divergence, the rate at which volumes contract.
   template <class Motion, class PropagatorOf, class Kick>
   void move(const Motion& motion, const Real& begin, const Real& duration, const Real& rate_of_loss,
             PropagatorOf&& propagator, Kick&& kick) {
@@ -126,7 +128,8 @@ class Variation {
     for (int i = 0; i < pieces; ++i) receiver_.step(a, by_parameters);
   }
 
-  // (M13.3), by Gauss's 16 points in panels, in the time tau that is left until the end.
+  // The derivatives of the final state by omega_f and f0 (M13.3), by Gauss's 16 points in panels of the time
+  // tau that is left until the end.
   template <class Motion, class Kick>
   RowsOfState<Real, 2> driven(const Motion& motion, const Real& begin, const Real& duration,
                               Kick&& kick) const {
@@ -154,8 +157,8 @@ class Variation {
     return all;
   }
 
-  // An impact on a rigid wall that leads to `after`, and where both masses then stick, all that is left of
-  // the chattering, too.
+  // The saltation matrix of an impact on a rigid wall, `after` the state just after it. joins: both masses
+  // then stick, and the matrix includes all that is left of the chattering.
   RowsOfState<Real, 4> impact(const State<Real>& after, const Real& time, bool joins = false) const {
     const Real f = force_at(time);
     const Rates<Real> before = rates_in_flight(system_.zeta, end_, f);
@@ -182,7 +185,7 @@ class Variation {
       return a;
     };
     const Unforced impulse = from({0, 1, 0, -1});
-    const auto kick = [&](const Real& t) {
+    const auto kick = [&](const Real& t) {  // impulse response, as in move()
       const State<Real> s = impulse.at(t);
       return Rates<Real>{s.x, s.v, s.y, s.w};
     };

@@ -14,7 +14,8 @@
 namespace impact_damper {
 namespace {
 
-// A time in which a wall holds a mass: the mass sticks to it, or pushes it in.
+// An interval in which a wall holds a mass: the mass sticks to it (rigid) or is in contact with it
+// (compliant).
 struct Held {
   std::size_t damper;
   double begin, end;
@@ -28,7 +29,7 @@ std::vector<Held> held_in(const Run& run) {
                    contacts.wall[i] == Wall::left ? 1 : -1});
   return all;
 }
-// Of each damper Held::away if a wall holds it all the time, else 0.
+// For each damper Held::away if a wall holds it during all of an interval, else 0.
 using HeldBy = std::vector<int>;
 HeldBy held_between(const std::vector<Held>& held, double from, double to, std::size_t dampers) {
   HeldBy all(dampers, 0);
@@ -49,7 +50,7 @@ std::vector<double> times_of(std::vector<double> events, double end) {
   return events;
 }
 
-// The changes that a run carries along: by address, as whoever asked may replace them meanwhile.
+// The changes that are carried along a run: by address, as after_step() may replace them.
 using Changes = std::vector<ChangeOfState*>;
 Changes changes_of(std::vector<ChangeOfState>& changes, AlongRun* along) {
   Changes all;
@@ -61,7 +62,7 @@ Changes changes_of(std::vector<ChangeOfState>& changes, AlongRun* along) {
   return all;
 }
 
-// The numbers of a scene that the motion of changes depends on.
+// The coefficients of the variational equations.
 struct Damper {
   double nu, e, clearance;
   double stiffness = 0, damping = 0;  // compliant walls: K and gamma of (M17.9)
@@ -86,8 +87,8 @@ struct Numbers {
   std::vector<Damper> dampers;
 };
 
-// Rigid walls. Of the velocities the record has those of masses that meet walls: x and x', and with them all
-// others, are followed along.
+// The variational equations with rigid walls. The record has velocities of masses at their impacts only, so
+// x, x' and with them y, y' of all masses are followed along.
 class RigidWalls {
  public:
   RigidWalls(const Numbers& of, const Run& run, AlongRun* along)
@@ -132,7 +133,7 @@ class RigidWalls {
       if (held[i] != 0) all += of_.dampers[i].nu;
     return all;
   }
-  // x', x'', then y' and y'' of each damper.
+  // The rates of the state: x', x'', then y' and y'' of each damper.
   ChangeOfState rates(double time) const {
     const double f = of_.force.amplitude * of_.force.phase(time).sin;
     const double a = (f - 2 * of_.zeta * v_ - x_) / mass_with(is_held_);
@@ -145,7 +146,7 @@ class RigidWalls {
     return all;
   }
 
-  // (M13.22), and the state.
+  // Carries changes by (M13.22), and the state, through a motion between two events.
   void move(double begin, double duration, const Changes& changes) {
     const double mass = mass_with(is_held_);
     const Forcing<double> force{of_.force.amplitude / mass, of_.force.frequency};
@@ -175,7 +176,8 @@ class RigidWalls {
     x_ = x;
     v_ = v;
   }
-  // (M13.3), by Gauss's 16 points in panels of the time tau that is left until the end.
+  // Adds the derivatives by omega_f and f0 (M13.3), by Gauss's 16 points in panels of the time tau that is
+  // left until the end.
   void add_driven(const Oscillator<double>& oscillator, double mass, double begin, double duration) {
     struct Sum {
       double x = 0, v = 0;
@@ -210,7 +212,7 @@ class RigidWalls {
     add(by_frequency, along_->by_frequency);
     add(by_amplitude, along_->by_amplitude);
   }
-  // Of those that fly, where they turn back.
+  // Updates along_->nearest_miss where a mass in flight turns back.
   void look_for_turns(double mass, const Forcing<double>& force, double begin, double duration) const {
     const Driven<double, Forcing<double>> oscillator(of_.zeta / mass, 1 / mass, of_.force);
     const ForcedMotion<double> primary(oscillator, force, begin, x_, v_);
@@ -235,12 +237,13 @@ class RigidWalls {
     }
   }
 
-  // What impacts at a time change, and that masses are held from then on: a saltation (M13.4). Letting go of
-  // a mass changes nothing, as it has no speed.
+  // Applies the event at `time`, its impacts and the sticking of the masses in held_then from then on: to the
+  // changes its saltation matrix (M13.4), to the state its jump. The end of sticking changes nothing, as the
+  // mass has no relative speed.
   void happens(double time, HeldBy held_then, const Changes& changes) {
     Event event = impacts_at(time);
     event.mass_then = mass_with(held_then);
-    // Whom its wall leaves behind, but so little that it is taken for held at once, joins anew.
+    // A mass that its wall leaves behind and that is held again at the same event counts as newly stuck.
     for (std::size_t i = 0; i < w_.size(); ++i) {
       const bool stays = is_held_[i] != 0 && (event.meeting.empty() || event.is_active[i]);
       event.role[i] = held_then[i] == 0 ? Role::flies : stays ? Role::stays_held : Role::joins;
@@ -251,7 +254,7 @@ class RigidWalls {
       return;
     }
     one_sided_ = one_sided_ || event.meeting.size() > 1;
-    ChangeOfState kick = rates(time);  // to become F^+ - D F^-
+    ChangeOfState kick = rates(time);  // F^-, which becomes F^+ - D F^-
     const std::vector<double> w_before = w_;
     // The velocities jump by the same linear map as changes of them.
     ChangeOfState velocities(of_.dimensions(), 0.0);
@@ -277,14 +280,14 @@ class RigidWalls {
 
   enum class Role { flies, joins, stays_held };  // after the event
   struct Event {
-    std::vector<std::size_t> meeting;  // walls
+    std::vector<std::size_t> meeting;  // dampers at impact
     std::vector<bool> is_active;       // gets an impulse from its wall (M17.3)
-    double weight = 1;                 // 1 and the masses that do
+    double weight = 1;                 // 1 plus the mass ratios of these
     std::vector<Role> role;
     double mass_then = 1;
   };
-  // The impacts at a time, and who gets an impulse of those that meet walls then or are held by one. w_ is
-  // what the record says.
+  // The impacts at a time, and which of the masses that meet walls then or are held by one get an impulse.
+  // Sets y_ and w_ of those that meet walls from the record.
   Event impacts_at(double time) {
     Event event{{}, std::vector<bool>(w_.size(), false), 1, std::vector<Role>(w_.size(), Role::flies), 1};
     std::vector<MassAtWall<double>> at_walls;
@@ -309,7 +312,7 @@ class RigidWalls {
     }
     return event;
   }
-  // D, of (M13.23) and then (M13.24): of a change, or of what jumps as one does.
+  // Applies D, (M13.23) and then (M13.24), to a change, to velocities or to rates.
   void jump(const Event& event, ChangeOfState& s) const {
     double gained = 0;
     for (std::size_t i = 0; i < w_.size(); ++i)
@@ -346,7 +349,8 @@ class RigidWalls {
   bool one_sided_ = false;
 };
 
-// Compliant walls. Neither a motion's propagator nor what touch and end of a contact add depend on the state.
+// The variational equations with compliant walls. Neither the propagators nor the saltation matrices of touch
+// and end of a contact depend on the state.
 class CompliantWalls {
  public:
   CompliantWalls(const Numbers& of, const Run& run, AlongRun* along)
@@ -393,7 +397,7 @@ class CompliantWalls {
   }
 
  private:
-  // A contact from the run's beginning on may go on from before.
+  // Whether an impact begins the contact; one from the run's beginning may go on from before.
   bool begins_by_impact(const Held& held) const {
     const Impacts& impacts = *run_.impacts;
     const auto [first, last] = std::equal_range(impacts.time.begin(), impacts.time.end(), held.begin);
@@ -401,7 +405,7 @@ class CompliantWalls {
       if (std::size_t(impacts.damper[std::size_t(each - impacts.time.begin())]) == held.damper) return true;
     return false;
   }
-  // Touch (sign 1) or end (-1) of a contact (M13.25).
+  // Applies the saltation matrix of touch (sign 1) or end (-1) of a contact (M13.25).
   void edge(std::size_t damper, int sign, const Changes& changes) const {
     const Damper& of = of_.dampers[damper];
     for (ChangeOfState* const each : changes) {
@@ -431,15 +435,15 @@ class CompliantWalls {
     return all;
   }
 
-  // What a time in which the same masses push their walls makes of a change.
+  // The propagator of changes over a time in which the same masses are in contact.
   class Step {
    public:
-    // with_force: of changes of the force, too.
+    // with_force: for changes of the force, too.
     Step(const Numbers& of, const HeldBy& held, double duration, bool with_force) : duration_(duration) {
       for (std::size_t i = 0; i < held.size(); ++i) (held[i] == 0 ? free_ : pushed_).push_back(i);
       const std::size_t n = 2 + 2 * pushed_.size() + (with_force ? 4 : 0);
-      // By Taylor's series of a time so short that its terms fall from the first on, squared as often as the
-      // duration is halved for that.
+      // The exponential of a matrix by scaling and squaring: Taylor's series of a time so short that its
+      // terms fall from the first on, squared as often as the duration is halved for that.
       double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
       for (const std::size_t i : pushed_) {
         const Damper& each = of.dampers[i];
@@ -467,8 +471,8 @@ class CompliantWalls {
       for (; halvings > 0; --halvings) square();
     }
 
-    // The change g of the force at a time, by f0 and by omega_f, and the three numbers that lead it on
-    // (M13.27).
+    // (g, h, a, b) of (M13.27) at a time: g is the change of the force by f0 (harmonic) or by omega_f
+    // (secular), and the other three make its equations linear.
     static std::array<double, 4> harmonic(const Forcing<double>& force, double time) {
       const auto [sin, cos] = force.phase(time);
       return {sin, cos, 0, 0};
@@ -479,7 +483,7 @@ class CompliantWalls {
               -force.amplitude * sin};
     }
 
-    // `force`: how the force changes when the step begins, as the last four of the matrix.
+    // Carries a change s through the step. `force`: (g, h, a, b) at its beginning, the last four components.
     void carry(ChangeOfState& s, const std::array<double, 4>& force) const {
       std::vector<double> from(matrix_.size());
       from[0] = s[0], from[1] = s[1];
@@ -503,7 +507,7 @@ class CompliantWalls {
 
    private:
     static constexpr int terms = 24;
-    // The rates of change of a change (M13.27).
+    // The right-hand sides of the variational equations (M13.27).
     void derive(const Numbers& of, const std::vector<double>& s, std::vector<double>& rates) const {
       const std::size_t n = 2 + 2 * pushed_.size();
       double a = -2 * of.zeta * s[1] - s[0];
@@ -541,7 +545,7 @@ class CompliantWalls {
 
     double duration_;
     std::vector<std::size_t> pushed_, free_;
-    // Of x, x', then q and q' of each that pushes its wall, then of a change of the force (M13.27).
+    // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
     std::vector<std::vector<double>> matrix_;
   };
 
