@@ -1,4 +1,5 @@
-// A measured decay beside the simulation of a scene: what `impact-damper compare` finds, and its JSON.
+// A measured decay compared with the simulation of a scene: the result of `impact-damper compare`, and its
+// JSON.
 #pragma once
 
 #include <functional>
@@ -13,7 +14,7 @@
 
 namespace impact_damper {
 
-// Decays of one scene that differ in where the secondary mass begins.
+// Decays of one scene that differ in the initial position of the secondary mass.
 struct SimulatedDecays {
   SceneInUnits scene;
   std::vector<HalfCycles> decays;  // times in s, from the record's first peak on, amplitudes in mm
@@ -31,9 +32,9 @@ struct Comparison {
   SimulatedDecays given;                  // of the scene
   std::optional<SimulatedDecays> fitted;  // of the scene with the best numbers
   std::optional<DecayFit> fit;
-  // Between these lies the frequency of the scene: secondary mass carried along, and not.
+  // The frequency of the scene lies between these: with the secondary mass carried along, and without.
   double lowest_frequency = 0, highest_frequency = 0;  // Hz
-  std::vector<std::string> remarks;  // what the record does not tell, or contradicts: a sentence each
+  std::vector<std::string> remarks;  // a sentence each: what the record does not show, or contradicts
 };
 
 struct ComparisonOptions {
