@@ -39,8 +39,9 @@ struct DamperSet {
   // requested.
   std::vector<SceneDamper> dampers;
   std::vector<double> edges;  // of the intervals below, descending from `upper` to `to`
-  // eta of each interval, viscous damping included, if the dampers add: as designed; and if each damper, in
-  // each interval by itself, has the clearance and restitution within the tolerances that lose least.
+  // eta of each interval, viscous damping included, if the dampers add. expected: as designed. worst: each
+  // damper has, in each interval by itself, the clearance and restitution within the tolerances that lose
+  // least.
   std::vector<double> expected, worst;
   LossSpread run;     // of the releases, by the restitution engine
   LossSpread varied;  // of the sets drawn uniformly within the tolerances
@@ -51,8 +52,8 @@ struct DamperSet {
   };
   std::optional<One> one;
 };
-// Designs a set and simulates it. `tell` is called by this thread with what begins. Throws InvalidArguments
-// if the question is not valid. The result has the same bits with any number of threads.
+// Designs a set and simulates it. This thread calls `tell` with the name of each stage that begins. Throws
+// InvalidArguments if the question is not valid. The result has the same bits with any number of threads.
 DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& threads,
                           const std::function<void(const std::string& doing)>& tell);
 // Returns the scene that is simulated: all lengths, clearances included, in units of the release.

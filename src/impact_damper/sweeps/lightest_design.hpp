@@ -103,8 +103,8 @@ struct DesignAnswer {
   std::vector<FoundDesign> designs;
   bool met = false;
 };
-// Searches for the designs and checks them; `tell` receives what begins. Throws InvalidArguments if the
-// question is not valid. The result does not depend on the number of threads.
+// Searches for the designs and checks them; `tell` receives a text for each stage that begins. Throws
+// InvalidArguments if the question is not valid. The result does not depend on the number of threads.
 DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads,
                           const std::function<void(const std::string& doing)>& tell);
 

@@ -19,7 +19,7 @@ namespace impact_damper {
 inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
 inline constexpr FileKind plan_kind{"plan", 1 << 20};
 
-// Where a file that a plan names is, if it is not beside the plan.
+// Finds the place of a file that a plan names and that is not beside the plan.
 using FindFile = std::function<std::optional<std::string>(const std::string& name)>;
 
 // Reads a plan. Throws IoError if `file`, or the scene file that it names, cannot be read, InputError with a
