@@ -41,11 +41,11 @@ enum class TableKind {
   loss_factor,       // one of the ordinates of the averaged loss factor over amplitude
   phase,             // impact phase and stuck intervals over amplitude
   response,          // amplitude over the frequency of a force, with the branches of periodic motions
-  largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
+  largest_response,  // largest steady amplitude over the force, with the prediction from a free decay
   response_map,      // which steady motion there is, over frequency and amplitude of a force
   design_charts,     // loss factor over amplitude for many restitutions and mass ratios, of a sweep
-  damper_sets,       // loss factor of several dampers over amplitude, beside the sum of theirs
-  drawing,           // none: a schematic that no run stands behind
+  damper_sets,       // loss factor of several dampers over amplitude, and the sum of theirs
+  drawing,           // none: a schematic without runs
 };
 
 // The number in which the curves of a figure differ; the legend shows it.

@@ -12,8 +12,8 @@
 // Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
 // "range" (either end null for none) with a "tolerance" and its "reason" take the place of kind and digits.
 // "source" says whose claim it is if not the paper's: "quoted" marks our reading of what the paper quotes
-// from an earlier study, "ours" a claim of this project. A claim of ours "holds" or "does not hold", since it
-// cannot be reproduced.
+// from an earlier study, "ours" a claim of this project. A claim of ours, which is not in the paper, "holds"
+// or "does not hold".
 //
 // Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
 // and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method

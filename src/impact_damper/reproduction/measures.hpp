@@ -45,8 +45,8 @@ struct WrongColumn {
 
 // The runs that measures use, of scenes and the catalogue's further runs, each by its name. With a folder of
 // run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is read
-// once, when it is first needed. Without a folder, as power.hpp tries other scenes and other ensembles, the
-// scenes' runs are those that were put; further runs of these and all ensembles are simulated.
+// once, when it is first needed. Without a folder, which power.hpp uses to try other scenes and other
+// ensembles, the scenes' runs are those that were put; further runs of these and all ensembles are simulated.
 class Runs {
  public:
   explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},

@@ -212,7 +212,7 @@ Spread product_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Returns A eta over A.
+// Returns the curve of A eta over A.
 Curve product_of_total_loss(const Runs& runs, const Run& run, const MeasureCall& call) {
   Curve curve =
       loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));

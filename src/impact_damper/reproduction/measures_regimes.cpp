@@ -93,8 +93,8 @@ Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Applies `find` to the regular window of so many impacts that lies nearest to an amplitude. Infinite if
-// there is none: unlike NaN, that keeps the median over the other members.
+// Applies `find` to the regular window of a given number of impacts that lies nearest to an amplitude.
+// Infinite if there is none: unlike NaN, that keeps the median over the other members.
 template <class Find>
 Spread of_nearest_window(Runs& runs, const MeasureCall& call, Find find) {
   const double amplitude = number(call, "amplitude");

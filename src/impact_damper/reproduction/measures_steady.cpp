@@ -131,7 +131,7 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
 Spread jump_ratio(Runs& runs, const MeasureCall& call) {
   constexpr double half_of_the_clearance = 0.5;
   return over_starts(runs, call, falling, [](const Curve& found, const Curve& needed) {
-    std::size_t least = found.x.size();  // the least force, by index, from which on that holds
+    std::size_t least = found.x.size();  // index of the least force from which on that holds
     while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
     return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);

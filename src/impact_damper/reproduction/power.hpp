@@ -84,8 +84,8 @@ class Power {
   // Returns the ids of the claims whose verdicts differ if the number has that value: all, or the first
   // found. A claim that can no longer be measured counts, too.
   std::vector<std::string> turned(const PowerNumber& number, double value, bool all = true) const;
-  // Searches each number in both directions. The thread that ends a search calls `tell` with how many of how
-  // many are done.
+  // Searches each number in both directions. The thread that ends a search calls `tell` with the number of
+  // searches done and that of all.
   std::vector<PowerRow> table(const std::function<void(std::size_t, std::size_t)>& tell) const;
 
  private:

@@ -234,7 +234,7 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
   std::optional<ClosedForms> forms;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Scene& scene = sources[i]->run.scene;
-    // The closed forms are for zeta = 0 and for a rebound with e < 1.
+    // The closed forms are for zeta = 0 and for a rebound, 0 < e < 1.
     if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
     const double largest = largest_amplitude(sources[i]->run);
     if (!forms || forms->restitution != scene.restitution || forms->largest != largest)

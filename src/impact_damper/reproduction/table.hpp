@@ -10,7 +10,7 @@
 
 namespace impact_damper {
 
-// What a column contains for each number of the first, x: a value, or an end of the interval it lies in.
+// Role of a column for each number of the first, x: a value, or an end of the interval it lies in.
 enum class Ordinate { y, low, high };
 
 struct TableColumn {

@@ -11,7 +11,7 @@ namespace {
 
 struct Field {
   std::string name, form;
-  std::size_t end;  // behind the closing brace
+  std::size_t end;  // after the closing brace
 };
 
 // Returns the field that opens at `open`. Throws std::invalid_argument if it does not close.
