@@ -22,7 +22,7 @@ std::string names_of(const std::vector<std::string>& claims, std::size_t most) {
   return text;
 }
 
-// Returns "7.1 %" for a number that is not 0; what is added for one that is.
+// Returns the change of a number: "7.1 %", or what is added to a number that is 0.
 std::string change_text(const PowerNumber& number, const Trial& trial) {
   if (number.value == 0) return number_text(trial.value);
   if (trial.change >= 1) return "a factor of " + rounded_text(1 + trial.change, 2);

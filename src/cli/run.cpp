@@ -109,7 +109,7 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   return record;
 }
 
-// Whether CSV, which is one table, can hold the run: it records one section, and no energy balance.
+// Whether CSV, which is one table, can hold a run with this record: one section, and no energy balance.
 bool holds_one_table(const Record& record) {
   const bool history = !record.history.empty() || !record.history_below.empty();
   return !record.energy && int{record.half_cycles} + record.impacts + record.contacts + history == 1;

@@ -248,7 +248,7 @@ std::map<std::string, Response> checked(const SceneRuns& folders, const RunNames
   return responses;
 }
 
-// Finds which changes of a number turn a verdict, instead of the verdicts.
+// Finds, instead of the verdicts, which changes of a number turn one.
 int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::set<std::string>& scenes,
                const Catalogue& catalogue, std::map<std::string, Response> responses,
                const EnsembleOptions& ensemble, const std::optional<std::string>& json_file,

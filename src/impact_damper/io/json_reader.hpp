@@ -11,8 +11,8 @@
 //   }
 //   document.finish();  // throws InputError with what was wrong, unknown keys included
 //
-// What is too long is rejected before it takes memory: the file by its kind, a text and an array by the rule
-// they are read with, all of a file together by the parser (json_parser.hpp).
+// A file, text or array that is too long is rejected before it takes memory: the file by its kind, a text and
+// an array by the rule they are read with, all of a file together by the parser (json_parser.hpp).
 //
 // A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
 // do not act on what was read before finish() has returned.
@@ -112,7 +112,7 @@ class ObjectReader {
   bool has(std::string_view key);          // makes it known
   bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
 
-  // Offers a key that unknown ones may mean, without making it known: an object of a related kind has it.
+  // Suggests a key that unknown keys may mean, without making it known: an object of a related kind has it.
   void suggest(std::string_view key);
 
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
@@ -148,7 +148,7 @@ class JsonDocument {
   // file longer than its kind allows, what is not JSON (with line and column), text after the value, too much
   // of it. A duplicate key is a problem among the others.
   static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
-  // The same for a text in memory; `name` stands for the file in messages.
+  // Parses a text in memory, likewise; `name` stands for the file in messages.
   static JsonDocument parse(const std::string& name, const std::string& text);
 
   ObjectReader root();  // reported unless it is an object

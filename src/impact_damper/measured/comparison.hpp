@@ -42,9 +42,9 @@ struct ComparisonOptions {
   std::int64_t releases = 8;  // >= 1
 };
 
-// `scene` must be valid, without a force and with one damper, not a list, `record` as it was read from
-// `record_name`, and `tell` not empty. Throws InputError as reduced() does, InvalidArguments for a list of
-// dampers and for options out of range.
+// Compares a record with simulations of a scene. `scene` must be valid, without a force and with one damper,
+// not a list, `record` as it was read from `record_name`, and `tell` not empty. Throws InputError as
+// reduced() does, InvalidArguments for a list of dampers and for options out of range.
 Comparison compared(const std::string& record_name, const MeasuredRecord& record,
                     const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
                     const ComparisonOptions& options, const std::function<void(const std::string&)>& tell);

@@ -52,8 +52,8 @@ double impacts_in_a_period(const Scene& scene, const Engine& engine) {
   return most;
 }
 
-// Returns a rule with fewer periods of the force for motions with many impacts, and without viscous damping:
-// there a motion that impacts do not end soon does not end at all.
+// Returns a rule with fewer periods of the force for motions with many impacts, and without viscous damping,
+// where a transient that impacts do not end soon never ends.
 SteadyRule rule_for(const Scene& scene, const Engine& engine) {
   constexpr double impacts_of_a_motion = 20'000;
   constexpr std::int64_t least = 500, hundred = 100;
