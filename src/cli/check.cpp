@@ -1,4 +1,4 @@
-// `check`: files read strictly, and nothing else done with them.
+// `check`: reads files strictly, and does nothing else with them.
 #include <array>
 #include <filesystem>
 
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run named after a scene of that folder is held against it, too.
+// Checks a run; one named after a scene of that folder is compared with it, too.
 void check_run(const fs::path& file, const fs::path& scenes) {
   const Run run = read_run(file, DamperList::allowed);
   require_consistent(run, file);
@@ -38,12 +38,12 @@ void check_scene(const std::string& file) {
   warn_of_cautions(file, scene.scene, scene.scales);
 }
 
-// A table and the file beside it, all rows. CSV only, as `map` reads it.
+// Checks a table, all rows, and the file beside it. CSV only, as `map` reads it.
 void check_sweep(const std::string& table) {
   read_sweep_rows(table, read_sweep_description(table), [](std::span<const std::string>) {});
 }
 
-// Files that no command reads: whether they are as they were written, which their digest tells of every byte.
+// Checks by its digest that every byte of a file that no command reads is as it was written.
 void check_digest(const std::string& file, std::string_view kind) {
   constexpr std::size_t most_bytes = 1 << 24;
   const std::string text = read_text(file, FileKind{kind, most_bytes});
@@ -72,7 +72,7 @@ constexpr std::array<Reader, 10> readers{
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
 
-// Not an option with many values: that would take "[]" for a list of none.
+// Returns the files, which are no option with many values: that would take "[]" for an empty list.
 std::vector<std::string> files_of(Arguments& arguments) {
   std::vector<std::string> files;
   if (const auto first = arguments.file("FILE")) files.push_back(*first);

@@ -1,4 +1,4 @@
-// `cite`: what to write into one's references, and from a figure or its stamp back to what it was made from.
+// `cite`: prints references to the program, and what a figure was made from, given the figure or its stamp.
 #include <algorithm>
 #include <filesystem>
 
@@ -15,7 +15,8 @@
 namespace impact_damper::cli {
 namespace {
 
-// In braces of its own a text is no list of names and keeps its capitals; each is a value or stands in one.
+// Returns a text in braces of its own, in which it is no list of names and keeps its capitals. Each is a
+// value or part of one.
 std::string braced(std::string_view text) {
   std::string value;
   for (const char c : text) {
@@ -28,23 +29,24 @@ std::string braced(std::string_view text) {
   return '{' + value + '}';
 }
 
-// BibTeX takes what stands between entries for a comment, but for an @.
+// Returns a comment: BibTeX ignores what is between entries, except an @.
 std::string comment(std::string_view text) {
   std::string line = "% " + std::string(text);
   std::ranges::replace(line, '@', '?');
   return line + '\n';
 }
 
-// An identifier of Software Heritage, which TeX may break before its digits. It is made of git's own hash.
+// Returns an identifier of Software Heritage, which TeX may break before its digits. It contains git's own
+// hash.
 std::string set_swhid(std::string_view swhid) {
   const std::size_t digits = swhid.rfind(':') + 1;
   return "\\texttt{" + std::string(swhid.substr(0, digits)) + "\\allowbreak{}" +
          std::string(swhid.substr(digits)) + '}';
 }
 
-// One entry, in fields that every style of BibTeX prints; `note` is TeX. The commit and its tree are this
-// program's: they are not known for another version's manifest, nor for a program built from sources that
-// were changed.
+// Returns one entry, in fields that every style of BibTeX prints; `note` is TeX. The commit and its tree are
+// this program's: they are not known for another version's manifest, nor for a program built from modified
+// sources.
 std::string entry(const Manifest& manifest, const std::string& note) {
   std::string authors;
   for (const std::string& author : manifest.authors)
@@ -62,7 +64,7 @@ std::string entry(const Manifest& manifest, const std::string& note) {
   return text + "\n}\n";
 }
 
-// Labels beside values, of which there may be several.
+// Returns a label beside its values, of which there may be several.
 std::string labelled(std::string_view label, const std::vector<std::string>& values) {
   std::string lines;
   for (const std::string& value : values) {
@@ -105,7 +107,7 @@ std::string made_from(const Manifest& manifest, const Stamped& stamped) {
   return text;
 }
 
-// What a stamp that nothing here carries may come from.
+// Returns why no figure here carries a stamp: where it may come from.
 std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::string& file) {
   std::vector<std::string_view> known;
   for (const CitedFigure& figure : manifest.figures) {
@@ -123,7 +125,8 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
   return text;
 }
 
-// The program and the paper alone, by paper/facts.json as it was when the program was built: no figures.
+// Returns a manifest without figures: program and paper by paper/facts.json as it was when the program was
+// built.
 Manifest built_in() {
   const auto& files = embedded_files();
   const auto facts = std::ranges::find(files, "facts.json", &EmbeddedFile::name);

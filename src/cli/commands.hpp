@@ -32,9 +32,9 @@ struct Command {
   std::string name{}, description{};
   Options options{};
   std::string footer{};     // below the options in --help
-  bool takes_more = false;  // more inputs behind the arguments that are named: Arguments::more()
-  // 0, or 1 if a check failed. Throws UsageError (exit code 2), InputError (3), NumericalError (4), IoError
-  // (5).
+  bool takes_more = false;  // more inputs after the named arguments: Arguments::more()
+  // Returns 0, or 1 if a check failed. Throws UsageError (exit code 2), InputError (3), NumericalError (4),
+  // IoError (5).
   std::function<int(Arguments&)> act{};
 };
 
@@ -45,7 +45,7 @@ Command cite_command();
 Command compare_command();
 Command design_command();
 Command figures_command();
-// `program`: what is said above the subcommands. Both must live as long as the command.
+// `program`: the text above the subcommands. Both must live as long as the command.
 Command generate_command(const Command& program, const Commands& commands);
 Command map_command();
 Command merge_command();
@@ -59,6 +59,6 @@ Command verify_command();
 
 // Options that several commands have.
 Option threads_option();
-Option scenes_option();  // where the scenes are that runs are named after
+Option scenes_option();  // the folder of the scenes that runs are named after
 
 }  // namespace impact_damper::cli

@@ -1,4 +1,5 @@
-// `compare`: a measured free decay beside the simulation of a scene, and the scene's numbers fitted to it.
+// `compare`: compares a measured free decay with the simulation of a scene, and fits the scene's numbers to
+// it.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

@@ -1,4 +1,4 @@
-// `design`: the lightest secondary mass, and its clearance, with which a decay is over in time within
+// `design`: finds the lightest secondary mass, and its clearance, with which a decay is over in time within
 // tolerances.
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@
 namespace impact_damper::cli {
 namespace {
 
-// NAME=W or NAME=W%.
+// Reads NAME=W or NAME=W%.
 std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::string& text,
                                           const std::vector<Variable>& variables) {
   std::vector<std::string_view> names(variables.size());
@@ -60,7 +60,7 @@ struct Asked {
   bool dimensionless = false;
 };
 
-// Numbers that may have a tolerance: by the names that a scene in units has for them.
+// Returns the numbers that may have a tolerance, by their names in a scene in units.
 std::vector<Variable> tolerable(bool dimensionless) {
   SceneFile any;
   any.in_units.emplace();
@@ -101,7 +101,7 @@ Asked asked_of(Arguments& arguments) {
   return asked;
 }
 
-// For reading: "0.0532", "1980".
+// Returns a number for reading: "0.0532", "1980".
 std::string readable(double value) { return number_text(*parse_number(rounded_text(value, 3))); }
 std::string of_unit(double value, std::string_view unit) { return readable(value) + ' ' + std::string(unit); }
 
@@ -156,7 +156,7 @@ std::string verdict_on(const DesignQuestion& question, const DesignCheck& check)
          ".\n";
 }
 
-// For which walls the forces of the table are.
+// Returns a sentence on the walls that the forces of the table are for.
 std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
   if (!answer.designs.front().check.largest_wall_force) return "";
   const SceneInUnits& scene = asked.question.scene;
@@ -172,7 +172,7 @@ std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
          (asked.dimensionless ? "--wall-stiffness" : "contact_stiffness") + " of your own walls.\n";
 }
 
-// What there is to gain.
+// Returns a sentence on viscous damping alone, if its decay takes at most 1.5 times the time asked for.
 std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer& answer,
                              const DesignUnits& units) {
   constexpr double nearly = 1.5;
@@ -181,7 +181,7 @@ std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer&
   return "Viscous damping alone, without a secondary mass, takes " + of_unit(*time, units.time) + ".\n";
 }
 
-// Which bounds decided.
+// Returns advice on the bounds that decided the result.
 std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer, const DesignUnits& units) {
   const Design& design = answer.designs.front().design;
   std::string text;
@@ -226,7 +226,7 @@ std::string text_of(const Asked& asked, const DesignAnswer& answer) {
          advice_on(question, answer, units);
 }
 
-// Problems of the question, as those of options.
+// Reports problems of the question as those of options.
 [[noreturn]] void reject_question(const std::vector<Problem>& problems) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> options{
       {{"amplitude", "--to"},

@@ -23,7 +23,7 @@ struct Asked {
   double mass = 1;  // of the primary mass: kg, or 1
 };
 
-// restitution=W and clearance=W%, the only ones.
+// Reads the only tolerances allowed, restitution=W and clearance=W%.
 void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
   for (const std::string& text : arguments.texts("--tolerance")) {
     const std::size_t equals = text.find('=');
@@ -74,7 +74,7 @@ Asked asked_of(Arguments& arguments) {
 double in_three_digits(double value) { return *parse_number(rounded_text(value, 3)); }
 std::string readable(double value) { return number_text(in_three_digits(value)); }
 
-// The scene with these dampers, as it was given: in units or not.
+// Returns the scene with these dampers as the text of its file, in units if the question was.
 std::string scene_file_text(const Asked& asked, const DamperSet& set) {
   const DamperSetQuestion& question = asked.question;
   JsonWriter out("scene");
@@ -151,7 +151,7 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
   return text;
 }
 
-// Problems of the question, as those of options.
+// Reports problems of the question as those of options.
 [[noreturn]] void reject_question(const std::vector<Problem>& problems) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> options{
       {{"release", "--from"},

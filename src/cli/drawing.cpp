@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What remove_drawing_board() needs, in a form that a signal handler may read: paths, and the process that
+// The data of remove_drawing_board(), in a form that a signal handler may read: paths, and the process that
 // draws.
 constexpr std::size_t most_files = 64, longest_path = 512;
 std::array<std::array<char, longest_path>, most_files> left;  // files, then the folder
@@ -42,7 +42,7 @@ void note(const fs::path& path) {
 }
 
 bool is_in_path(const std::string& program) {
-  // As a shell looks for it, without starting one that may not be there either.
+  // Searches PATH as a shell does, without starting one, which may be missing as well.
   std::string_view path = "/usr/bin:/bin";
   for (char** each = environ; *each; ++each) {
     const std::string_view variable = *each;

@@ -11,12 +11,12 @@
 
 namespace impact_damper::cli {
 
-// Throws IoError if there is no gnuplot in PATH, saying what to install, or what else to do. Before a long
-// computation.
+// For use before a long computation: throws IoError if there is no gnuplot in PATH, with advice on what to
+// install, or what else to do.
 void require_gnuplot(std::string_view otherwise = "");
 
-// A folder of its own in the system's folder for temporary files, holding what figures/draw needs; it goes
-// with this object, and with the program when that is interrupted. One at a time.
+// A folder in the system's folder for temporary files, with what figures/draw needs. It is removed with this
+// object, and when the program is interrupted. There may be one at a time.
 class DrawingBoard {
  public:
   DrawingBoard();
@@ -24,7 +24,7 @@ class DrawingBoard {
   DrawingBoard(const DrawingBoard&) = delete;
   DrawingBoard& operator=(const DrawingBoard&) = delete;
 
-  // The drawing as SVG. Throws IoError if there is no space for it, NumericalError if gnuplot fails.
+  // Returns the drawing as SVG. Throws IoError if there is no space for it, NumericalError if gnuplot fails.
   std::string draw(const Drawing& drawing);
 
  private:

@@ -1,4 +1,4 @@
-// `figures`: what the catalogue draws, as an aligned table.
+// `figures`: lists the figures of the catalogue as an aligned table.
 #include <algorithm>
 
 #include "arguments.hpp"

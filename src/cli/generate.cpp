@@ -1,5 +1,5 @@
-// `generate`: the man page and the shells' completions, from the options as they are declared, so that
-// neither can say anything else than --help does.
+// `generate`: prints the man page and the shells' completions, from the declared options, so that they always
+// agree with --help.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace impact_damper::cli {
 namespace {
 
-// An option with its names taken apart.
+// An option with its names separated.
 struct Told {
   std::vector<std::string> shorts, longs;  // without dashes; neither for a positional
   std::string positional, type, meaning;
@@ -47,7 +47,7 @@ std::vector<std::string> names_of(const Told& option) {
   return names;
 }
 
-// The words that a value is chosen from, which its type lists: exact|restitution|cem.
+// Returns the words that a value is chosen from, which its type lists: exact|restitution|cem.
 std::vector<std::string> choices(const Told& option) {
   std::vector<std::string> words;
   if (option.type.find('|') == std::string::npos) return words;
@@ -65,13 +65,13 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
   return text;
 }
 
-// One line: up to the first semicolon.
+// Returns one line: the text up to the first semicolon.
 std::string brief(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   return text.substr(0, text.find(';'));
 }
 
-// `text` with `before` set before each of `characters`.
+// Returns `text` with `before` inserted before each of `characters`.
 std::string escaped(const std::string& text, std::string_view characters, const std::string& before) {
   std::string out;
   for (const char c : text) {
@@ -81,7 +81,7 @@ std::string escaped(const std::string& text, std::string_view characters, const 
   return out;
 }
 
-// In single quotes, for a shell that knows no escape in them.
+// Returns `text` in single quotes, for a shell without escapes in them.
 std::string single_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -106,13 +106,13 @@ std::string roff_options(const Command& command) {
     const std::vector<std::string> names = names_of(option);
     text += ".TP\n.B " + roff(names.empty() ? option.positional : joined(names, ", "));
     if (option.takes_value && !option.type.empty()) text += " \\fI" + roff(option.type) + "\\fP";
-    text += '\n';  // two steps: of one sum g++ 12 warns without a reason
+    text += '\n';  // in two steps, because g++ 12 warns of one sum without reason
     text += roff(option.meaning) + '\n';
   }
   return text;
 }
 
-// As it is printed, line by line.
+// Returns the footer as it is printed, line by line.
 std::string roff_footer(const Command& command) { return ".PP\n.nf\n" + roff(command.footer) + "\n.fi\n"; }
 
 std::string man_page(const Command& program, const Commands& commands) {
@@ -134,7 +134,8 @@ std::string man_page(const Command& program, const Commands& commands) {
   return text;
 }
 
-// Where the program's words are not wanted, readline completes file names (complete -o default).
+// Returns the script for bash. Where no words of the program fit, readline completes file names (complete -o
+// default).
 std::string bash_completion(const Command& program, const Commands& commands) {
   std::string names_of_commands, values, words;
   for (const Command& command : commands) {
@@ -183,7 +184,7 @@ std::string bash_completion(const Command& program, const Commands& commands) {
 }
 
 std::string zsh_completion(const Command& program, const Commands& commands) {
-  // _arguments takes brackets and colons for its own; the text stands in single quotes.
+  // _arguments interprets brackets and colons; the text is in single quotes.
   const auto described = [](const std::string& text) { return escaped(brief(text), "[]:\\", "\\"); };
   std::string described_commands, cases;
   for (const Command& command : commands) {

@@ -17,14 +17,14 @@ namespace {
 std::atomic<const char*> what_is_left = "impact-damper: interrupted: nothing is written\n";
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-// Calls only what a signal handler may. Not by the signal's own end, which shells report with the same
-// number: who waits for the program sees an exit code then, as documented.
+// Calls only what a signal handler may. Ends with an exit code, as documented, rather than by the signal,
+// which shells report with the same number.
 extern "C" void end(int signal) {
   remove_unfinished_file();
   remove_drawing_board();
   const char* const text = what_is_left;
   if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) {
-    // Nobody listens.
+    // Nobody reads stderr.
   }
   ::_exit(128 + signal);
 }
@@ -37,7 +37,7 @@ void end_cleanly() {
   sigfillset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
-    // Whoever starts the program in the background or by nohup has them ignored.
+    // They are ignored in a program that was started in the background or by nohup.
     if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
       ::sigaction(signal, &action, nullptr);
     }
@@ -47,7 +47,7 @@ void end_cleanly() {
 }
 
 void if_interrupted_say(const std::string& text) {
-  static std::deque<std::string> all;  // a signal may be reading the one before
+  static std::deque<std::string> all;  // a signal handler may be reading the previous one
   what_is_left = all.emplace_back("impact-damper: interrupted: " + text + '\n').c_str();
 }
 

@@ -1,5 +1,5 @@
-// The program: hands the command line to one subcommand and turns what goes wrong into one line for each
-// problem on stderr and an exit code.
+// The program: passes the command line to one subcommand and turns errors into one line for each problem on
+// stderr and an exit code.
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -29,13 +29,14 @@ using namespace impact_damper;
 
 enum Exit { done = 0, check_failed = 1, usage = 2, bad_input = 3, numerical_failure = 4, input_output = 5 };
 
-// `head` stands before each problem; those of files begin with the file's name and need none.
+// Prints the problems, each after `head`, and returns `code`. Those of files begin with the file's name and
+// need no head.
 int fail(Exit code, const std::string& head, const std::vector<std::string>& problems) {
   for (const std::string& problem : problems) std::cerr << head + problem + '\n';
   return code;
 }
 
-// The arguments that nobody asked for, each with the option or subcommand it was meant to be.
+// Returns the unknown arguments, each with the option or subcommand that may be meant.
 std::vector<Problem> unknown_arguments(const CLI::App& program, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -48,7 +49,7 @@ std::vector<Problem> unknown_arguments(const CLI::App& program, const CLI::App& 
   std::vector<Problem> problems;
   bool value_follows = false;
   for (const std::string& argument : program.remaining(true)) {
-    // What stands behind an unknown option is its value, if it is neither an option nor missing.
+    // What follows an unknown option is its value, if it is neither an option nor missing.
     const bool is_option = argument.size() > 1 && argument[0] == '-' && !parse_number(argument);
     if (std::exchange(value_follows, is_option && argument.find('=') == std::string::npos) && !is_option)
       continue;
@@ -66,7 +67,8 @@ std::vector<Problem> unknown_arguments(const CLI::App& program, const CLI::App& 
   return problems;
 }
 
-// The arguments, last first as the parser takes them; "help" and "help run" are "--help" and "run --help".
+// Returns the arguments, last first as the parser takes them; "help" and "help run" are "--help" and "run
+// --help".
 std::vector<std::string> arguments_of(const CLI::App& program, int count, char** given) {
   std::vector<std::string> arguments(given + std::min(count, 1), given + count);
   if (!arguments.empty() && arguments[0] == "help") {
@@ -82,7 +84,7 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
   return arguments;
 }
 
-// What the parser found for one subcommand.
+// Returns what the parser found for one subcommand.
 cli::Arguments found_for(const CLI::App& parsed, const cli::Command& command) {
   std::map<std::string, std::vector<std::string>> options;
   for (const CLI::Option* option : parsed.get_options()) options[option->get_name()] = option->results();
@@ -96,7 +98,7 @@ cli::Arguments found_for(const CLI::App& parsed, const cli::Command& command) {
   return {std::move(options), std::move(more)};
 }
 
-// Options without a value that took the option behind them for it (--x0 --y0 1).
+// Returns the options without a value that took the option after them for it (--x0 --y0 1).
 std::vector<Problem> swallowed_options(const CLI::App& command) {
   const std::vector<const CLI::Option*> options = command.get_options();
   const auto is_option = [&](const std::string& value) {
@@ -114,7 +116,7 @@ std::vector<Problem> swallowed_options(const CLI::App& command) {
   return problems;
 }
 
-// What is said above the subcommands.
+// Returns the text above the subcommands.
 cli::Command whole_program() {
   using Takes = cli::Option::Takes;
   cli::Command program{.name = "impact-damper",

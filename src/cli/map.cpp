@@ -1,4 +1,4 @@
-// `map`: one quantity of a sweep over two numbers of its grid, as a picture.
+// `map`: draws one quantity of a sweep over two numbers of its grid.
 #include "impact_damper/sweeps/map.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string in_words(std::string_view name) {
   std::ranges::replace(words, '_', ' ');
   return words;
 }
-// Symbols for the names of units: "1/Omega_n" -> "1/Ω_{n}", as gnuplot reads an index.
+// Replaces names of units by symbols: "1/Omega_n" -> "1/Ω_{n}", as gnuplot reads an index.
 std::string in_symbols(std::string text) {
   for (const auto& [name, symbol] : {std::pair("Omega_n", "Ω_{n}"), {"epsilon", "ε"}})
     for (std::size_t at; (at = text.find(name)) != std::string::npos;)
@@ -58,7 +58,7 @@ struct Named {
   }
 };
 
-// The index of the name that an option gives; absent, and noted, if it is none of them.
+// Returns the index of the name that an option gives; absent, and noted, if it is none of them.
 std::optional<std::size_t> index_of(Arguments& arguments, const std::string& option, const std::string& name,
                                     const std::vector<std::string_view>& names, const std::string& what) {
   const auto found = std::ranges::find(names, name);
@@ -98,7 +98,7 @@ std::optional<std::size_t> quantity_of(Arguments& arguments, const Plan& plan) {
   return index_of(arguments, "--z", *name, {columns.begin(), columns.end()}, "a quantity of the table");
 }
 
-// Of the numbers that are neither x nor y, the value that --where gives, or the only one.
+// Sets each number that is neither x nor y to the value that --where gives, or to its only one.
 void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& question) {
   std::vector<bool> is_given(plan.grid.size());
   std::vector<std::string_view> names;
@@ -120,7 +120,7 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
     for (std::int64_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
     const double value =
         parse_number(std::string_view(text).substr(std::min(equals + 1, text.size()))).value_or(std::nan(""));
-    // As it was written: 0.1, where a step of the grid has come to 0.09999999999999999.
+    // Accepts the value as it was written: 0.1, where a step of the grid has come to 0.09999999999999999.
     const double rounding = 1e-12 * std::max(std::abs(values.front()), std::abs(values.back()));
     const auto meant =
         std::ranges::min_element(values, {}, [&](double known) { return std::abs(known - value); });
@@ -186,7 +186,7 @@ std::string point_text(const Named& named, const Map& map, std::size_t ix, std::
          std::string(named.y().name) + " = " + with_unit(number(map.y.values[iy]), named.y().unit);
 }
 
-// " (+12 %)": the margin (M15.6).
+// Returns " (+12 %)": the margin (M15.6).
 std::string change_text(double from, double to) {
   if (from == 0) return "";
   const double percent = 100 * std::abs((to - from) / from);
@@ -206,7 +206,7 @@ void add_block(Table& table, const std::string& name, std::vector<TableColumn> c
   table.blocks.push_back({.name = name, .notes = {}, .columns = std::move(columns), .gaps = std::move(gaps)});
 }
 
-// Cells of one state: their limits, and their values if they have any.
+// Adds the cells of one state: their limits, and their values if they have any.
 void add_cells(Table& table, const std::string& name, const Map& map, CellState state) {
   std::vector<TableColumn> columns{{"x", "of the point", {}},
                                    {"y", "of the point", {}},
@@ -228,7 +228,8 @@ void add_cells(Table& table, const std::string& name, const Map& map, CellState 
   add_block(table, name, std::move(columns));
 }
 
-// A number of the level on the piece of its contour that is nearest to the middle of the picture.
+// Adds contours, with the number of the level on the piece of its contour nearest to the middle of the
+// picture.
 void add_contours(Table& table, const Map& map) {
   const auto values = values_of(map);
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -316,7 +317,7 @@ Drawing drawing_of(const Named& named, const Map& map) {
   return drawing;
 }
 
-// What there is to say about the best point, a line each.
+// Returns remarks on the best point, a line each.
 std::string summary_of(const Named& named, const Map& map) {
   const auto number = [](double value) { return number_text(value); };
   const auto count = [&](CellState state) {
@@ -352,7 +353,7 @@ int make_map(Arguments& arguments) {
   if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
   reject_other_endings(arguments, "--output", output, {Format::svg});
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
-  arguments.finish();  // before the table is read, which says what else is valid
+  arguments.finish();  // before the table is read, which decides what else is valid
   const SweepDescription description = read_sweep_description(*file);
   const MapQuestion question = question_of(arguments, description.plan);
   arguments.finish();

@@ -33,7 +33,7 @@ bool is_ending_of(const std::string& ending, Format format) {
   return std::ranges::count(info_of(format).endings, std::string_view(ending)) > 0;
 }
 
-// In lower case, with its point; empty if there is none.
+// Returns the ending in lower case, with its point; empty if there is none.
 std::string ending_of(const std::string& file) {
   const std::string ending = in_lower_case(std::filesystem::path(file).extension().string());
   constexpr std::size_t longest = sizeof ".markdown" - 1;

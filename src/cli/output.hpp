@@ -11,9 +11,9 @@
 
 namespace impact_damper::cli {
 
-// In which form a result is written.
+// The format of a result.
 enum class Format { json, csv, gnuplot, html, svg, markdown, hdf5 };
-// Which of `offered` --format names, the first of them if it is not given, for `output`.
+// Returns which of `offered` --format names, for `output`; the first of them if it is not given.
 Format format_of(Arguments& arguments, const std::optional<std::string>& output,
                  std::initializer_list<Format> offered);
 
@@ -22,17 +22,17 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
 void reject_other_endings(Arguments& arguments, const std::string& option,
                           const std::optional<std::string>& output, std::initializer_list<Format> written);
 
-// Rejects one place for the results of two options.
+// Rejects the same file for the results of two options.
 void reject_same_output(Arguments& arguments, const std::string& option,
                         const std::optional<std::string>& file, const std::string& other_option,
                         const std::optional<std::string>& other);
 
 bool is_standard_output(const std::optional<std::string>& output);
 
-// Before a long computation: throws IoError if a file cannot be written, and if the program is interrupted it
-// says that the file is as it was.
+// For use before a long computation: throws IoError if a file cannot be written. If the program is
+// interrupted, it then reports that the file is as it was.
 void prepare_output(const std::optional<std::string>& output);
-// On standard output if there is no file.
+// Writes `text`, to standard output if there is no file.
 void write_output(const std::optional<std::string>& output, std::string_view text);
 
 }  // namespace impact_damper::cli

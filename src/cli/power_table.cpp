@@ -11,7 +11,7 @@
 namespace impact_damper::cli {
 namespace {
 
-// Of so many claims the first few, and how many more.
+// Returns the first of the claims, at most `most`, and how many more there are.
 std::string names_of(const std::vector<std::string>& claims, std::size_t most) {
   std::string text;
   for (std::size_t i = 0; i < claims.size() && i < most; ++i) {
@@ -22,7 +22,7 @@ std::string names_of(const std::vector<std::string>& claims, std::size_t most) {
   return text;
 }
 
-// "7.1 %" of a number that is not 0; what is added to one that is.
+// Returns the change of a number: "7.1 %", or what is added to a number that is 0.
 std::string change_text(const PowerNumber& number, const Trial& trial) {
   if (number.value == 0) return number_text(trial.value);
   if (trial.change >= 1) return "a factor of " + rounded_text(1 + trial.change, 2);
@@ -63,7 +63,8 @@ void write(JsonWriter& out, std::string_view name, const std::optional<Direction
   out.close();
 }
 
-// The rows that `wanted` holds for, as a table whose first column is the scene, if they are of several.
+// Returns the rows for which `wanted` holds, as a table whose first column is the scene, if they are of
+// several.
 template <class Wanted>
 std::string markdown_rows(const PowerTable& table, bool with_scene, Wanted wanted) {
   std::string text = with_scene ? "| scene " : "";
@@ -81,7 +82,7 @@ std::string markdown_rows(const PowerTable& table, bool with_scene, Wanted wante
   return text;
 }
 
-// What no claim notices, by the test that does.
+// Returns the numbers that no claim notices, by the test that does.
 std::string unnoticed_rows(const PowerTable& table) {
   std::map<std::string_view, std::string> numbers;
   for (const PowerRow& row : table.rows) {

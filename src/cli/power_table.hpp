@@ -12,8 +12,8 @@ struct PowerTable {
   std::string engine;
   std::int64_t members = 0;
   std::size_t claims = 0;
-  std::int64_t ensembles = 0;          // other ensembles that the claims had to stand
-  std::vector<std::string> unsettled;  // those that did not, which are left out
+  std::int64_t ensembles = 0;          // other ensembles that verdicts were compared with
+  std::vector<std::string> unsettled;  // claims whose verdicts differ there, which are left out
   std::vector<PowerRow> rows;
 };
 

@@ -1,4 +1,4 @@
-// What a command that takes long says of itself.
+// Messages about the progress of a command that takes long.
 #pragma once
 
 #include <chrono>
@@ -12,16 +12,16 @@
 
 namespace impact_damper::cli {
 
-// What is being done, told on stderr: nothing in the first two seconds, then once a second if it has changed,
-// and every ten seconds that it goes on; after minutes less often, so that the log of a day has 500 lines. A
-// thread of its own tells it, so a long simulation is not silent.
+// Reports on stderr what is being done: nothing in the first two seconds, then once a second if it has
+// changed, and at least every ten seconds; after minutes less often, so that the log of a day has 500 lines.
+// A thread of its own reports it, also during a long simulation.
 class ProgressOnStderr {
  public:
   explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {
     try {
       teller_ = std::thread([this] { tell(); });
     } catch (const std::system_error&) {
-      // No thread is to be had: the work goes on in silence.
+      // Without a thread the work continues without messages.
     }
   }
   ProgressOnStderr(const ProgressOnStderr&) = delete;
@@ -43,7 +43,7 @@ class ProgressOnStderr {
   void tell() {
     using namespace std::chrono_literals;
     constexpr int first = 2, at_least_every = 10;  // seconds
-    constexpr int minute = 60;                     // after so many of them a line in so many seconds
+    constexpr int minute = 60;                     // after n minutes at most a line in n seconds
     std::string told;
     std::unique_lock lock(mutex_);
     for (int second = 1, last = 0; !changed_.wait_for(lock, 1s, [&] { return ended_; }); ++second) {

@@ -1,4 +1,4 @@
-// `report`: a page about one scene of the user's own.
+// `report`: writes a page about one scene of the user's own.
 #include <filesystem>
 #include <map>
 

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* this_command = "impact-damper response";
 
 enum class Kind { sweep, basin, orbits, lyapunov };
-// Options that not all kinds have, and those that have them.
+// Options that only some kinds have, and these kinds.
 const std::map<std::string, std::vector<Kind>>& kinds_of_options() {
   static const std::map<std::string, std::vector<Kind>> all{
       {"--vary", {Kind::sweep, Kind::basin, Kind::orbits}},
@@ -51,14 +51,13 @@ void reject_options_of_others(Arguments& arguments, Kind kind) {
   }
 }
 
-// The engines that can go on from one period of the force to the next.
+// Engines that can continue a run from one period of the force to the next.
 const std::vector<Engine>& offered_engines() {
   static const std::vector<Engine> offered{Exact{}, Restitution{}};
   return offered;
 }
 
-// A number that may be varied: what it is called on the command line, and what one dimensionless unit of it
-// is in the units of the scene's file.
+// A number that --vary can name, and the size of its dimensionless unit in the unit of the scene's file.
 struct Variable {
   SceneNumber number;
   NumberRange range{};  // dimensionless
@@ -77,7 +76,7 @@ double scale_of(std::string_view unit, const Scales& scales) {
   return 1;
 }
 
-// The numbers of a scene by their names, beside a scene in units also by those of its file.
+// Returns the numbers of a scene by name; those of a scene in units also by their names in its file.
 Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) {
   Variables variables;
   for (const NamedSceneNumber& each : numbers_of(scene))
@@ -98,7 +97,7 @@ Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) 
   return variables;
 }
 
-// The number that --vary names, and what is said of its values; noted if there is none.
+// The number that --vary names, and the text of its values. number_of() rejects an unknown name.
 struct VariedNumber {
   Variable variable;
   std::optional<std::string> values;
@@ -161,7 +160,7 @@ std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool
   return axes;
 }
 
-// NAME=FROM:TO, along which orbits are followed.
+// Reads NAME=FROM:TO, the range along which orbits are followed.
 std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& variables) {
   const std::vector<std::string> given = arguments.texts("--vary");
   if (given.size() != 1) {
@@ -193,7 +192,8 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
   return range;
 }
 
-// X:V:Y:W in the units of the scene's file; of several dampers X:V, and they begin as the scene says.
+// Reads X:V:Y:W in the units of the scene's file; with a list of dampers X:V, the dampers starting as in the
+// scene.
 std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file) {
   const std::optional<Scales>& scales = file.scales;
   const std::size_t count = file.scene.dampers.empty() ? 4 : 2;
@@ -212,7 +212,7 @@ std::optional<SceneState> parse_state(std::string_view text, const SceneFile& fi
   return state;
 }
 
-// The scene's own release, then those of --start.
+// Returns the scene's own release, then the starts of --start.
 std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
   std::vector<SceneState> starts{release_of(file.scene)};
   for (const std::string& text : arguments.texts("--start")) {
@@ -230,7 +230,7 @@ std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
   return starts;
 }
 
-// Of x, dimensionless.
+// Returns the shift of x, dimensionless.
 double nudge_of(Arguments& arguments, const SceneFile& file) {
   const auto nudge = arguments.number("--nudge", nudges);
   if (nudge && !arguments.given("--start"))
@@ -257,7 +257,7 @@ BranchRule branch_rule_of(Arguments& arguments, const SteadyRule& steady) {
   return rule;
 }
 
-// Periods of the force, of which the exponents are the means.
+// Periods of the force over which the exponents are averaged, and those before that are discarded.
 struct Averaging {
   std::int64_t periods = 5000, discard = 500;
 };
@@ -268,10 +268,10 @@ Averaging averaging_of(Arguments& arguments) {
   return averaging;
 }
 
-// How far it is; called from several threads.
+// Shows how many parts are done; called from several threads.
 class Progress {
  public:
-  // all: of how many; absent where that is not known.
+  // all: number of parts; absent if it is not known.
   Progress(const char* what, std::optional<std::int64_t> all) : what_(what), all_(all) {}
   void operator()(std::int64_t done) {
     told_(std::to_string(done) + (all_ ? " of " + std::to_string(*all_) : "") + " " + what_);
@@ -362,7 +362,7 @@ void warn_of(const Branches& found, const BranchRule& rule) {
          " branches; --max-branches raises that");
 }
 
-// numbers: of the state.
+// numbers: dimension of the state.
 void warn_of(const LyapunovExponents& found, std::size_t numbers) {
   if (found.stop_reason != StopReason::time)
     warn("there are no exponents: the run ended early, by " + std::string(name_of(found.stop_reason)) +
@@ -375,7 +375,7 @@ void warn_of(const LyapunovExponents& found, std::size_t numbers) {
     warn("several masses meet walls at one instant: the exponents are of changes that keep them together");
 }
 
-// What the command line asks for, checked.
+// The request of the command line, checked.
 struct Request {
   Kind kind = Kind::sweep;
   SceneFile file;
@@ -461,7 +461,7 @@ std::string text_of(const Request& asked) {
   return {};
 }
 
-// What is wrong with a value of --vary is said of that, not of an option that was not given.
+// Returns text_of(). A problem of a value of --vary names that option, not one that was not given.
 std::string text_of_valid(const Request& asked) {
   try {
     return text_of(asked);

@@ -1,4 +1,4 @@
-// `run`: one scene through one engine into one run file, or an ensemble of it into several.
+// `run`: simulates one scene with one engine and writes a run file, or several of an ensemble.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -51,8 +51,8 @@ void read_sections(Arguments& arguments, Record& record) {
   }
 }
 
-// What one unit of time and length is in the numbers of --history and --history-below: seconds and
-// millimetres beside a scene in units.
+// One dimensionless unit of time and of length in the numbers of --history and --history-below: in seconds
+// and millimetres for a scene in units.
 struct Given {
   double time = 1, length = 1;
 };
@@ -109,13 +109,13 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   return record;
 }
 
-// CSV is one table: a run that is written so records one section, and no energy balance.
+// Whether CSV, which is one table, can hold a run with this record: one section, and no energy balance.
 bool holds_one_table(const Record& record) {
   const bool history = !record.history.empty() || !record.history_below.empty();
   return !record.energy && int{record.half_cycles} + record.impacts + record.contacts + history == 1;
 }
 
-// The end of a run may not be known before it: what was asked for behind it is not there.
+// Warns of samples after the end of a run, which may not be known before it.
 void warn_of_missing_samples(const Run& run, const Record& record) {
   if (!run.history) return;
   std::int64_t asked = 0;
@@ -128,8 +128,8 @@ void warn_of_missing_samples(const Run& run, const Record& record) {
             << " samples asked for\n";
 }
 
-// Simulates and writes the other members of the ensemble of `first`, so many at once as there are threads: no
-// more are kept in memory. Written before `file` is: where that is new, all are.
+// Simulates and writes the other members of the ensemble of `first`, as many at once as there are threads: no
+// more are kept in memory. They are written before `file`, so that if `file` is new, all are.
 void run_members(const std::string& file, const Run& first, const Record& record,
                  const std::optional<Scales>& scales, const EnsembleOptions& ensemble) {
   const std::filesystem::path folder = member_file(file, 2).parent_path();

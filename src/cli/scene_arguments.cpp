@@ -20,7 +20,7 @@ std::string option_of(std::string_view field) {
 
 std::string range_of(const SceneField& field) {
   if (field.least < 0) return "0, or a number of a magnitude >= " + number_text(least_magnitude);
-  // The limits that only keep squares finite are no news to anybody until they are passed.
+  // Limits that only keep squares finite are not shown.
   const double any = std::numeric_limits<double>::max();
   return NumberRange{field.least, field.most >= 1e6 ? any : field.most}.describe("a number");
 }
@@ -49,7 +49,7 @@ std::vector<std::string_view> names_of(const std::vector<Engine>& engines) {
   return names;
 }
 
-// First those that only some of the engines have.
+// Returns the options of these engines, first those that only some of them have.
 std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
   std::vector<OfferedOption> offered;
   for (const Engine& engine : engines) {
@@ -67,7 +67,7 @@ std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
   }
   const auto of_some = [&](const OfferedOption& each) { return each.engines.size() < engines.size(); };
   std::stable_partition(offered.begin(), offered.end(), of_some);
-  // How a speed is chosen without a number: the one option that is no member of an engine.
+  // Adds "stuck", which chooses a speed without a number: the only option that is no member of an engine.
   const auto speed =
       std::ranges::find_if(offered, [](const auto& each) { return each.info.name == "stuck_speed"; });
   if (speed == offered.end()) return offered;
@@ -83,7 +83,7 @@ std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
   return offered;
 }
 
-// With an engine that does not have it an option would be ignored, so it is rejected.
+// Rejects the options that the engine does not have, because it would ignore them.
 void reject_foreign_options(Arguments& arguments, const std::vector<Engine>& engines,
                             std::string_view engine) {
   for (const OfferedOption& offered : offered_options(engines)) {
@@ -115,7 +115,7 @@ void read_sticking(Arguments& arguments, Cem& cem) {
   if (as_in_paper && !cem.stuck_speed) cem.stuck_speed = usual_stuck_speed;
 }
 
-// `text` in lines of at most so many characters.
+// Returns `text` in lines of at most `most` characters.
 std::string in_lines(const std::string& text, std::size_t most) {
   std::istringstream words(text);
   std::string lines, line;
@@ -129,7 +129,7 @@ std::string in_lines(const std::string& text, std::size_t most) {
   return lines + line;
 }
 
-// What it is, what is allowed and what is taken otherwise.
+// Returns the help of an option: its meaning, what is allowed and the default.
 std::string help_of(const OfferedOption& offered, std::size_t engines) {
   const OptionInfo& info = offered.info;
   std::string text = offered.engines.size() < engines ? listed(offered.engines, "and") + ": " : "";

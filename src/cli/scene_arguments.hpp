@@ -1,4 +1,4 @@
-// What is simulated, as options: the scene, beside or instead of its file, and the engine. Shared by the
+// Options for what is simulated: the scene, beside or instead of its file, and the engine. Shared by the
 // commands that simulate a scene of the user's own.
 #pragma once
 
@@ -9,30 +9,30 @@
 
 namespace impact_damper::cli {
 
-// The scene of --scene and the options beside it, which win; what is not valid is noted in `arguments`.
-// Throws InputError and IoError about the file.
-// Options for the numbers of one damper are rejected beside a list of several.
-// A command for which a scene's stops mean nothing neither offers them nor reads those of the file.
+// Reads the scene of --scene and the options beside it, which take precedence; problems are noted in
+// `arguments`. Throws InputError and IoError about the file. Options for the numbers of one damper are
+// rejected beside a list of several. Stops::ignored: a command that does not use a scene's stops neither
+// offers them nor reads those of the file.
 enum class Stops { needed, ignored };
 SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed,
                    DamperList dampers = DamperList::rejected);
-// For commands that change a scene in units by its own numbers: the options beside --scene are rejected.
+// Rejects the options beside --scene, in commands that change a scene in units by its own numbers.
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());
 
-// The options that these two read.
+// Return the options that scene_of() and engine_of() read.
 Options scene_options(Stops stops = Stops::needed);
 Options engine_options(const std::vector<Engine>& engines = default_engines());
 
-// A line on stderr, "COMMAND: warning: ...", for each of cautions_of() the scene.
+// Prints a line on stderr, "COMMAND: warning: ...", for each of cautions_of() the scene.
 void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales);
-// The same for a run that was ended by one of its budgets and not by the stops of its scene: which budget,
-// where the run got to, and the option that raises it.
+// Prints such a line for a run that was ended by one of its budgets and not by the stops of its scene: which
+// budget, how far the run got, and the option that raises it.
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales);
 
-// What simulate() rejects, naming fields, as a UsageError that names the options; as an InputError where it
-// is about a list of dampers, which only a scene file has. Beside a scene in units, by what lengths are
-// divided.
+// Throws problems of simulate(), which name fields, as a UsageError that names the options; as an InputError
+// where they are about a list of dampers, which only a scene file has. For a scene in units they add by what
+// lengths are divided.
 [[noreturn]] void reject_as_options(std::vector<Problem> problems, const std::string& scene_file,
                                     const std::optional<Scales>& scales);
 template <class Simulate>

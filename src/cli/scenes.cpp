@@ -1,4 +1,4 @@
-// `scenes`: what there is to run, as an aligned table.
+// `scenes`: lists the scenes that can be run as an aligned table.
 #include <algorithm>
 #include <filesystem>
 

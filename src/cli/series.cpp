@@ -1,4 +1,4 @@
-// `series`: the run files of a folder into the tables that the figures draw.
+// `series`: makes the tables that the figures draw from the run files of a folder.
 #include "impact_damper/reproduction/series.hpp"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The figures named, or all that have a table, in the order of the catalogue.
+// Returns the figures named, or all that have a table, in the order of the catalogue.
 std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& arguments) {
   std::vector<const Figure*> figures;
   std::vector<std::string_view> numbers;
@@ -45,7 +45,7 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
   return figures;
 }
 
-// Calls `read`; what is wrong with a file is reported under the figure's name.
+// Calls `read` and reports problems of a file under the figure's name.
 template <class Read>
 void for_figure(const Figure& figure, Read read) {
   try {
@@ -61,7 +61,7 @@ void for_figure(const Figure& figure, Read read) {
   }
 }
 
-// The further runs that a figure draws, with their ensembles.
+// Loads the further runs that a figure draws, with their ensembles.
 void load_further(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
                   const Threads& threads, FigureRuns& runs) {
   for (const std::string& name : runs_of(figure))
@@ -73,8 +73,8 @@ void load_further(const Figure& figure, const SceneRuns& folders, const Catalogu
     });
 }
 
-// A figure's runs, and the members of the ensembles that it shows. All are of one engine, whatever figure
-// they were read for.
+// Loads a figure's runs, and the members of the ensembles that it shows. All must be of one engine, whatever
+// figure they were read for.
 void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
   for (const std::string& scene : scenes_of(figure)) {
     const fs::path file = folders.file_of(scene);
@@ -97,7 +97,7 @@ void load(const Figure& figure, const SceneRuns& folders, const Threads& threads
   }
 }
 
-// A figure's responses.
+// Loads a figure's responses.
 void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
           FigureResponses& responses) {
   for (const std::string& name : figure.responses)
@@ -107,7 +107,7 @@ void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catal
     });
 }
 
-// A figure's sweep, which must be of the plan beside the catalogue.
+// Loads a figure's sweep, which must be of the plan beside the catalogue.
 void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalogue_file,
           FigureSweeps& sweeps) {
   if (figure.plan.empty()) return;

@@ -1,5 +1,5 @@
-// `sweep`: many runs of one scene with other numbers, and what is kept of each as one table; `merge`: the
-// same table from parts that were made apart.
+// `sweep`: makes many runs of one scene with other numbers, and one table of what is kept of each; `merge`:
+// joins parts that were made separately into the same table.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -33,7 +33,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// FROM:TO:N, FROM:TO:N:log or V,V,...
+// Reads FROM:TO:N, FROM:TO:N:log or V,V,...
 std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                                 const std::vector<Variable>& variables) {
   std::vector<std::string_view> names(variables.size());
@@ -72,7 +72,7 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                          std::to_string(most_axis_values) + ", got " + in_quotes(text));
     return std::nullopt;
   }
-  // The ends of a range, each of a list.
+  // The ends of a range, or all values of a list.
   const std::vector<double> ends = axis.values.empty() ? std::vector{axis.from, axis.to} : axis.values;
   for (const double value : ends) {
     if (axis.variable.range.allows(value)) continue;
@@ -101,7 +101,7 @@ void read_kept(Arguments& arguments, Plan& plan) {
   }
 }
 
-// The options that say what a plan says.
+// Returns the options for what a plan contains.
 Options options_of_plan() {
   Options options{
       {"--vary", "NAME=FROM:TO:N[:log]",
@@ -166,7 +166,7 @@ Part part_of(Arguments& arguments) {
   return {};
 }
 
-// Version and commit; where the commit does not tell what the source was, the program's own digest as well.
+// Returns version and commit; if the commit does not identify the source, the program's own digest as well.
 std::string program_identity() {
   const Provenance& made = provenance();
   std::string identity = std::string(made.version) + ' ' + std::string(made.commit);
@@ -189,7 +189,7 @@ void require_known_format(Arguments& arguments, const std::optional<std::string>
         "named *.csv the table is CSV");
 }
 
-// For reading: "42 s", "17 min", "3.5 h".
+// Returns a duration for reading: "42 s", "17 min", "3.5 h".
 std::string duration_text(double seconds) {
   constexpr double minute = 60, hour = 3600;
   if (seconds < 2 * minute) return rounded_text(seconds, 2) + " s";
@@ -203,7 +203,7 @@ std::string bytes_text(double bytes) {
   return bytes < giga ? rounded_text(bytes / mega, 2) + " MB" : rounded_text(bytes / giga, 3) + " GB";
 }
 
-// A few of the runs are made to tell how long all take.
+// Makes a few of the runs and reports how long all take.
 void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) {
   constexpr std::int64_t most_tried = 16;
   constexpr double long_enough = 2;  // seconds
@@ -212,7 +212,7 @@ void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) 
   std::int64_t made = 0;
   double bytes = 0;
   for (; made < tried && seconds_since(begin) < long_enough; ++made) {
-    // From all over the range however early time is up: multiples of the golden ratio, less their whole part.
+    // Runs from the whole range, however few are made: fractional parts of multiples of the golden ratio.
     constexpr double golden = 0.6180339887498949;
     const double part = (double(made) + 0.5) * golden;
     const std::int64_t i =
@@ -230,7 +230,7 @@ void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) 
                         ", judged by " + std::to_string(made) + " of the runs\n");
 }
 
-// Makes what is missing of a share.
+// Makes the missing rows of a share.
 void make_share(ShareWriter& share, const ShareHead& head, const fs::path& file, const Threads& threads) {
   const RowRange range = rows_of_part(head.plan, head.part, head.parts);
   const auto say_what_is_kept = [&] {

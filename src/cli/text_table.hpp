@@ -1,4 +1,4 @@
-// Rows of words as lines with aligned columns; the last column ends ragged.
+// Rows of words as lines with aligned columns; the last column is not padded.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// NAME=VALUES, of every option that gives a number of a scene several values: --vary, --tolerance.
+// NAME=VALUES, the text of every option that gives a number of a scene several values: --vary, --tolerance.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@ namespace impact_damper::cli {
 
 struct Varied {
   std::size_t index = 0;              // of the name in `names`
-  std::optional<std::string> values;  // what is said of them; absent without an =
+  std::optional<std::string> values;  // the text after =; absent without one
 };
-// Absent, and noted, unless `text` names one of `names` ('-' counts as '_').
+// Reads the text. Absent, and noted, unless `text` names one of `names` ('-' counts as '_').
 std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
                                 const std::vector<std::string_view>& names,
                                 const std::string& option = "--vary");

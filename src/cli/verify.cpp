@@ -1,4 +1,4 @@
-// `verify`: the claims, one by one, held against the runs.
+// `verify`: checks the claims, one by one, against the runs.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -36,11 +36,11 @@ struct Verified {
   const Claim* claim;
   Spread ours;
   NamedSpreads also{};  // the further numbers that the templates show
-  std::string words{};  // the same in the statement's terms
+  std::string words{};  // our result in the statement's terms
   Verdict verdict = Verdict::not_reproduced;
   Verdict recorded = Verdict::reproduced;
   bool as_recorded() const { return verdict == recorded; }
-  // One of the claim's templates, filled with what was measured.
+  // Returns one of the claim's templates, filled with what was measured.
   std::string filled(const std::string& text) const {
     NamedSpreads spreads = also;
     spreads[""] = ours;
@@ -50,10 +50,10 @@ struct Verified {
 
 std::string allowed_text(const Claim& claim) { return allowed_in_words(claim.words, claim.allowed); }
 
-// What stands in the columns of a statement that is open.
+// The texts in the columns of an open statement.
 constexpr const char *not_measured = "not measured", *open_word = "open";
 
-// Characters, not bytes: claims are written in UTF-8.
+// Returns the number of characters, not bytes: claims are written in UTF-8.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
@@ -148,7 +148,7 @@ std::string markdown_text(const std::vector<Verified>& all, const std::vector<Op
   return text;
 }
 
-// A number that is not finite as null.
+// Writes a number that is not finite as null.
 void write(JsonWriter& out, const Spread& spread) {
   const auto number = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   out.fields("ours", number(spread.median), "low", number(spread.low), "high", number(spread.high));
@@ -187,8 +187,8 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   return out.finish() + '\n';
 }
 
-// What claims rest on: runs of scenes, further runs, whose scenes' runs are among them if they are the
-// catalogue's, and responses.
+// The names of what claims rest on: runs of scenes, further runs, whose scenes' runs are among them if they
+// are the catalogue's, and responses.
 struct RunNames {
   std::set<std::string> scenes, further, responses;
 };
@@ -209,7 +209,7 @@ RunNames runs_of(const std::vector<Claim>& claims, const Catalogue& catalogue) {
   return names;
 }
 
-// The figures may rest on no claim that does not exist.
+// Rejects figures that rest on a claim that does not exist.
 void check_figures(const std::vector<Figure>& figures, const fs::path& file,
                    const std::vector<Claim>& claims) {
   std::set<std::string> ids;
@@ -226,8 +226,8 @@ void check_figures(const std::vector<Figure>& figures, const fs::path& file,
   if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
-// Every run and response that a claim rests on, before anything is measured: consistent, of its scene, and
-// the runs of scenes all of one engine. Returns the responses.
+// Checks every run and response that a claim rests on, before anything is measured: consistent, of its scene,
+// and the runs of scenes all of one engine. Returns the responses.
 std::map<std::string, Response> checked(const SceneRuns& folders, const RunNames& names,
                                         const Catalogue& catalogue) {
   std::optional<Run> first;
@@ -248,7 +248,7 @@ std::map<std::string, Response> checked(const SceneRuns& folders, const RunNames
   return responses;
 }
 
-// Which changes of a number turn a verdict, instead of the verdicts.
+// Finds, instead of the verdicts, which changes of a number turn one.
 int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::set<std::string>& scenes,
                const Catalogue& catalogue, std::map<std::string, Response> responses,
                const EnsembleOptions& ensemble, const std::optional<std::string>& json_file,
@@ -302,7 +302,7 @@ int verify(Arguments& arguments) {
 
   const ClaimsFile read = read_claims_file(claims_file);
   const std::vector<Claim>& claims = read.claims;
-  // Who has no catalogue has no further runs either.
+  // Without a catalogue there are no further runs.
   const bool has_catalogue = arguments.given("--catalogue") || fs::exists(catalogue_file);
   const Catalogue catalogue = has_catalogue ? read_catalogue(catalogue_file) : Catalogue{};
   if (arguments.given("--catalogue")) check_figures(catalogue.figures, catalogue_file, claims);

@@ -1,4 +1,4 @@
-// How long a file of some kind may be. A header of its own, so that who reads scenes and runs needs no JSON
+// The largest size of each kind of file. A header of its own, so that readers of scenes and runs need no JSON
 // library.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace impact_damper {
 
-// A kind of file, and how long the longest allowed is.
+// A kind of file, and its largest allowed size.
 struct FileKind {
   std::string_view name;  // "scene"
   std::size_t most_bytes;

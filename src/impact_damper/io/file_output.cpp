@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A handler of signals may look at it at any time; empty: no file is being written.
+// Path of the temporary file, which a signal handler may read at any time; empty: no file is being written.
 std::array<char, PATH_MAX> unfinished{};
 
 [[noreturn]] void reject(const fs::path& file, const std::string& why) {
   throw IoError(file.string() + ": cannot be written: " + why);
 }
 
-// C streams, because they report through errno why a write failed.
+// Closes a C stream. C streams are used because they report through errno why a write failed.
 struct Close {
   void operator()(std::FILE* stream) const { std::fclose(stream); }
 };
@@ -42,7 +42,7 @@ void write_directly(const fs::path& place, const char* mode, const fs::path& nam
       reject(named, std::strerror(errno));
   });
   if (std::fflush(stream.get()) != 0) reject(named, std::strerror(errno));
-  // Some file systems find out only now.
+  // Some file systems report a failed write only here.
   if (std::fclose(stream.release()) != 0) reject(named, std::strerror(errno));
 }
 
@@ -63,7 +63,7 @@ bool holds(const fs::path& file, std::string_view text) {
 std::string head_of_temporary(const fs::path& place) { return '.' + place.filename().string() + '.'; }
 constexpr std::string_view tail_of_temporary = ".tmp";
 
-// Of processes that were killed while they wrote this file, the temporary files.
+// Removes temporary files of this file that killed processes have left.
 void remove_abandoned(const fs::path& place) {
   const std::string head = head_of_temporary(place);
   std::error_code ignored;

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t deepest = 64;  // nesting; our own files need 5
 constexpr std::size_t most_values = 10'000'000;
-constexpr std::size_t most_parts = 100'000;  // that are no numbers
+constexpr std::size_t most_parts = 100'000;  // values that are no numbers
 constexpr std::size_t most_problems = 50;    // a column of a million wrong numbers need not be listed
 
 std::string list(const std::vector<std::string_view>& words) {
@@ -24,7 +24,7 @@ std::string list(const std::vector<std::string_view>& words) {
   return text.empty() ? "none" : text;
 }
 
-// Line and column of the character before `position`, counted from 1.
+// Returns line and column of the character before `position`, counted from 1.
 std::string place_in(const std::string& text, std::size_t position) {
   const std::size_t end = std::min(position, text.size());
   const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n') + 1;
@@ -34,7 +34,7 @@ std::string place_in(const std::string& text, std::size_t position) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-// Builds the value from the parser's events, which is where a duplicate key and the depth can be seen.
+// Builds the value from the parser's events, in which a duplicate key and the depth are visible.
 class Builder : public nlohmann::json_sax<Json> {
  public:
   Builder(const std::string& text, Json& root, JsonProblems& problems)
@@ -179,12 +179,12 @@ void JsonProblems::throw_if_any_or_unknown() const {
 }
 
 bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
-  // The parser takes it for the end of the text, whatever stands behind it.
+  // The parser takes NUL for the end of the text, whatever follows it.
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
     problems.add({}, place_in(text, nul + 1) + ": a NUL, allowed in no JSON text");
     return false;
   }
-  // Which words the parser has for it depends on its version.
+  // The parser's message for an empty text depends on its version.
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     problems.add({}, "is empty, must be JSON");
     return false;

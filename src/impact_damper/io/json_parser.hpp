@@ -1,5 +1,5 @@
-// The first half of the strict reader (json_reader.hpp): from a text to its value, and the list of what was
-// found wrong on the way and later. No other file needs to know it.
+// The first half of the strict reader (json_reader.hpp): parses a text into its value, and collects the
+// problems found then and later. No other file needs this header.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace impact_damper {
 
-// What a document collects while it is read: problems, and which keys of its objects are known.
+// Collects, while a document is read, its problems and the known keys of its objects.
 class JsonProblems {
  public:
   explicit JsonProblems(const std::string& file);
@@ -23,7 +23,7 @@ class JsonProblems {
   void add(const std::string& pointer, std::string_view what);
   bool empty() const { return count_ == 0; }
 
-  // The index of the known keys of `object`.
+  // Returns the index of the known keys of `object`.
   std::size_t open(const std::string& pointer, const nlohmann::json& object);
   void know(std::size_t opened, std::string_view key) { opened_[opened].known.emplace(key); }
   void suggest(std::size_t opened, std::string_view key) { opened_[opened].suggested.emplace(key); }
@@ -46,13 +46,13 @@ class JsonProblems {
   std::map<const nlohmann::json*, std::size_t> index_;
 };
 
-// A key as a part of a JSON pointer.
+// Returns a key as a part of a JSON pointer.
 std::string json_token(std::string_view key);
 
-// Parses `text` into `root`. To `problems` go duplicate keys, of which the last one counts, and what ends the
-// reading, so that `root` holds a part only and false is returned: what is not JSON, nesting deeper than 64,
-// more than ten million values or a hundred thousand objects, arrays, keys and texts, which take far more
-// memory than they are long.
+// Parses `text` into `root`. Duplicate keys, of which the last one counts, are added to `problems`. So is
+// what ends the reading, after which `root` holds a part only and false is returned: what is not JSON,
+// nesting deeper than 64, more than ten million values or a hundred thousand objects, arrays, keys and texts,
+// which take far more memory than they are long.
 bool parse_json(const std::string& text, nlohmann::json& root, JsonProblems& problems);
 
 }  // namespace impact_damper

@@ -44,7 +44,7 @@ std::string described(const Json& value) {
   return "nothing";
 }
 
-// Each read_into says whether `value` is allowed, and only then writes the target.
+// Each read_into returns whether `value` is allowed, and only then writes the target.
 bool read_into(double& target, const Json& value, const NumberRange& range) {
   if (!value.is_number()) return false;
   const double number = value.get<double>();
@@ -65,7 +65,7 @@ bool read_into(std::optional<double>& target, const Json& value, const NumberRan
 }
 
 bool read_into(std::int64_t& target, const Json& value, const NumberRange& range) {
-  // Whatever is not negative is kept as unsigned by the parser, so the upper half must be rejected here.
+  // The parser stores non-negative numbers as unsigned, so the upper half must be rejected here.
   if (!value.is_number_integer()) return false;
   if (value.is_number_unsigned() &&
       value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
@@ -89,7 +89,7 @@ bool read_into(bool& target, const Json& value) {
   return true;
 }
 
-// What is allowed, in words, by the type of the target.
+// Returns a description of what is allowed, by the type of the target.
 std::string wanted(const double&, const NumberRange& range, const Json&) {
   return range.describe("a number");
 }
@@ -117,7 +117,7 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 bool is_alphanumeric(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
-// Every byte of UTF-8 but those that continue a character.
+// Whether a byte of UTF-8 begins a character, rather than continues one.
 bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }
 
 }  // namespace

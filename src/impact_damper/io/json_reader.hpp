@@ -11,8 +11,8 @@
 //   }
 //   document.finish();  // throws InputError with what was wrong, unknown keys included
 //
-// What is too long is rejected before it takes memory: the file by its kind, a text and an array by the rule
-// they are read with, all of a file together by the parser (json_parser.hpp).
+// A file, text or array that is too long is rejected before it takes memory: the file by its kind, a text and
+// an array by the rule they are read with, all of a file together by the parser (json_parser.hpp).
 //
 // A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
 // do not act on what was read before finish() has returned.
@@ -35,12 +35,13 @@
 
 namespace impact_damper {
 
-// The whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and InputError
-// if it is longer than its kind allows: before reading it where its size is known, else on reading so much.
+// Returns the whole content of a file. Throws IoError if `file` cannot be read (a directory cannot), and
+// InputError if it is longer than its kind allows: before reading if its size is known, else once that length
+// is read.
 std::string read_text(const std::filesystem::path& file);
 std::string read_text(const std::filesystem::path& file, const FileKind& kind);
 
-// Which texts are allowed: all are of one line, without control characters. Lengths are in characters.
+// A rule for texts: all are of one line, without control characters. Lengths are in characters.
 struct TextRule {
   std::size_t least = 0, most = 4000;
   bool is_name = false;  // ASCII letters, digits, '-', '_' and '.', the first of them a letter or digit
@@ -54,8 +55,8 @@ inline constexpr TextRule a_name{1, 64, true};  // of a scene, a claim, a file
 class JsonProblems;  // what a document collects while it is read
 
 // One object of a document; a handle, valid as long as the document. Asking for a key makes it known:
-// JsonDocument::finish() reports the keys nobody asked for. An object that was itself missing or of the
-// wrong type reads as empty and reports nothing further.
+// JsonDocument::finish() reports the other keys. An object that was itself missing or of the wrong type reads
+// as empty and reports nothing further.
 class ObjectReader {
  public:
   // Reads the field `key` into `target`, which keeps its default if the key is missing. Integers are
@@ -69,16 +70,16 @@ class ObjectReader {
   bool optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
   bool optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
   bool optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
-  // At most `most` texts, no two of them equal.
+  // Reads at most `most` texts, no two of them equal.
   bool optional(std::string_view key, std::vector<std::string>& target, TextRule rule, std::size_t most);
 
-  // The same for each of these types, a missing key being a problem (and false).
+  // Reads the field likewise, a missing key being a problem (and false).
   template <typename Target, typename... Range>
   bool required(std::string_view key, Target& target, Range... range) {
     return require(key) && optional(key, target, range...);
   }
 
-  // One of the words name_of(value) gives for the `allowed` values.
+  // Reads one of the words name_of(value) gives for the `allowed` values.
   template <Enumeration Enum>
   bool optional(std::string_view key, Enum& target, std::initializer_list<Enum> allowed = all_of<Enum>) {
     const std::optional<std::size_t> index = word(key, words_of(allowed));
@@ -89,29 +90,29 @@ class ObjectReader {
   bool required(std::string_view key, Enum& target, std::initializer_list<Enum> allowed) {
     return require(key) && optional(key, target, allowed);
   }
-  // The same for plain words: the index in `words` of the word given; absent if missing or wrong.
+  // Returns the index in `words` of the word given; absent if missing or wrong.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
-  // The same of each element of an array. False if it is no array of such words. If the key is missing
-  // `target` becomes empty, and the result is true.
+  // Reads such an index for each element of an array. False if it is no array of such words. If the key is
+  // missing `target` becomes empty, and the result is true.
   bool words(std::string_view key, const std::vector<std::string_view>& words,
              std::vector<std::size_t>& target);
 
-  // Objects within. An optional one that is missing (or null) is absent.
+  // Return objects within this one. An optional one that is missing (or null) is absent.
   ObjectReader required_object(std::string_view key);
   std::optional<ObjectReader> optional_object(std::string_view key);
-  // The elements of an array of `least` to `most` objects.
+  // Return the elements of an array of `least` to `most` objects.
   std::vector<ObjectReader> required_objects(std::string_view key, std::size_t most, std::size_t least = 0) {
     return require(key) ? optional_objects(key, most, least) : std::vector<ObjectReader>{};
   }
   std::vector<ObjectReader> optional_objects(std::string_view key, std::size_t most, std::size_t least = 0);
-  bool is_object() const { return object_ != nullptr; }  // false: what is wrong has been said
+  bool is_object() const { return object_ != nullptr; }  // false: the problem has been reported
 
-  // Every key that is there, sorted, and known from now on: for objects whose keys are data.
+  // Returns every key that is there, sorted, and makes them known: for objects whose keys are data.
   std::vector<std::string> keys();
   bool has(std::string_view key);          // makes it known
   bool holds(std::string_view key) const;  // the same, but leaves it unknown: for the kind of an object
 
-  // A key that is not known, but that another may be meant by: an object of a related kind has it.
+  // Suggests a key that unknown keys may mean, without making it known: an object of a related kind has it.
   void suggest(std::string_view key);
 
   // Reports `what` about the field `key` (or, with "", about the object itself), in words that say what
@@ -119,7 +120,7 @@ class ObjectReader {
   void reject(std::string_view key, std::string_view what);
   void reject(std::string_view key, std::size_t element, std::string_view what);  // of the array `key`
   void reject(const Problem& problem);  // its field may lie deeper: "dampers[2].clearance"
-  // Nothing of the whole document has been reported yet: what was read may be looked at together.
+  // Whether no problem of the whole document has been reported yet, so that values may be checked together.
   bool all_valid() const;
   // Reports the field as missing unless it is there. True if it is there.
   bool require(std::string_view key);
@@ -143,11 +144,11 @@ class ObjectReader {
 
 class JsonDocument {
  public:
-  // Reads and parses `file`. Throws IoError if it cannot be read, InputError for what cannot be gone on with:
-  // a file longer than its kind allows, what is not JSON (with line and column), text behind the value, too
-  // much of it. A duplicate key is a problem among the others.
+  // Reads and parses `file`. Throws IoError if it cannot be read, InputError if reading cannot continue: a
+  // file longer than its kind allows, what is not JSON (with line and column), text after the value, too much
+  // of it. A duplicate key is a problem among the others.
   static JsonDocument read(const std::filesystem::path& file, const FileKind& kind);
-  // The same for a text in memory; `name` stands for the file in messages.
+  // Parses a text in memory, likewise; `name` stands for the file in messages.
   static JsonDocument parse(const std::string& name, const std::string& text);
 
   ObjectReader root();  // reported unless it is an object

@@ -1,5 +1,6 @@
-// JSON as text, the one way out. It is written directly: a run may hold a million numbers, and the order and
-// the lines of the keys are part of the formats. Numbers read back with the same bits (number_text.hpp).
+// Writes JSON as text; the only writer of the project. It is written directly: a run may hold a million
+// numbers, and the order and the lines of the keys are part of the formats. Numbers read back with the same
+// bits (number_text.hpp).
 #pragma once
 
 #include <cmath>
@@ -18,10 +19,10 @@ namespace impact_damper {
 
 class JsonWriter {
  public:
-  // What an object or array holds stands on lines of its own or all on one.
+  // Whether the elements of an object or array are on lines of their own or all on one.
   enum class Layout { lines, one_line };
 
-  explicit JsonWriter(std::string_view of) : of_(of) {}  // of what, for messages
+  explicit JsonWriter(std::string_view of) : of_(of) {}  // of: what is written, for messages
 
   void open_object(Layout layout) {  // as an element of an array, or as the whole
     separate();
@@ -42,15 +43,15 @@ class JsonWriter {
     text_ += level.end;
   }
   Layout layout() const { return levels_.back().layout; }  // of the object or array that is open
-  void new_line() { breaks_ = true; }  // on which the next field stands, whatever the layout
+  void new_line() { breaks_ = true; }                      // for the next field, whatever the layout
 
-  // Throws NumericalError, naming the field, if a number is not finite: JSON has none.
+  // Writes a field. Throws NumericalError, naming it, if a number is not finite: JSON has none.
   template <typename Value>
   void field(std::string_view name, const Value& given) {
     key(name);
     value(given);
   }
-  // Numbers close together, texts with blanks between.
+  // Writes an array: numbers without blanks, texts with blanks between.
   template <typename Element>
   void field(std::string_view name, const std::vector<Element>& elements) {
     key(name);
@@ -62,13 +63,13 @@ class JsonWriter {
     text_ += ']';
   }
 
-  // The same for names and values in turn.
+  // Writes fields from names and values in alternation.
   template <typename Value, typename... More>
   void fields(std::string_view name, const Value& given, const More&... more) {
     field(name, given);
     if constexpr (sizeof...(more) > 0) fields(more...);
   }
-  // A whole object of such.
+  // Writes a whole object of such fields.
   template <typename... NamesAndValues>
   void object(std::string_view name, Layout layout, const NamesAndValues&... given) {
     open_object(name, layout);

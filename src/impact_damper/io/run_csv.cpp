@@ -9,7 +9,7 @@
 namespace impact_damper {
 namespace {
 
-// What a column measures: its suffix in SI, and the unit it is multiplied by.
+// Quantity of a column: its suffix in SI, and the unit it is multiplied by.
 struct Quantity {
   std::string_view suffix;
   double SiUnits::*unit;  // null: a count or an angle, the same in SI

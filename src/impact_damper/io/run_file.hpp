@@ -5,11 +5,11 @@
 // all bytes before that field, so a run that was altered, cut or put under another scene is recognised.
 // Numbers read back with the same bits; each column stands on a line of its own; a section that was not
 // recorded is not there. Columns are dimensionless; a run of a scene in units has an object "units" before
-// them, which says what one unit of each quantity is in SI (si_units).
+// them, the SI value of one unit of each quantity (si_units).
 //
 // Where the scene has a list of dampers, impacts and contacts have a column "damper", the number of the
 // damper from 1, and half cycles, history and energy an array "dampers" with an object for each: its
-// "impacts" in each half cycle, its "y" and "w", the fields of DamperEnergy. A reader that is not told
+// "impacts" in each half cycle, its "y" and "w", the fields of DamperEnergy. A reader without
 // DamperList::allowed rejects such a run.
 #pragma once
 
@@ -35,33 +35,33 @@ inline constexpr FileKind run_kind{"run", std::size_t{1} << 27};
 
 // A file ends with seal_begin, the digest in 64 hexadecimal digits, seal_end.
 inline constexpr std::string_view seal_begin = R"(, "sha256": ")", seal_end = "\"}\n}\n";
-// `text`, a run file up to where the digest begins, with that end.
+// Returns `text`, a run file up to where the digest begins, with that end.
 std::string sealed(std::string text);
 
-// The run as the text of its file, with "units" if `scales` are given, those of a scene in units. Throws
-// NumericalError, with the name of the column, if a number is not finite: JSON cannot hold it, and no correct
-// result has one.
+// Returns the run as the text of its file, with "units" if `scales` are given, those of a scene in units.
+// Throws NumericalError, with the name of the column, if a number is not finite: JSON cannot hold it, and no
+// correct result has one.
 std::string run_text(const Run& run, const std::optional<Scales>& scales = {});
 
-// One recorded section of a run as CSV (RFC 4180, lines end with LF), its columns under their names in the
-// run file: the first of half_cycles, impacts, contacts and history that the run has. Those of several
-// dampers have the damper's number behind the name: "impacts_1", "y_2_m". With `units` they are in SI, and
-// the names say so: "time_s", "amplitude_m", "v_m_per_s". An absent number is an empty cell. Throws as
-// run_text() does; std::invalid_argument if the run has none of these sections.
+// Returns one recorded section of a run as CSV (RFC 4180, lines end with LF), its columns under their names
+// in the run file: the first of half_cycles, impacts, contacts and history that the run has. Names of columns
+// of several dampers end in the damper's number: "impacts_1", "y_2_m". With `units` they are in SI, as the
+// names show: "time_s", "amplitude_m", "v_m_per_s". An absent number is an empty cell. Throws what run_text()
+// throws; std::invalid_argument if the run has none of these sections.
 std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 
-// The run in a file or a text. The check is strict: every key is known and none missing, the columns of a
-// section are equally long, times ascend, sums are equal to their parts, units agree with each other, and the
-// digest is that of the content. What is returned is dimensionless; "units" is for other programs. Throws
+// Reads a run from a file or a text. The check is strict: every key is known and none missing, the columns of
+// a section are equally long, times ascend, sums are equal to their parts, units agree with each other, and
+// the digest is that of the content. The result is dimensionless; "units" is for other programs. Throws
 // IoError if `file` cannot be read, InputError, with a line for each of the first 50 problems; these lines
 // begin with the name of the file, or with `name`.
 Run read_run(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
 Run parse_run(const std::string& name, const std::string& text, DamperList dampers = DamperList::rejected);
 
-// The engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given; other
-// options have their defaults. Throws InputError as above.
+// Reads the engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given;
+// other options have their defaults. Throws InputError as above.
 Engine parse_engine(const std::string& name, const std::string& text);
-// The same from an object of a document, which collects the problems; absent if there are any.
+// Reads an engine from an object of a document, which collects the problems; absent if there are any.
 std::optional<Engine> read_engine(ObjectReader& object);
 
 }  // namespace impact_damper

@@ -16,11 +16,11 @@
 namespace impact_damper {
 namespace {
 
-// The columns of one section: reads each, and holds its length against that of the first.
+// Reads the columns of one section, and compares the length of each with that of the first.
 class Columns {
  public:
   explicit Columns(ObjectReader& object) : object_(object) {}
-  // Of an object in the section, as long as `section`.
+  // For an object in the section, whose columns are as long as those of `section`.
   Columns(ObjectReader& object, const Columns& section) : object_(object), length_(section.length_) {}
 
   template <typename Element>
@@ -40,7 +40,7 @@ class Columns {
     return is_read;
   }
 
-  // Numbers of so many dampers, from 1.
+  // Reads the numbers of dampers, from 1 to `dampers`.
   bool read_damper(std::vector<std::int32_t>& column, std::size_t dampers) {
     if (dampers == 0) return true;
     std::vector<std::int64_t> numbers;
@@ -65,12 +65,13 @@ class Columns {
   std::optional<std::size_t> length_;
 };
 
-// Whether an engine may lack an option that every run file has, and then keeps its default: a run file may
-// not; a response file has null for what follows from each of its runs; elsewhere any may be missing, in a
-// plan any that follows from the scene may also be null, as the file beside a sweep's table has it.
+// Whether an engine may lack an option, which then keeps its default. A run file must have all of them. A
+// response file has null for what follows from each of its runs. Elsewhere any may be missing. In a plan any
+// that follows from the scene may also be null, as in the file beside a sweep's table.
 enum class Lacking { nothing, null, any, any_or_null };
 
-// False, having said so, unless there is a value that is allowed, or none where none is needed.
+// Reads an option. False, after reporting it, unless the value is allowed, or none is there and none is
+// needed.
 template <class Value>
 bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking, Value& value) {
   const bool may_be_missing =
@@ -96,7 +97,7 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
   }
 }
 
-// Absent if any of it is not valid.
+// Reads an engine; absent if any of it is not valid.
 std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
   if (!object.require("name")) return std::nullopt;
   const std::optional<std::size_t> name = object.word("name", engine_names());
@@ -113,7 +114,7 @@ std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
   return engine;
 }
 
-// The objects of a section for each damper of a scene with several.
+// Returns the objects of a section for each damper of a scene with several.
 std::vector<ObjectReader> read_dampers(ObjectReader& object, std::size_t dampers) {
   if (dampers == 0) return {};
   std::vector<ObjectReader> objects = object.required_objects("dampers", most_dampers);
@@ -166,7 +167,7 @@ Contacts read_contacts(ObjectReader object, std::size_t dampers) {
   return contacts;
 }
 
-// A sum that the file states beside its parts.
+// Checks a sum that the file states beside its parts.
 void check_sum(ObjectReader& object, std::string_view name, double sum) {
   double given = 0;
   if (object.required(name, given) && given != sum) {
@@ -225,7 +226,7 @@ History read_history(ObjectReader object, std::size_t dampers) {
   return history;
 }
 
-// What the engine would reject of the scene: a run of it cannot have been.
+// Reports what the engine would reject of the scene: no run of it can exist.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   if (!problems_of(run.scene, DamperList::allowed).empty()) return;
   for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
@@ -322,14 +323,14 @@ bool is_sealed(std::string_view text) {
 }
 
 void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed) {
-  ObjectReader made_by = root.required_object("provenance");  // who made the file, not what is in it
+  ObjectReader made_by = root.required_object("provenance");  // about the maker of the file, not its content
   for (const std::string& key : made_by.keys()) {
     std::string any;
     made_by.optional(key, any);
   }
   made_by.require("sha256");
   document.finish();
-  if (!sealed) {  // says nothing new beside other problems
+  if (!sealed) {  // adds nothing to other problems
     made_by.reject(
         "sha256",
         "must be the digest of the content, got another one: the file was altered or laid out anew "

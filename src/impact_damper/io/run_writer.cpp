@@ -27,7 +27,7 @@ std::vector<std::int64_t> from_one(const std::vector<std::int32_t>& dampers) {
   return numbers;
 }
 
-// What a section has of each of several dampers.
+// Writes what a section has for each of several dampers.
 template <class Of, class Write>
 void write_dampers(JsonWriter& out, const std::vector<Of>& dampers, const Write& write_fields) {
   if (dampers.empty()) return;
@@ -146,7 +146,7 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   out.field("end_time", run.end_time);
   if (scales) write_units(out, si_units_of(*scales));
   if (run.half_cycles) write(out, *run.half_cycles);
-  const bool several = !run.scene.dampers.empty();  // a column of no rows does not tell
+  const bool several = !run.scene.dampers.empty();  // a column without rows does not show it
   if (run.impacts) write(out, *run.impacts, several);
   if (run.contacts) write(out, *run.contacts, several);
   if (run.energy) write(out, *run.energy);

@@ -34,7 +34,7 @@ GivenKeys given_keys(const ObjectReader& object) {
   return given;
 }
 
-// A list where one damper is wanted is all that is said of an object.
+// Whether a list of dampers is rejected because one damper is required; it is then the only problem reported.
 bool rejects_dampers(ObjectReader& object, DamperList dampers) {
   if (dampers == DamperList::allowed || !object.holds("dampers")) return false;
   object.keys();
@@ -50,7 +50,7 @@ SceneInUnits read_unit_fields(ObjectReader& object) {
   const auto read = [&](ObjectReader& from, std::string_view key, const std::string& field,
                         std::optional<double>& target) {
     if (!from.has(key)) return;
-    // What cannot be read is neither missing nor a number that something can be made of.
+    // A field that cannot be read is neither missing nor usable.
     double value = std::numeric_limits<double>::quiet_NaN();
     if (!from.optional(key, value)) unreadable.push_back(field);
     target = value;
@@ -65,7 +65,7 @@ SceneInUnits read_unit_fields(ObjectReader& object) {
       if (!damper.is_object()) unreadable.push_back(damper_field(i, field.name));
     }
   }
-  if (object.holds("dampers") && scene.dampers.empty()) {  // what is wrong with it has been said
+  if (object.holds("dampers") && scene.dampers.empty()) {  // its problems have been reported
     scene.dampers.emplace_back();
     for (const DamperUnitField& field : damper_unit_fields) unreadable.push_back(damper_field(0, field.name));
   }
@@ -81,7 +81,7 @@ SceneFile read_whole(JsonDocument document, DamperList dampers) {
   return file;
 }
 
-// A run given for a scene would be a list of problems, or too long.
+// Rejects a run given for a scene, which would be a list of problems, or too long.
 void reject_run(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return;  // a pipe is read once

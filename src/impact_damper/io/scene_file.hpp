@@ -13,11 +13,11 @@
 // file may have at most 1 MiB (scene_kind); a text given to parse_scene() may be longer.
 //
 // Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or
-// damper_unit_fields, in place of what the scene itself would say of its one damper:
+// damper_unit_fields, in place of the scene's own fields for one damper:
 //
 //   {"dampers": [{"mass_ratio": 0.02}, {"mass_ratio": 0.01, "clearance": 0.3}], "until_time": 100}
 //
-// A reader that is not told DamperList::allowed rejects them.
+// A reader without DamperList::allowed rejects them.
 #pragma once
 
 #include <filesystem>
@@ -33,22 +33,22 @@ namespace impact_damper {
 class ObjectReader;  // json_reader.hpp
 class JsonWriter;    // json_writer.hpp
 
-// Most for most_dampers, each number with all its digits.
+// Enough for most_dampers, each number with all its digits.
 inline constexpr FileKind scene_kind{"scene", 1 << 20};
 
 struct SceneFile {
   Scene scene;                   // dimensionless, also of a scene in units
   std::optional<Scales> scales;  // of a scene in units
   std::string description;
-  std::optional<SceneInUnits> in_units;  // as it was given, if it was given so
+  std::optional<SceneInUnits> in_units;  // the given values, if they were in units
 };
 
-// Throws IoError if `file` cannot be read, InputError, with a line for each of the first 50 problems in it.
-// These lines begin with the name of the file, or with `name`.
+// Reads a scene. Throws IoError if `file` cannot be read, InputError, with a line for each of the first 50
+// problems in it. These lines begin with the name of the file, or with `name`.
 SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
 SceneFile parse_scene_file(const std::string& name, const std::string& text,
                            DamperList dampers = DamperList::rejected);
-// Its scene alone.
+// Return its scene alone.
 Scene read_scene(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
 Scene parse_scene(const std::string& name, const std::string& text,
                   DamperList dampers = DamperList::rejected);
@@ -59,18 +59,16 @@ Scene parse_scene(const std::string& name, const std::string& text,
 enum class MissingFields { have_defaults, are_problems };
 Scene read_scene_fields(ObjectReader& object, DamperList dampers = DamperList::rejected,
                         MissingFields missing = MissingFields::have_defaults);
-// The same of a whole scene, dimensionless or in units. Where there are problems, what is returned is not to
-// be used.
+// Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used.
 SceneFile read_scene_object(ObjectReader& object, DamperList dampers = DamperList::rejected);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
-// The same without the stops.
+// Writes the fields without the stops.
 void write_scene_numbers(JsonWriter& out, const Scene& scene);
-void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that it has
+void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that are given
 
-// The scene as JSON on one line, every field in the order of Scene, absent stops as null, several dampers in
-// place of the fields of one. It reads back as an equal scene, if the numbers of one damper were not changed
-// beside a list.
-// Throws NumericalError if a number is not finite.
+// Returns the scene as JSON on one line, every field in the order of Scene, absent stops as null, several
+// dampers in place of the fields of one. It reads back as an equal scene, if the numbers of one damper were
+// not changed beside a list. Throws NumericalError if a number is not finite.
 std::string scene_text(const Scene& scene);
 
 }  // namespace impact_damper

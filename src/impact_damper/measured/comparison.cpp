@@ -16,7 +16,7 @@ namespace {
 
 using Layout = JsonWriter::Layout;
 
-// Of the rows given; amplitudes as they are, times in units of the rows' own 1/omega.
+// Returns (M12.1) of the rows; amplitudes and times keep their units, `omega` is in radians per unit of time.
 LossFactor loss_of(HalfCycles rows, double omega) {
   for (double& each : rows.peak_time) each *= omega;
   LossFactor loss = local_loss_factor(rows, 0, rows.amplitude.size());
@@ -41,7 +41,7 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
     for (std::size_t k = 0; k < of_bins.size(); ++k) losses[k].push_back(of_bins[k]);
     for (double& each : rows.peak_time) each *= time_unit;
     for (double& each : rows.amplitude) each *= length;
-    // From where the record's first peak would be.
+    // Times begin where the record's first peak would be.
     const double top = logarithm(reduction.amplitude.front());
     std::size_t begin = 1;
     while (begin < rows.amplitude.size() && rows.amplitude[begin] > reduction.amplitude.front()) ++begin;

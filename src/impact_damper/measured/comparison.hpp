@@ -1,4 +1,5 @@
-// A measured decay beside the simulation of a scene: what `impact-damper compare` finds, and its JSON.
+// A measured decay compared with the simulation of a scene: the result of `impact-damper compare`, and its
+// JSON.
 #pragma once
 
 #include <functional>
@@ -13,7 +14,7 @@
 
 namespace impact_damper {
 
-// Decays of one scene that differ in where the secondary mass begins.
+// Decays of one scene that differ in the initial position of the secondary mass.
 struct SimulatedDecays {
   SceneInUnits scene;
   std::vector<HalfCycles> decays;  // times in s, from the record's first peak on, amplitudes in mm
@@ -31,9 +32,9 @@ struct Comparison {
   SimulatedDecays given;                  // of the scene
   std::optional<SimulatedDecays> fitted;  // of the scene with the best numbers
   std::optional<DecayFit> fit;
-  // Between these lies the frequency of the scene: secondary mass carried along, and not.
+  // The frequency of the scene lies between these: with the secondary mass carried along, and without.
   double lowest_frequency = 0, highest_frequency = 0;  // Hz
-  std::vector<std::string> remarks;  // what the record does not tell, or contradicts: a sentence each
+  std::vector<std::string> remarks;  // a sentence each: what the record does not show, or contradicts
 };
 
 struct ComparisonOptions {
@@ -41,9 +42,9 @@ struct ComparisonOptions {
   std::int64_t releases = 8;  // >= 1
 };
 
-// `scene` must be valid, without a force and with one damper, not a list, `record` as it was read from
-// `record_name`, and `tell` not empty. Throws InputError as reduced() does, InvalidArguments for a list of
-// dampers and for options out of range.
+// Compares a record with simulations of a scene. `scene` must be valid, without a force and with one damper,
+// not a list, `record` as it was read from `record_name`, and `tell` not empty. Throws InputError as
+// reduced() does, InvalidArguments for a list of dampers and for options out of range.
 Comparison compared(const std::string& record_name, const MeasuredRecord& record,
                     const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
                     const ComparisonOptions& options, const std::function<void(const std::string&)>& tell);

@@ -19,7 +19,8 @@ namespace {
 using Vector = std::vector<double>;
 using Matrix = std::vector<Vector>;
 
-// Slope of a straight line fitted by least squares, and what its variance is made of.
+// Straight line fitted by least squares; the variance of its slope follows from `squares`, the sum of (x -
+// mean_x)^2.
 struct Line {
   double slope = 0, mean_x = 0, mean_y = 0, squares = 0;
   double at(double x) const { return mean_y + slope * (x - mean_x); }
@@ -41,8 +42,8 @@ Line line_through(std::span<const double> x, std::span<const double> y) {
 
 // --- The searched range -----------------------------------------------------------------------------------
 
-// Each parameter has a coordinate in which the loss factor is nearly a polynomial: ln(1 - e), zeta, ln
-// epsilon, ln m. The search moves in parts of its range, from 0 to 1.
+// Searched range of a parameter in a coordinate of which the loss factor is nearly a polynomial: ln(1 - e),
+// zeta, ln epsilon or ln m. value() returns the parameter at a fraction of the range, from 0 to 1.
 struct Axis {
   FitParameter parameter = FitParameter::restitution;
   double from = 0, to = 1;  // coordinates of the ends
@@ -63,7 +64,7 @@ struct Axis {
 
 Axis searched_axis(FitParameter parameter, const SceneInUnits& scene, const std::vector<LossBin>& bins) {
   constexpr double least_restitution = 0.02, most_restitution = 0.95, clearance_factor = 3, mass_factor = 2;
-  constexpr double beyond = 1.5;  // the viscous loss alone is no larger than the whole
+  constexpr double beyond = 1.5;  // margin above the zeta whose viscous loss 2 zeta is the whole loss
   Axis axis{.parameter = parameter};
   const double about = logarithm(std::max(value_of(scene, parameter), std::numeric_limits<double>::min()));
   switch (parameter) {
@@ -91,7 +92,7 @@ struct Box {
 // --- Runs in a box ----------------------------------------------------------------------------------------
 
 struct Points {
-  Matrix place;  // of each run that has a loss factor in each bin, in parts of the axes
+  Matrix place;  // a row for each run with a loss factor in every bin, in fractions of the axes
   Matrix loss;   // ln eta of each bin
 };
 
@@ -104,11 +105,11 @@ class Search {
     for (const FitParameter each : options.parameters) axes.push_back(searched_axis(each, scene, bins));
   }
 
-  // `count` points of a Latin hypercube in the box for which `is_near` holds, or fewer if these are rare; one
-  // run at each.
+  // Simulates one decay at each of `wanted` points of a Latin hypercube in the box for which `is_near` holds,
+  // or at fewer if these are rare. Returns the runs that have a loss factor in every bin.
   template <class IsNear>
   Points points(const Box& box, std::int64_t wanted, const IsNear& is_near) {
-    constexpr std::int64_t most_candidates = 64;  // for each point
+    constexpr std::int64_t most_candidates = 64;  // for each wanted point
     const std::uint64_t seed = (options_.seed << 8) + std::uint64_t(++stage_);
     std::vector<Vector> places;
     const std::int64_t candidates = wanted * most_candidates;
@@ -158,7 +159,7 @@ class Search {
   int stage_ = 0;
 };
 
-// The box about the part `kept` of the points that are nearest to the record.
+// Returns the box about the fraction `kept` of the points that is nearest to the record, with a margin.
 Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const Box& box, double kept) {
   constexpr double usual_scatter = 0.1, margin = 0.15;
   std::vector<std::pair<double, std::size_t>> distances;
@@ -187,7 +188,7 @@ Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const
 
 // --- The loss factor as a polynomial ----------------------------------------------------------------------
 
-// The lower triangle L of m = L L^T; false if m is not positive definite.
+// Replaces the lower triangle of m by its Cholesky factor L, m = L L^T. False if m is not positive definite.
 bool factorise(Matrix& m) {
   for (std::size_t j = 0; j < m.size(); ++j) {
     for (std::size_t k = 0; k < j; ++k) m[j][j] -= m[j][k] * m[j][k];
@@ -206,17 +207,17 @@ void solve_lower(const Matrix& l, Vector& x) {
     x[i] /= l[i][i];
   }
 }
-void solve_upper(const Matrix& l, Vector& x) {  // L^T x
+void solve_upper(const Matrix& l, Vector& x) {  // replaces x by the solution of L^T z = x
   for (std::size_t i = x.size(); i-- > 0;) {
     for (std::size_t k = i + 1; k < x.size(); ++k) x[i] -= l[k][i] * x[k];
     x[i] /= l[i][i];
   }
 }
 
-// ln eta of each bin as a quadratic polynomial of the place in a box, and its covariance about that (M16.6).
+// Quadratic polynomial of ln eta of each bin over a box, and the covariance of the runs about it (M16.6).
 class Emulator {
  public:
-  // False if the runs are too few for it.
+  // Fits the polynomial. False if it has fewer than least_runs for each coefficient or a singular matrix.
   bool fit(const Points& points, const Box& box, const std::vector<LossBin>& bins) {
     box_ = box;
     const std::size_t count = points.place.size(), terms = terms_of(Vector(box.low.size(), 0.0)).size();
@@ -275,7 +276,7 @@ class Emulator {
  private:
   static constexpr std::size_t least_runs = 5;  // for each coefficient
 
-  Vector within_box(const Vector& place) const {  // -1 to 1
+  Vector within_box(const Vector& place) const {  // z: from -1 to 1
     Vector z(place.size());
     for (std::size_t j = 0; j < place.size(); ++j)
       z[j] = 2 * (place[j] - box_.low[j]) / (box_.high[j] - box_.low[j]) - 1;
@@ -291,7 +292,7 @@ class Emulator {
   }
 
   Box box_;
-  Matrix coefficients_, covariance_;  // the latter as its factor L
+  Matrix coefficients_, covariance_;  // covariance_ as its Cholesky factor L
   Vector observed_;
 };
 
@@ -300,7 +301,7 @@ class Emulator {
 struct Profiles {
   double least = std::numeric_limits<double>::infinity();
   Vector best;
-  Matrix of;  // of each axis: the least chi square at each of its nodes
+  Matrix of;  // for each axis: least chi square at each of its nodes
   Matrix correlation;
 };
 
@@ -308,7 +309,8 @@ double node_of(const Box& box, std::size_t axis, std::size_t node, std::size_t n
   return box.low[axis] + (box.high[axis] - box.low[axis]) * double(node) / double(nodes - 1);
 }
 
-// Where `is_near` does not hold chi square counts as infinite: the polynomial knows nothing of there.
+// Computes chi square on a grid over the box and returns its minimum, its profile along each axis and the
+// correlations. Where `is_near` does not hold, no run was simulated and chi square counts as infinite.
 template <class IsNear>
 Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes, const IsNear& is_near) {
   const std::size_t axes = box.low.size();
@@ -357,9 +359,9 @@ Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes
   return profiles;
 }
 
-// Where a profile is at most `level` above the least value: between nodes by a straight line.
+// Outermost points at which a profile is at most `limit`, by linear interpolation between nodes.
 struct Interval {
-  double low = 0, high = 1;  // in parts of the box
+  double low = 0, high = 1;  // in fractions of the box
   bool reaches_low = false, reaches_high = false;
 };
 Interval interval_of(const Vector& profile, double limit) {
@@ -377,8 +379,8 @@ Interval interval_of(const Vector& profile, double limit) {
   return interval;
 }
 
-// The box in which no profile is more than `limit`, a node wider; and whether it is the whole of `box`
-// somewhere inside the searched range: then it was chosen too small.
+// Box in which every profile is at most `limit`, wider by a margin. was_too_small: a profile is at most
+// `limit` at an end of `box` inside the searched range; the new box then extends beyond that end.
 struct Narrowed {
   Box box;
   bool was_too_small = false;
@@ -408,9 +410,9 @@ Box half_about(const Vector& place, const Box& box) {
   return half;
 }
 
-// Whether the scatter is less in most bins, by more than chance.
+// Whether the scatter is less than `than` in most bins, by more than chance.
 bool is_less(const Vector& scatter, const Vector& than) {
-  constexpr double clearly = 0.8;  // of the scatter of some hundred runs a few percent are chance
+  constexpr double clearly = 0.8;  // the scatter estimated from some hundred runs errs by a few percent
   std::size_t less = 0;
   for (std::size_t k = 0; k < scatter.size(); ++k) less += scatter[k] < clearly * than[k] ? 1 : 0;
   return 2 * less > scatter.size();
@@ -427,8 +429,8 @@ std::size_t nodes_for(std::size_t axes) {
 
 namespace {
 
-// The rows of each bin: from the first one at or below its upper end on, those before the first one below its
-// lower end.
+// Returns the rows of each bin: from the first at or below its upper end to the last before the first below
+// its lower end.
 struct RowRange {
   std::size_t first = 0, end = 0;
 };
@@ -468,7 +470,7 @@ double log_loss_error(const Reduction& reduction, const Line& line, const RowRan
 std::vector<LossBin> loss_bins(const Reduction& reduction) {
   constexpr std::size_t least_rows = 8;
   constexpr std::int64_t longest_gap = 3;                             // half cycles
-  constexpr double usual_ratio = 0.25, most_bins = 16, few_bins = 8;  // of the logarithm of the amplitude
+  constexpr double usual_ratio = 0.25, most_bins = 16, few_bins = 8;  // usual_ratio: of ln A
   constexpr double good_error = 0.1, worst_error = 0.3;
   const Vector logarithms = logarithms_of(reduction.amplitude, 1);
   const double whole = logarithms.front() - logarithms.back();
@@ -478,7 +480,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
     return line_through(std::span(reduction.time).subspan(rows.first, rows.end - rows.first),
                         std::span(logarithms).subspan(rows.first, rows.end - rows.first));
   };
-  // Ends lie halfway between rows, so that the same decay has the same rows in each bin.
+  // Bins end halfway between rows, so that the same decay has the same rows in each bin.
   const auto end_before = [&](std::size_t row) {
     if (row == 0) return reduction.amplitude[0];
     if (row == logarithms.size()) return reduction.amplitude.back();
@@ -493,7 +495,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
       const Line line = line_of(rows);
       const double error = log_loss_error(reduction, line, rows);
       LossBin bin{end_before(first), end_before(next)};
-      // A gap is in no bin.
+      // No bin contains a gap.
       if (first > 0 && reduction.half_cycle[first] - reduction.half_cycle[first - 1] > longest_gap)
         bin.upper = reduction.amplitude[first];
       if (ends) bin.lower = reduction.amplitude[next - 1];
@@ -507,7 +509,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
     }
     if (ends) first = next;
   }
-  // The loss by the rule that simulated decays have, too.
+  // The loss factor of a bin follows by the same rule as that of a simulated decay.
   const std::vector<RowRange> ranges = rows_of_bins(logarithms, bins);
   std::vector<LossBin> valid;
   RowRange all;  // of the valid bins
@@ -520,7 +522,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
     bin.error = log_loss_error(reduction, line, ranges[k]);
     bin.half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
     if (!(bin.loss > 0 && bin.error < worst_error)) continue;
-    // Behind impact failure single impacts decide: no scatter about a mean tells that.
+    // After impact failure single impacts decide the loss. Scatter about a mean does not describe that.
     constexpr double failed = 0.5;  // of the largest loss factor
     if (bin.loss < failed * largest) break;
     largest = std::max(largest, bin.loss);
@@ -529,7 +531,7 @@ std::vector<LossBin> loss_bins(const Reduction& reduction) {
     valid.push_back(bin);
   }
   if (valid.empty()) return valid;
-  // The frequency rises where impacts fail: that of the bins, not of the record (M16.5).
+  // The mean frequency is that of the bins, not of the record, because it rises where impacts fail (M16.5).
   const double omega = half_turn<double>() *
                        double(reduction.half_cycle[all.end - 1] - reduction.half_cycle[all.first]) /
                        (reduction.time[all.end - 1] - reduction.time[all.first]);
@@ -543,7 +545,7 @@ std::vector<double> log_losses(const HalfCycles& rows, double length, const std:
   Vector losses;
   const std::vector<RowRange> ranges = rows_of_bins(logarithms, bins);
   for (auto [first, end] : ranges) {
-    if (end < first + least_rows) {  // damped so strongly: the rows about the bin tell it too
+    if (end < first + least_rows) {  // after strong damping: neighbouring rows are used, too
       first = first > 0 ? first - 1 : first;
       end = first + least_rows;
       if (end > logarithms.size()) break;
@@ -603,7 +605,7 @@ void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
 Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
                   std::int64_t draw) {
   constexpr double above = 1.1, below = 0.97, longer = 3;
-  constexpr std::uint32_t place_in_cavity = 100;  // the number of a draw that no axis has
+  constexpr std::uint32_t place_in_cavity = 100;  // a number that no axis has in a draw
   SceneInUnits released = scene;
   released.initial_displacement = above * reduction.amplitude.front();
   released.initial_velocity.reset();
@@ -646,15 +648,16 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
   Search search(scene, engine, reduction, bins, options, tell);
   Box box{Vector(count, 0.0), Vector(count, 1.0)};
-  // While the range is wide no polynomial follows the loss factor: the nearest runs tell where to look.
+  // While the range is wide, no polynomial follows the loss factor. The box shrinks to the nearest runs
+  // instead.
   constexpr int coarse_stages = 3, most_stages = 9;
-  constexpr double kept = 0.1, generous = 16;  // of chi square: four standard deviations
+  constexpr double kept = 0.1, generous = 16;  // chi square above its least: four standard deviations
   for (int stage = 0; stage < coarse_stages; ++stage) {
     const Points points = search.points(box, options.runs, [](const Vector&) { return true; });
     if (double(points.loss.size()) * kept < double(4 * count)) return none;
     box = box_of_nearest(points, bins, box, kept);
   }
-  // The polynomial of the stage before tells which points of the box matter.
+  // The polynomial of the previous stage decides at which points of the box decays are simulated.
   Emulator emulator, before;
   Profiles profiles;
   std::optional<double> limit;
@@ -664,8 +667,8 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     profiles = profiles_of(emulator, box, nodes, is_near);
     return !profiles.best.empty();
   };
-  // Scatter that the polynomial's own misfit adds to keeps the box from narrowing: if it is less about the
-  // best place, the search goes on there.
+  // The misfit of the polynomial counts as scatter and may keep the box from shrinking. The half of the box
+  // about the best point is then tried, and the search goes on there if the scatter is less.
   struct Stopped {
     Box box;
     Emulator before;

@@ -25,8 +25,8 @@ struct LossBin {
   double error = 0;             // standard error of ln eta by the noise of the record
   std::int64_t half_cycles = 0;
 };
-// In the order of time, up to where the loss factor is less than half of its largest value: impacts have
-// failed. Empty if the record holds too little.
+// Returns the bins of a record in the order of time. They end where the loss factor is less than half of the
+// largest before: impacts have failed there. Empty if no range of amplitudes has a known loss factor.
 std::vector<LossBin> loss_bins(const Reduction& reduction);
 
 // ln eta of each bin in a simulated decay, up to the first bin with no loss or for which the decay has too
@@ -39,18 +39,19 @@ std::string_view unit_of(FitParameter parameter);
 double value_of(const SceneInUnits& scene, FitParameter parameter);
 void set_value(SceneInUnits& scene, FitParameter parameter, double value);
 
-// A free decay of `scene` over the amplitudes of the record: released at rest from somewhat above them, the
-// secondary mass anywhere in its cavity, by `draw`; down to `until` mm.
+// Returns the dimensionless scene of a free decay through the amplitudes of the record: released at rest 10 %
+// above the first of them, followed to 3 % below `until` mm. `seed` and `draw` decide where in its cavity the
+// secondary mass is released.
 Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
                   std::int64_t draw);
 
 struct FitOptions {
-  // Different ones, at most 4; at least 1 for fit_decay().
+  // At most 4, without repetition; fit_decay() needs at least 1.
   std::vector<FitParameter> parameters{FitParameter::restitution, FitParameter::damping_ratio,
                                        FitParameter::clearance};
-  std::int64_t runs = 800;  // >= 1, of each stage; twice as many in the last
+  std::int64_t runs = 800;  // >= 1, in each stage; twice as many in the last
   std::uint64_t seed = 1;
-  double level = 2.705543;  // > 0, of (M16.8): intervals of 90 %
+  double level = 2.705543;  // > 0, limit in (M16.8); the default gives intervals of 90 %
   Threads threads;
 };
 
@@ -69,23 +70,26 @@ struct DecayFit {
   std::vector<double>
       scatter;                // standard deviation of ln eta between runs that differ in their release alone
   double chi_square = 0;      // least value of (M16.7)
-  std::int64_t degrees = 0;   // of freedom: bins less parameters
+  std::int64_t degrees = 0;   // degrees of freedom: bins minus parameters
   double normal_deviate = 0;  // of chi_square (M16.9)
   std::int64_t runs = 0;      // simulated in all
 };
-// A larger one of chi_square tells that no point of the searched range is like the record: one in a thousand.
+// Chance exceeds this normal deviate of chi_square once in a thousand. Above it no point of the searched
+// range is like the record.
 inline constexpr double most_normal_deviate = 3.09;
 
-// Why there is no fit stands in `problem`.
+// Without a fit `problem` says why.
 struct FitResult {
   std::optional<DecayFit> fit;
   std::string problem;
 };
-// What is wrong with the options, and with a scene that has a list of dampers; `parameters` may be empty.
+// Returns the problems of the options, and one for a scene with a list of dampers. An empty list of
+// parameters is not a problem here.
 std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options);
-// `tell`, which must not be empty, is told how far it is. The scene must be valid, without a force and with
-// one damper, not a list; bins of loss_bins(). No result depends on the number of threads. Throws
-// InvalidArguments for a list of dampers and for options out of range.
+// Fits the parameters to the record's loss factors (M16.7). The scene must be valid, without a force and with
+// one damper, not a list; `bins` are those of loss_bins(). `tell`, which must not be empty, receives messages
+// about the progress. No result depends on the number of threads. Throws InvalidArguments for a list of
+// dampers and for options out of range.
 FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
                     const std::vector<LossBin>& bins, const FitOptions& options,
                     const std::function<void(const std::string&)>& tell);

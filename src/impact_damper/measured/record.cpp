@@ -56,11 +56,11 @@ class Problems {
   std::size_t count_ = 0;
 };
 
-// One row after the other. A cell in double quotes may hold what ends a cell elsewhere.
+// Reads the rows of a CSV text one by one. A quoted cell may contain commas and ends of line.
 class Rows {
  public:
   explicit Rows(std::string_view text) : text_(text) {}
-  // The cells of the next row; false at the end. `line` is where the row begins, from 1.
+  // Reads the cells of the next row; false at the end. `line` is where the row begins, from 1.
   bool next(std::vector<std::string>& cells, std::size_t& line) {
     cells.clear();
     line = line_;

@@ -27,7 +27,7 @@ struct MeasuredRecord {
   MeasuredQuantity quantity = MeasuredQuantity::displacement;
   std::vector<double> time;      // s, strictly ascending
   std::vector<double> value;     // mm or mm/s^2
-  std::int64_t empty_cells = 0;  // rows that have no value, and no place in the columns
+  std::int64_t empty_cells = 0;  // rows without a value, which are left out of the columns
 };
 
 inline constexpr FileKind measured_kind{"measured record", std::size_t{1} << 26};

@@ -24,7 +24,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-// The median of five neighbours: a spike of an impact, or a wrong sample, is no extreme of it.
+// Returns the running median of five samples. A spike of an impact or a wrong sample is no extreme of it.
 std::vector<double> without_spikes(const std::vector<double>& value) {
   std::vector<double> smooth = value;
   for (std::size_t i = 2; i + 2 < value.size(); ++i) {
@@ -49,9 +49,9 @@ struct Extreme {
   bool is_maximum = false;
 };
 
-// Maxima and minima in turn. An extreme counts once the signal has come back from it by half of its distance
-// from the extreme before, and by more than `least`. Where it does not within the mean time between the last
-// few, as behind a gap, the search begins anew.
+// Returns maxima and minima in alternation. An extreme counts once the signal has returned from it by half of
+// its distance from the previous extreme, and by more than `least`. If it has not within the mean time
+// between the last few, as after a gap, the search begins anew.
 std::vector<Extreme> extremes_of(const std::vector<double>& time, const std::vector<double>& value,
                                  double least) {
   constexpr std::size_t few = 5;
@@ -94,12 +94,12 @@ std::vector<Extreme> extremes_of(const std::vector<double>& time, const std::vec
   return extremes;
 }
 
-// A sinusoid of the angular frequency `omega` about a level of its own, fitted near a peak (M16.1).
+// Sinusoid of given angular frequency about a free level, fitted near a peak (M16.1).
 struct PeakFit {
   double time = 0, value = 0;
   double curvature = 0;         // a: amplitude of the sinusoid, negative at a minimum
   double value_factor = 0;      // standard error of `value`, divided by that of a sample
-  double curvature_factor = 0;  // the same of `curvature`
+  double curvature_factor = 0;  // standard error of `curvature`, divided likewise
   double variance = 0;          // of the samples about the sinusoid
   bool is_covered = false, is_single = false;
 };
@@ -115,7 +115,7 @@ struct Solved {
     return sum;
   }
 };
-// m x = r by Gauss and Jordan; m symmetric, positive definite.
+// Solves m x = r by Gauss-Jordan elimination, m being symmetric. Absent if m is not positive definite.
 std::optional<Solved> solved(std::array<std::array<double, 3>, 3> m, std::array<double, 3> r) {
   std::array<std::array<double, 3>, 3> inverse{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -140,7 +140,7 @@ struct Samples {
 
 PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is_maximum,
                     const ReductionOptions& options, bool removes_outliers = true) {
-  constexpr int rounds = 5;  // the first ones move the centre to the peak
+  constexpr int rounds = 5;  // at most, to move the centre to the peak
   PeakFit peak;
   peak.time = centre;
   const double reach = options.half_window / omega, sign = is_maximum ? 1 : -1;
@@ -181,9 +181,9 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
         if (used[i]) sum += residual[i] * residual[i];
       }
       peak.variance = left > 3 ? sum / double(left - 3) : 0;
-      constexpr std::size_t enough = 8;  // or the variance of the others is hardly known
+      constexpr std::size_t enough = 8;  // with fewer the variance of the others is too uncertain
       if (!removes_outliers || left < enough || left == least_left) break;
-      // The sample without which the others lie closest together.
+      // The sample whose removal leaves the least sum of squared residuals.
       double worst = 0;
       std::size_t at = count;
       for (std::size_t i = 0; i < count; ++i) {
@@ -211,7 +211,8 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
   return peak;
 }
 
-// Samples at the record's limits, its largest and its smallest value, that stand in a row.
+// Samples clipped at the record's largest or smallest value, which stands twice in a row at two places at
+// least.
 class Limits {
  public:
   explicit Limits(const std::vector<double>& value) {
@@ -224,7 +225,7 @@ class Limits {
         row = value[i] == limit ? row + 1 : 0;
         if (row == long_row) ends.push_back(i);
       }
-      if (ends.size() < 2) continue;  // at one place it may be the largest peak in coarse steps
+      if (ends.size() < 2) continue;  // one row may be the largest peak in coarse steps
       for (std::size_t i = 0; i < value.size(); ++i)
         if (value[i] == limit) at_limit_[i] = true;
     }
@@ -244,13 +245,13 @@ struct Candidate {
   bool is_maximum = false;
   Kind kind = Kind::good;
   double half_cycle = 0;  // duration near it, s
-  double middle = 0;      // of the line about which the mass swings
+  double middle = 0;      // of the line about which the mass swings (M16.2)
   double amplitude = 0;   // of the measured quantity
   std::int64_t number = 0;
 };
 
-// Where two flat peaks or more are at the top of all maxima, or of all minima, the instrument has a limit
-// there: what reaches it is clipped, even if it is not flat for long.
+// Marks as clipped all peaks that reach the height of two or more flat ones at the top of all maxima, or of
+// all minima: the instrument has a limit there.
 void drop_below_limit(std::vector<Candidate>& all, double noise) {
   constexpr double noise_multiple = 5, part_of_range = 0.03;  // the fit overshoots a cut top
   double low = all[0].fit.value, high = low;
@@ -275,7 +276,8 @@ bool are_neighbours(const Candidate& a, const Candidate& b) {
   return a.is_maximum != b.is_maximum && std::abs((b.fit.time - a.fit.time) / a.half_cycle - 1) < tolerance;
 }
 
-// The middle line by (M16.2); candidates far from every place where it is known are unclear.
+// Finds the middle line by (M16.2), and from it the amplitudes. A candidate becomes unclear if the line is
+// known nowhere near it.
 void find_middle_line(std::vector<Candidate>& all) {
   constexpr double reach = 6;  // half cycles to either side
   constexpr std::size_t least_line = 5;
@@ -337,8 +339,8 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
     reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
            std::to_string(extremes.size()));
 
-  // The duration of a half cycle is that of the median of those around: a gap or a false extreme is no
-  // matter.
+  // A half cycle lasts as long as the median of those around it, which a gap or a false extreme hardly
+  // changes.
   constexpr std::size_t around = 5;
   std::vector<double> intervals;
   for (std::size_t i = 1; i < extremes.size(); ++i)
@@ -379,7 +381,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   for (std::size_t i = 0; i < all.size(); ++i) {
     Candidate& each = all[i];
     if (each.kind != Kind::good) continue;
-    // Half the distance from the neighbours is about what a sinusoid's curvature would be.
+    // The curvature of a sinusoid would be about half the distance from the neighbours.
     const double before = i > 0 ? value[extremes[i - 1].index] : value[extremes[i + 1].index],
                  after = i + 1 < all.size() ? value[extremes[i + 1].index] : before;
     const double swing = std::abs(value[extremes[i].index] - (before + after) / 2) / 2;
@@ -393,7 +395,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   drop_below_limit(all, result.noise);
   find_middle_line(all);
 
-  // The number of each: half cycles without a peak in between are counted by time.
+  // Numbers of the half cycles: those without a peak in between are counted by the time that has passed.
   std::vector<const Candidate*> good;
   for (Candidate& each : all) {
     if (each.kind == Kind::good) {
@@ -422,7 +424,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
            std::to_string(result.unclear) + " unclear)");
   const double turns = double(good.back()->number - good.front()->number);
   result.frequency = turns / 2 / (good.back()->fit.time - good.front()->fit.time);
-  // Half cycles within gaps in which no extreme was found.
+  // Adds the half cycles within gaps in which no extreme was found.
   result.in_gaps += std::max<std::int64_t>(0, good.back()->number + 1 - std::int64_t(good.size()) -
                                                   std::ranges::count_if(all, [&](const Candidate& each) {
                                                     return each.kind != Kind::good &&

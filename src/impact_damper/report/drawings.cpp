@@ -20,7 +20,7 @@ bool is_there(const Table& table, std::string_view block) {
   return std::ranges::find(table.blocks, block, &TableBlock::name) != table.blocks.end();
 }
 
-// Rows that no picture tells apart only make it heavy.
+// Leaves out rows that no picture distinguishes, but which make it large.
 void thin(Drawing& drawing) {
   std::size_t longest = 0;
   for (const TableBlock& block : drawing.table.blocks)
@@ -40,7 +40,7 @@ void thin(Drawing& drawing) {
   }
 }
 
-// of_one: of several dampers this one alone, with lengths divided by its clearance.
+// of_one: the one of several dampers that is drawn, with lengths divided by its clearance.
 Drawing drawing_of(const Findings& findings, const std::string& name, const std::string& what,
                    std::optional<std::size_t> of_one = std::nullopt) {
   const Subject& subject = findings.subject;
@@ -70,7 +70,7 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
                      {"length", "unit of length in mm", {subject.scales->length * unit}},
                      {"frequency", "Omega_n/(2 pi) in Hz", {subject.scales->frequency()}}}});
   }
-  // Lengths are not divided by a clearance then.
+  // For several dampers lengths are not divided by a clearance.
   if (findings.several() && !of_one)
     drawing.table.blocks.push_back(
         {.name = "dampers", .columns = {{"dampers", "how many", {double(subject.scene.dampers.size())}}}});
@@ -110,7 +110,7 @@ std::optional<Drawing> decay(const Findings& findings) {
   return drawing;
 }
 
-// Least and greatest loss factor of all releases over amplitudes that all of them have.
+// Returns the least and greatest loss factor of all releases over amplitudes that all of them have.
 TableBlock loss_band(const Findings& findings) {
   TableBlock block{
       .name = "band-1",
@@ -127,7 +127,7 @@ TableBlock loss_band(const Findings& findings) {
     const double amplitude = from * exponential(range * k / last);
     std::optional<double> least, greatest;
     for (const LossFactor* member : members) {
-      // Between the first row below the amplitude and the one before it.
+      // Interpolates between the first row below the amplitude and the one before it.
       const auto below = std::ranges::find_if(member->amplitude, [&](double a) { return a < amplitude; });
       const auto i = static_cast<std::size_t>(below - member->amplitude.begin());
       if (i == 0 || i == member->amplitude.size()) {
@@ -148,7 +148,7 @@ TableBlock loss_band(const Findings& findings) {
   return block;
 }
 
-// Frequencies at which the closed forms are drawn: the runs' own and some between each two.
+// Returns the frequencies at which the closed forms are drawn: the runs' own and some between each two.
 std::vector<double> drawn_frequencies(const ForcedResponse& response) {
   constexpr int between = 8;
   std::vector<double> frequencies;
@@ -160,7 +160,7 @@ std::vector<double> drawn_frequencies(const ForcedResponse& response) {
   return frequencies;
 }
 
-// The motions of one way that are periodic, or those that are not; absent if there are none.
+// Returns the motions of one way that are periodic, or those that are not; absent if there are none.
 std::optional<TableBlock> arrived_block(const ForcedResponse& response, ArrivedMotion ResponsePoint::*way,
                                         bool is_periodic, const std::string& name,
                                         const std::string& legend) {
@@ -255,7 +255,7 @@ std::optional<Drawing> loss(const Findings& findings) {
               {fold_amplitude(e)}},
              {"impacts fail", "least loss factor drawn", {*std::ranges::min_element(findings.loss.eta)}}}});
   FigureRun source{"given", findings.run};
-  // The closed forms are for zeta = 0. What the primary system's own damping takes comes on top of them.
+  // The closed forms are for zeta = 0. The loss by the primary system's own damping is added to them.
   const double viscous = 2 * std::exchange(source.run.scene.damping_ratio, 0);
   const std::size_t before = drawing.table.blocks.size();
   add_loss_theory_blocks(figure, {&source}, drawing.table);
@@ -291,7 +291,7 @@ std::optional<Drawing> prediction(const Findings& findings) {
                    .columns = {{"time", "time of the peak, in units of 1/Omega_n", {}},
                                {"spread", "of the releases' amplitudes, percent of their median", {}}}};
   for (std::size_t row = 0; row < findings.spread.size(); ++row) {
-    // Equal to the last bit: below all that a logarithmic axis shows.
+    // Zero, with amplitudes equal to the last bit, has no place on a logarithmic axis.
     if (!(findings.spread[row] > 0)) continue;
     curve.columns[0].values.push_back(findings.run.half_cycles->peak_time[row]);
     curve.columns[1].values.push_back(100 * findings.spread[row]);

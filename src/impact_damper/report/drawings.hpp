@@ -11,14 +11,14 @@
 namespace impact_damper {
 
 struct Drawing {
-  std::string name;    // of its files and of its place on the page: "decay"
+  std::string name;    // of its files and its place on the page: "decay"
   std::string script;  // in figures/
   std::string title;
   Table table;
-  std::size_t every = 1;  // of the rows of its longest block only every so many are drawn
+  std::size_t every = 1;  // only one in so many rows of its longest block is drawn
 };
 
-// What there is to draw of the findings, in the order of the page:
+// Returns the drawings of the findings, in the order of the page:
 //
 //   decay        "curve" (time, amplitude), "band" (time, least, greatest) if there is an ensemble
 //   loss         as the table of a figure of the loss factor (reproduction/series.hpp) with one curve, that

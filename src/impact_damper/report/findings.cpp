@@ -17,13 +17,13 @@ namespace {
 constexpr double two_periods = 4 * std::numbers::pi;
 constexpr std::int64_t window_samples = 1001;
 
-// The amplitude that falls are counted from: a release on the way out has no height in its first row.
+// Returns the row of the first amplitude: row 1 if that is larger, as after a release on the way outwards.
 std::optional<std::size_t> first_row(const HalfCycles& rows) {
   if (rows.amplitude.empty()) return std::nullopt;
   return rows.amplitude.size() > 1 && rows.amplitude[1] > rows.amplitude[0] ? 1 : 0;
 }
 
-// What measure(run) is over all releases; absent where it is for one of them.
+// Returns the spread of measure(run) over all releases; absent if it is absent for one of them.
 template <class Measure>
 std::optional<Spread> over_all(const Findings& findings, Measure measure) {
   std::vector<double> values;
@@ -62,7 +62,7 @@ void find_best_damping(Findings& findings) {
   const auto keeps_speed = [](const auto& damper) { return damper.restitution == 1; };
   const bool lossless =
       scene.dampers.empty() ? keeps_speed(scene) : std::ranges::all_of(scene.dampers, keeps_speed);
-  if (lossless && scene.damping_ratio == 0) return;  // energy only goes to and fro
+  if (lossless && scene.damping_ratio == 0) return;  // no energy is lost
   if (findings.run.impacts->time.empty()) return;    // the same at every amplitude
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
   const std::size_t best = best_row(loss);
@@ -82,7 +82,7 @@ void find_best_damping(Findings& findings) {
                    over_losses(&LossFactor::amplitude)};
 }
 
-// Of a run of one damper; of several, without a contact.
+// Returns the loads in a run of one damper; of several, without a contact.
 std::optional<Loads> loads_of(const Run& run) {
   const Impacts& impacts = *run.impacts;
   const Scene& scene = run.scene;
@@ -141,7 +141,7 @@ void find_regimes(Findings& findings) {
   const Contacts stuck = stuck_contacts(run);
   for (std::size_t i = 0; i < stuck.begin.size(); ++i) findings.stuck_time += stuck.end[i] - stuck.begin[i];
   const std::vector<RegularWindow> windows = regular_windows(run);
-  // Windows of many impacts are bounce-downs, in which their number means little.
+  // Windows of many impacts are bounce-downs, in which their number has little meaning.
   constexpr std::int64_t few = 6;
   for (std::int64_t impacts = few; impacts >= 1; --impacts)
     if (const auto window = longest_window(windows, impacts)) findings.windows.push_back(*window);
@@ -159,7 +159,8 @@ void find_spread(Findings& findings) {
   }
 }
 
-// The windows in which the motion is shown: where it begins, and where it is worth a second look.
+// Returns the windows of the history that are shown: from the release on, and where the motion is of
+// interest.
 std::vector<HistoryWindow> windows_of(const Findings& findings) {
   const double end = findings.run.end_time;
   if (!(end > 0)) return {};
@@ -231,7 +232,7 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   findings.loads = loads_of(findings.run);
   if (findings.several()) find_dampers(findings);
   if (findings.forced() && findings.first_amplitude) {
-    // Central differences cannot go on from period to period: the same walls in closed form.
+    // Central differences cannot continue from period to period: the exact engine has the same walls.
     Engine engine = subject.engine;
     if (std::holds_alternative<Cem>(engine)) {
       Exact same_walls;

@@ -1,5 +1,5 @@
-// What a report says of one scene, as numbers: its decay, its loss factor, its regimes, and how far all that
-// can be predicted. Dimensionless throughout; the page speaks of it in units as well.
+// The numbers of a report about one scene: its decay, its loss factor, its regimes, and how far all that can
+// be predicted. Dimensionless throughout; the page shows them in units as well.
 #pragma once
 
 #include <cstdint>
@@ -19,47 +19,47 @@
 namespace impact_damper {
 
 struct Subject {
-  std::string name;         // "mast"
+  std::string name;         // for example "mast"
   std::string description;  // may be empty
   Scene scene;
   std::optional<Scales> scales;  // if it was given in units
   Engine engine;
 };
 
-// When the amplitude first was below a part of the first one (time_below.hpp).
+// The time at which the amplitude first was below a fraction of the first one (time_below.hpp).
 struct Fall {
   double part = 0;
   double amplitude = 0;         // part times the first amplitude
   double time = 0;              // in units of 1/Omega_n
-  std::optional<Spread> times;  // over the ensemble; absent where some member does not get there
+  std::optional<Spread> times;  // over the ensemble; absent if a member does not get there
 };
 
 struct BestDamping {
   std::size_t row = 0;                     // of Findings::loss
   double eta = 0;                          // largest local loss factor before impact failure, per radian
-  double amplitude = 0;                    // at which it is met, divided by epsilon
-  double time = 0;                         // when, in units of 1/Omega_n
+  double amplitude = 0;                    // at which eta is so large, divided by epsilon
+  double time = 0;                         // of that amplitude, in units of 1/Omega_n
   std::optional<Spread> etas, amplitudes;  // over the ensemble
 };
 
-// What the box and the secondary mass have to bear.
+// The loads on the box and the secondary mass.
 struct Loads {
-  double speed = 0;              // largest relative speed of an impact, divided by epsilon Omega_n
-  double impacts = 0, time = 0;  // how many there are in which time: of a forced motion its last quarter
-  std::optional<ShortContact> contact;  // of that impact; absent for rigid walls and for soft ones
+  double speed = 0;                     // largest relative speed of an impact, divided by epsilon Omega_n
+  double impacts = 0, time = 0;         // number of impacts in `time`; of a forced motion in its last quarter
+  std::optional<ShortContact> contact;  // of the fastest impact; absent for rigid walls and for soft ones
   double initial_force = 0;             // of the wall in which the scene begins, divided by K epsilon
 };
 
 // One of several dampers. Lengths and velocities are those of the scene.
 struct DamperFindings {
-  double energy = 0;  // that its impacts took, by K epsilon^2
+  double energy = 0;  // dissipated by its impacts, divided by K epsilon^2
   std::int64_t impacts = 0;
   std::optional<HalfCycleRow> sticking_ends;  // as in Findings
   ImpactFailure failure;
   std::optional<Loads> loads;  // if it strikes a wall
 };
 
-// A stretch of the recorded history: its samples, both included.
+// An interval of the recorded history: its samples, both included.
 struct MotionWindow {
   std::size_t first = 0, last = 0;
 };
@@ -69,7 +69,7 @@ struct Findings {
   Run run;                  // half cycles, impacts, contacts, energy; history in the windows below
   std::vector<Run> others;  // perturbed initial conditions: half cycles
 
-  // Amplitude of row 0, or of row 1 if that is larger. If it is absent, the next three mean nothing.
+  // Amplitude of row 0, or of row 1 if that is larger. If it is absent, the next three have no meaning.
   std::optional<double> first_amplitude;
   double last_amplitude = 0;
   double first_peak = 0, last_peak = 0;   // their times
@@ -88,9 +88,9 @@ struct Findings {
   std::vector<RegularWindow> windows;         // the longest of each number of impacts, most impacts first
   ImpactFailure failure;
   std::int64_t most_impacts = 0;  // in one half cycle
-  // Of several, by number. Of them all together there are no sticking_ends and no windows, and no contact in
-  // `loads`. The one whose motion is drawn took most of the energy; in the window `chosen` it is the one that
-  // strikes most often there.
+  // Of several dampers, by number. For all together there are no sticking_ends and no windows, and no contact
+  // in `loads`. The damper whose motion is drawn dissipated most of the energy; in the window `chosen` it is
+  // the one with the most impacts there.
   std::vector<DamperFindings> dampers;
   std::size_t shown = 0, shown_when_chosen = 0;
 
@@ -103,16 +103,17 @@ struct Findings {
 
   bool forced() const { return subject.scene.force_amplitude != 0; }
   bool several() const { return !subject.scene.dampers.empty(); }
-  Run run_of(std::size_t damper) const;  // of several, as that one sees it (one_of_several.hpp); else `run`
+  Run run_of(std::size_t damper) const;  // of one of several, as it sees it (one_of_several.hpp); else `run`
   double energy_to_impacts()
-      const;  // by K epsilon^2, contacts that no impact began and bounce-downs among it
+      const;  // divided by K epsilon^2; includes contacts without an impact and bounce-downs
 };
 inline constexpr double lost_spread = 0.01;
 
-// Told now and then what is being done, for whoever waits; from any thread.
+// Is called from time to time, from any thread, with what is being done.
 using Progress = std::function<void(const std::string& doing)>;
 
-// Simulates the subject, and ensemble.members - 1 others like it. Throws what simulate() throws.
+// Simulates the subject, and ensemble.members - 1 perturbed initial conditions. Throws what simulate()
+// throws.
 Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress);
 
 }  // namespace impact_damper

@@ -17,8 +17,8 @@ namespace {
 using Way = ArrivedMotion ResponsePoint::*;
 constexpr std::array<Way, 2> both_ways{&ResponsePoint::rising, &ResponsePoint::falling};
 
-// Each run is of eight periods of the force or of a tenth of `mean_periods`: what needs more than these is
-// given up.
+// Budgets of a run, which lasts eight periods of the force or a tenth of `mean_periods`. A motion that needs
+// more is given up.
 constexpr std::int64_t most_impacts_of_a_run = 20'000, most_steps_of_a_run = 1'000'000;
 
 Engine bounded(const Engine& engine) {
@@ -38,8 +38,8 @@ Scene at_frequency(Scene scene, double frequency) {
 
 double locked_resonance(const Scene& scene) { return 1 / square_root(1 + secondary_mass(scene)); }
 
-// Impacts in a period of the force, at the resonances from the release on, where there are more; infinity
-// where they are so many that a budget ends the run.
+// Returns the impacts in a period of the force from the release on, at the resonance with more of them;
+// infinity if a budget ends the run.
 double impacts_in_a_period(const Scene& scene, const Engine& engine) {
   constexpr std::int64_t periods = 100;
   double most = 0;
@@ -52,8 +52,8 @@ double impacts_in_a_period(const Scene& scene, const Engine& engine) {
   return most;
 }
 
-// Fewer periods of the force where they have many impacts, and without viscous damping: what impacts do not
-// end soon, nothing ends.
+// Returns a rule with fewer periods of the force for motions with many impacts, and without viscous damping,
+// where a transient that impacts do not end soon never ends.
 SteadyRule rule_for(const Scene& scene, const Engine& engine) {
   constexpr double impacts_of_a_motion = 20'000;
   constexpr std::int64_t least = 500, hundred = 100;
@@ -67,9 +67,9 @@ SteadyRule rule_for(const Scene& scene, const Engine& engine) {
   return rule;
 }
 
-// Ascending, without the scene's own.
+// Returns the frequencies of the response besides the scene's own, ascending.
 std::vector<double> other_frequencies(const Scene& scene, const Engine& engine) {
-  constexpr double distinct = 5e-4;  // relative; closer ones are one
+  constexpr double distinct = 5e-4;  // relative; closer frequencies count as one
   const double locked = locked_resonance(scene), given = scene.force_frequency;
   std::vector<double> all{0.97 * given, 1.03 * given};
   for (const double resonance : {locked, 1.0})
@@ -99,7 +99,7 @@ class Sweeper {
 
   ForcedResponse response() && { return std::move(response_); }
 
-  // Up from the scene's release through its own frequency and these, which ascend, and back down.
+  // Sweeps up from the scene's release through its own frequency and these, which ascend, and back down.
   void sweep_through(std::vector<double> frequencies) {
     const auto own = std::ranges::lower_bound(frequencies, scene_.force_frequency);
     response_.given = static_cast<std::size_t>(own - frequencies.begin());
@@ -111,7 +111,7 @@ class Sweeper {
       response_.points.push_back({frequencies[i], {rising[i], {}}, {falling[falling.size() - 1 - i], {}}});
   }
 
-  // Three more frequencies on either side of the largest amplitude, each way from the point before.
+  // Adds three frequencies on either side of the largest amplitude, each way from the point before.
   void refine() {
     const auto largest = response_.largest();
     if (!largest) return;
@@ -147,8 +147,8 @@ class Sweeper {
     std::ranges::sort(points, {}, &ResponsePoint::frequency);
   }
 
-  // Motions that are not periodic, and on which much rests, are followed once more: where the two ways
-  // differ, and at the largest amplitude, which then may be another one. A transient may only have been long.
+  // Follows motions again that are not periodic and on which much depends: where the two ways differ, and at
+  // the largest amplitude, which may then be another. They may only have had a long transient.
   void confirm() {
     constexpr int rounds = 4;
     for (int round = 0; round < rounds; ++round) {

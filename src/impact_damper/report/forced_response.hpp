@@ -13,18 +13,17 @@
 
 namespace impact_damper {
 
-// The motion at one frequency, arrived at in one of the two ways.
+// The motion at one frequency, reached with the frequency rising or falling.
 struct ArrivedMotion {
   SteadyState steady;  // without means if a budget of the engine has ended it
-  // Of a motion that is not periodic and was followed twice, one time after the other: its amplitude in the
-  // first.
+  // For a motion that is not periodic and was followed twice in succession: its amplitude the first time.
   std::optional<double> earlier_amplitude;
 
   bool is_known() const { return steady.means.has_value(); }
   bool is_periodic() const { return steady.period.has_value(); }
   double amplitude() const { return steady.means->amplitude; }  // largest |x|; only if known
-  // Not periodic, and not steady either: the force puts in another power than is lost (M12.9), or the two
-  // amplitudes differ by more than they scatter (M12.8).
+  // Whether it is neither periodic nor steady: the power of the force differs from the power lost (M12.9), or
+  // the two amplitudes differ by more than their scatter (M12.8).
   bool changes() const;
 };
 
@@ -32,7 +31,7 @@ struct ResponsePoint {
   double frequency = 0;
   ArrivedMotion rising, falling;
 
-  // Both are known, neither changes, and their amplitudes differ (M12.8).
+  // Whether both are known, neither changes, and their amplitudes differ (M12.8).
   bool has_two_motions() const;
 };
 
@@ -43,7 +42,7 @@ struct LargestAmplitude {
   ArrivedMotion motion;
 };
 
-// Points next to each other, both included.
+// Adjacent points, both included.
 struct PointRange {
   std::size_t first = 0, last = 0;
 };
@@ -54,16 +53,16 @@ struct ForcedResponse {
   std::size_t given = 0;              // the point of the scene's own frequency
 
   bool empty() const { return points.empty(); }
-  // Over all frequencies, in one way; absent if no motion is known.
+  // Returns the largest over all frequencies, in one way; absent if no motion is known.
   std::optional<LargestAmplitude> largest(ArrivedMotion ResponsePoint::*way) const;
   std::optional<LargestAmplitude> largest() const;  // in either way
   std::vector<PointRange> two_motions() const;      // where there are two, in ascending order
 };
 
-// The scene under its force at some 60 frequencies, closest near the resonances of the empty box and of the
-// locked mass; more about the largest amplitude. The way up begins with the scene's release at the lowest
-// frequency. The scene must have a force; the engine is exact or restitution
-// (problems_of). `progress` is called with the number of motions that are done. Equal for all `threads`.
+// Returns the response of the scene at some 60 frequencies, closest near the resonances of the empty box and
+// of the locked mass, with more about the largest amplitude. The way up begins with the scene's release at
+// the lowest frequency. The scene must have a force; the engine is exact or restitution (problems_of).
+// `progress` is called with the number of motions that are done. The result is the same for all `threads`.
 ForcedResponse forced_response(const Scene& scene, const Engine& engine, const Threads& threads,
                                const std::function<void(std::int64_t done)>& progress);
 

@@ -13,8 +13,8 @@ namespace {
 
 struct Section {
   std::string id, title;
-  std::string html;                   // what is said, from numbers
-  std::vector<std::string> drawings;  // names, behind it
+  std::string html;                   // text with its numbers
+  std::vector<std::string> drawings;  // names; they follow the text
 };
 
 std::string caption_of(const std::string& name, bool several) {
@@ -49,8 +49,8 @@ std::string caption_of(const std::string& name, bool several) {
   return "Above, the secondary mass between the walls of its cavity; below, the displacement of the cavity.";
 }
 
-// A picture as part of a page: without what a file of its own needs, and with a name for those who cannot see
-// it.
+// Returns a picture as part of a page: without what only a file of its own needs, and with a description for
+// readers who cannot see it.
 std::string inline_svg(const std::string& svg, const std::string& title, const std::string& caption) {
   const std::size_t begin = svg.find("<svg");
   if (begin == std::string::npos) throw std::invalid_argument("a picture must be an SVG");
@@ -137,13 +137,13 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
     body += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
   body += "</ul></nav>\n<main>\n";
   for (Section section : sections) {
-    // Where there is no loss factor it has been said why.
+    // Without a loss factor the text has said why.
     if (section.id == "loss" && svgs.contains("loss")) section.drawings = {"loss"};
     body += section_html(section, drawings, svgs, findings.several());
   }
   body += "</main>";
 
-  // What is put in first must not hold the place of what comes later: texts of the user come last.
+  // An inserted text must not contain the place of a later one: texts of the user come last.
   std::string page(frame);
   for (const auto& [part, text] : parts) put_in(page, part, text);
   put_in(page, "title", name + " – impact damper");

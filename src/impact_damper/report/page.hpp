@@ -1,6 +1,5 @@
 // The page about one scene: its findings in sentences, tables and figures, as one HTML file that needs no
-// other. Every number in it is computed; each section that has nothing to tell of this scene says what is
-// missing.
+// other. Every number in it is computed; a section that does not apply to this scene says what is missing.
 #pragma once
 
 #include <map>
@@ -13,8 +12,8 @@
 
 namespace impact_damper {
 
-// `svgs`: one SVG text for each of the `drawings`, by Drawing::name; if empty, the page has no figures.
-// `frame` is the page with {{title}}, {{body}} and the names of the `parts` that are put into it, as
+// Returns the page. `svgs`: one SVG text for each of the `drawings`, by Drawing::name; if empty, the page has
+// no figures. `frame` is the page with {{title}}, {{body}} and the names of the `parts` that are inserted, as
 // {{page.css}}. Throws std::invalid_argument if a text is no SVG or `frame` lacks a place, std::out_of_range
 // if a picture is missing.
 std::string page_html(const Findings& findings, const std::vector<Drawing>& drawings,

@@ -16,16 +16,15 @@ std::string part_in_words(double part) {
   return part == 0.5 ? "half" : part == 0.1 ? "a tenth" : "a hundredth";
 }
 
-// "0.1 to 0.2", or one of them where a reader would see no difference.
+// Returns "0.1 to 0.2", or one of them where a reader would see no difference.
 std::string range_html(const std::string& low, const std::string& high) {
   return without_tags(low) == without_tags(high) ? high : low + " to " + high;
 }
 
-// A loss factor for which the closed forms do not hold: they take the amplitude to change little from peak to
-// peak.
+// A loss factor beyond the closed forms, which assume that the amplitude changes little from peak to peak.
 constexpr double far_too_much = 0.5;
 
-// An equivalent viscous damping ratio: that of an oscillator with this loss factor.
+// Returns the equivalent viscous damping ratio in words: that of an oscillator with this loss factor.
 std::string as_viscous(double eta) { return "a viscous damping ratio of " + percent_html(eta / 2); }
 
 std::string fall_in_short(const Findings& findings) {

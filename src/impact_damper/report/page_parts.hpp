@@ -1,4 +1,4 @@
-// The sections of a report's page: what each says of the findings, as HTML. A part of page.hpp.
+// The sections of a report's page as HTML, each from the findings. A part of page.hpp.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace impact_damper {
 
-std::string summary_html(const Findings& findings);   // of the whole, a few sentences
-std::string warnings_html(const Findings& findings);  // of the scene, or nothing
+std::string summary_html(const Findings& findings);   // a few sentences about everything
+std::string warnings_html(const Findings& findings);  // about the scene; may be empty
 std::string scene_html(const Findings& findings);
 std::string decay_html(const Findings& findings);     // of a forced motion: its amplitudes
 std::string loss_html(const Findings& findings);      // of a free motion
 std::string response_html(const Findings& findings);  // of a forced one
-// The same in a few sentences; nothing if no motion is known.
+// Returns the response in a few sentences; nothing if no motion is known.
 std::string response_in_short(const Findings& findings);
 std::string loads_html(const Findings& findings);
 std::string regimes_html(const Findings& findings);

@@ -1,4 +1,4 @@
-// What a report's page says of the regimes that a motion passes through, and of the motion in its windows.
+// The sections of a report's page about the regimes of a motion, and about the motion in its windows.
 #include <algorithm>
 #include <numeric>
 

@@ -1,4 +1,4 @@
-// What a report's page says of a forced scene's amplitude over the frequency of the force.
+// The section of a report's page about a forced scene's amplitude over the frequency of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace impact_damper {
 namespace {
 
-// "is 125 mm (12.5 ε)", or that there is no bound.
+// Returns "125 mm (12.5 ε)", or "without bound" for infinity.
 std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
   return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
 }
@@ -31,7 +31,7 @@ std::int64_t count_of(const ForcedResponse& response, bool (*counts)(const Arriv
   return count;
 }
 
-// What the impacts do to the largest amplitude over all frequencies, once there is one to compare with.
+// Returns a sentence on how impacts change the largest amplitude over all frequencies, which must be known.
 std::string reduction_sentence(const Findings& findings) {
   const ArrivedMotion motion = findings.response.largest()->motion;
   const Scene& scene = findings.subject.scene;
@@ -47,7 +47,7 @@ std::string reduction_sentence(const Findings& findings) {
               : "");
 }
 
-// "between 3.05 Hz and 3.09 Hz, at 3.2 Hz and in 2 more ranges up to 3.3 Hz"
+// Returns "between 3.05 Hz and 3.09 Hz, at 3.2 Hz and in 2 more ranges up to 3.3 Hz".
 std::string ranges_in_words(const Quantities& quantities, const ForcedResponse& response) {
   constexpr std::size_t most = 3;
   const std::vector<PointRange> ranges = response.two_motions();
@@ -67,7 +67,7 @@ std::string ranges_in_words(const Quantities& quantities, const ForcedResponse& 
   return text;
 }
 
-// The point at which the two ways differ most, if they do.
+// Returns the point at which the two ways differ most, if they do.
 const ResponsePoint* most_different(const ForcedResponse& response) {
   const auto ratio = [](const ResponsePoint& point) {
     const double a = point.rising.amplitude(), b = point.falling.amplitude();
@@ -108,7 +108,7 @@ std::string two_motions_sentences(const Findings& findings) {
   return text;
 }
 
-// The amplitude of a motion, and what is to be known of it.
+// Returns the amplitude of a motion, with remarks.
 std::string amplitude_cell(const Quantities& quantities, const ArrivedMotion& motion) {
   if (!motion.is_known()) return "given up";
   return quantities.length(motion.amplitude()) + (motion.changes() ? ", not steady yet" : "");

@@ -1,4 +1,4 @@
-// What a report's page says of the scene itself.
+// The section of a report's page about the scene itself.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,8 @@
 namespace impact_damper {
 namespace {
 
-// One row: what it is, in units, dimensionless. Without scales the middle column goes.
+// A table with a row for each number: name, in units, dimensionless. Without scales the middle column is
+// omitted.
 class SceneTable {
  public:
   explicit SceneTable(const Subject& subject) : scales_(subject.scales) {}
@@ -25,7 +26,7 @@ class SceneTable {
     cells.push_back((symbol.empty() ? "" : "<i>" + symbol + "</i> = ") + number_html(value, 4));
     table_.rows.push_back(std::move(cells));
   }
-  // What only scales; a dimensionless scene has nothing to say about it.
+  // Adds a quantity that only scales, which a dimensionless scene does not have.
   void scale(const std::string& what, const std::string& symbol, double value, const std::string& unit) {
     if (scales_)
       table_.rows.push_back({what, number_html(value, 4) + ' ' + unit, "<i>" + symbol + "</i>, a scale"});
@@ -78,7 +79,7 @@ std::string scene_table(const Subject& subject) {
                                    : "The scene, as it is computed");
 }
 
-// What each of several dampers is, in units if they are known.
+// Returns the table of several dampers, in units if they are known.
 std::string dampers_table(const Subject& subject) {
   const bool rigid = has_rigid_walls(subject.engine), in_units = subject.scales.has_value();
   const Scales scales = subject.scales.value_or(Scales{});
@@ -108,7 +109,7 @@ std::string dampers_table(const Subject& subject) {
   return table_html(table);
 }
 
-// How the engine goes about it; of the options of the run, which are filled in.
+// Describes the method of the engine, from the options of the run, which are filled in.
 struct Method {
   bool several;
   std::string operator()(const Exact&) const {
@@ -160,7 +161,7 @@ std::string engine_sentence(const Findings& findings) {
 
 }  // namespace
 
-// Numbers that are valid, but more often a slip than meant: a length in metres, a mass in grams.
+// Returns warnings about numbers that are valid but likely mistakes: a length in metres, a mass in grams.
 std::string warnings_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const Quantities quantities(findings.subject.scales);

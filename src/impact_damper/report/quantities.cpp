@@ -14,7 +14,7 @@ std::string data_html(const std::string& exact, const std::string& shown) {
   return "<data value=\"" + exact + "\">" + shown + "</data>";
 }
 
-// A hyphen is no minus, and "1e+06" is for programs.
+// Replaces a hyphen by a minus, and "1e+06" by a power of ten.
 std::string typeset(std::string text) {
   std::string power;
   if (const std::size_t e = text.find('e'); e != std::string::npos) {
@@ -67,7 +67,7 @@ std::string without_tags(const std::string& html) {
 
 std::string number_html(double value, int digits) {
   const double size = std::abs(value);
-  double power = 1;  // of ten: from here on the digits asked for are all before the point
+  double power = 1;  // of ten: from here on all the digits are before the point
   for (int i = 0; i < digits; ++i) power *= 10;
   const bool whole = size >= power - 0.5 && size < 1e6 - 0.5;
   return data_html(number_text(value),

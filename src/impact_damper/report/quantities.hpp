@@ -1,5 +1,5 @@
-// Numbers as a page speaks of them: rounded for reading, with all digits in <data value="...">, and in
-// kilograms, millimetres and seconds as well where the scene was given so.
+// Numbers as a page shows them: rounded for reading, with all digits in <data value="...">, and in kilograms,
+// millimetres and seconds as well where the scene was given so.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace impact_damper {
 
-// Text for HTML, safe in attributes too.
+// Returns text for HTML, safe in attributes too.
 std::string escaped(std::string_view text);
 
-// "1.23 × 10<sup>6</sup>" in <data>, with `digits` significant digits.
+// Returns "1.23 × 10<sup>6</sup>" in <data>, with `digits` significant digits.
 std::string number_html(double value, int digits = 3);
 std::string count_html(std::int64_t count);
 std::string percent_html(double part);  // of 1: "12.3 %"
-// What is read of HTML: equal for numbers that differ in digits not shown.
+// Returns the text that a reader sees: equal for numbers that differ in digits not shown.
 std::string without_tags(const std::string& html);
 
 class Quantities {
@@ -29,7 +29,7 @@ class Quantities {
   bool in_units() const { return scales_.has_value(); }
   const Scales& scales() const { return *scales_; }
 
-  // Of a dimensionless number. In units these come first, the dimensionless number in brackets:
+  // Return a dimensionless number as text. In units these come first, the dimensionless number in brackets:
   std::string length(double value) const;    // "60 mm (6 ε)", or "6 ε"; below 0.1 mm "4.94 µm (0.0236 ε)"
   std::string time(double value) const;      // "12.3 s (39.2 periods)", or "39.2 periods (t = 246)"
   std::string velocity(double value) const;  // "0.05 m/s (0.25 εΩ)"

@@ -98,7 +98,7 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   return curves;
 }
 
-// A null pointer if `record` holds what a table of this kind draws, else the first part that is missing.
+// Returns the first part that `record` lacks of what a table of this kind draws, or a null pointer.
 const char* missing_record(TableKind table, const Record& record) {
   switch (table) {
     case TableKind::motion:
@@ -127,7 +127,7 @@ bool is_without_curves(TableKind table) {
          table == TableKind::design_charts;
 }
 
-// A null pointer if a table of this kind is made of such a response, else what it is made of.
+// Returns a null pointer if a table of this kind draws such a response, else a name of what it draws.
 const char* wrong_response(TableKind table, const Response& asked) {
   const auto* const sweep = std::get_if<SweepResponse>(&asked);
   const auto* const basin = std::get_if<BasinResponse>(&asked);
@@ -204,7 +204,7 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
   }
 }
 
-// The responses that a figure draws: known, and of kinds that its table is made of.
+// Reads the responses that a figure draws: each must be known and of a kind that its table draws.
 void read_responses(ObjectReader& item, Figure& figure, const Catalogue& catalogue) {
   const bool is_map = figure.table == TableKind::response_map;
   if (!is_map && figure.table != TableKind::response && figure.table != TableKind::largest_response) return;
@@ -230,7 +230,7 @@ void read_responses(ObjectReader& item, Figure& figure, const Catalogue& catalog
   }
 }
 
-// Each number in its range; together with the scene's others the engine checks them.
+// Reads changed numbers, each in its range; the engine checks them together with the scene's others.
 Changes read_changes(ObjectReader item, std::vector<std::string_view> names) {
   Changes changes;
   for (const SceneField& field : scene_fields) names.push_back(field.name);
@@ -245,7 +245,7 @@ Changes read_changes(ObjectReader item, std::vector<std::string_view> names) {
   return changes;
 }
 
-// Name and scene of a run or a response.
+// Reads the name, which must be new, and the scene of a run or a response.
 void read_names(ObjectReader& item, const Catalogue& catalogue, std::string& name, std::string& scene) {
   if (item.required("name", name, a_name) &&
       (find_run(catalogue.runs, name) || find_response(catalogue.responses, name) ||
@@ -284,7 +284,7 @@ std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
   return axes;
 }
 
-// What is asked for, but the scene.
+// Reads a request without its scene.
 void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 SweepResponse& asked) {
   double nudge = 0;

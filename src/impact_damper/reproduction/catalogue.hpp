@@ -41,14 +41,14 @@ enum class TableKind {
   loss_factor,       // one of the ordinates of the averaged loss factor over amplitude
   phase,             // impact phase and stuck intervals over amplitude
   response,          // amplitude over the frequency of a force, with the branches of periodic motions
-  largest_response,  // largest steady amplitude over the force, beside what a free decay predicts
+  largest_response,  // largest steady amplitude over the force, with the prediction from a free decay
   response_map,      // which steady motion there is, over frequency and amplitude of a force
   design_charts,     // loss factor over amplitude for many restitutions and mass ratios, of a sweep
-  damper_sets,       // loss factor of several dampers over amplitude, beside the sum of theirs
-  drawing,           // none: a schematic that no run stands behind
+  damper_sets,       // loss factor of several dampers over amplitude, and the sum of theirs
+  drawing,           // none: a schematic without runs
 };
 
-// What the curves of a figure differ in, and so what their legend says.
+// The number in which the curves of a figure differ; the legend shows it.
 enum class Varied { mass_ratio, damping_ratio, restitution };
 
 struct CatalogueScene {
@@ -56,34 +56,33 @@ struct CatalogueScene {
   Record record;
 };
 
-// A further run that measures compare with: of a scene with some of its numbers changed, by an engine of its
-// own, or both. Its file lies beside the runs of the scenes, and it is an ensemble as these are
-// (scene_runs.hpp).
+// A further run that measures compare with: a scene with some numbers changed, another engine, or both. Its
+// file lies beside the runs of the scenes, and it has an ensemble as they have (scene_runs.hpp).
 struct CatalogueRun {
-  std::string name;   // of its file, without .json; no scene's of the catalogue
-  std::string scene;  // one of the catalogue's, or with an engine of its own any of the project's
+  std::string name;                                // of its file, without .json; unique in the catalogue
+  std::string scene;                               // of the catalogue; with an `engine`, of the project
   std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
   std::optional<Engine> engine;                    // absent: that of the scenes' runs
   Record record;
 };
-// `scene` with the numbers of `run` in place of its own.
+// Returns `scene` with the changed numbers of `run` in place of its own.
 Scene changed_scene(const CatalogueRun& run, Scene scene);
 
-// Steady motions of a scene, some numbers of which are changed, under a force: NAME.json beside the runs. The
-// component element method cannot find them, so they are the same whatever engine the runs are by.
+// Steady motions under a force, of a scene with some numbers changed; NAME.json beside the runs. The
+// component element method cannot find them, so they do not depend on the engine of the runs.
 struct CatalogueResponse {
-  std::string name;                                // of its file, without .json; no scene's and no run's
-  std::string scene;                               // one of the catalogue's
+  std::string name;                                // of its file, without .json; unique in the catalogue
+  std::string scene;                               // of the catalogue
   std::map<std::string, double, std::less<>> set;  // the changed numbers: fields of Scene
-  // All that is asked for but the scene, and nothing that is found. A sweep and orbits begin with the scene's
-  // own release, which stands not here, then with those given.
+  // The request without the scene and without results. A sweep and orbits begin with the scene's own release,
+  // which asked_for() fills in, then with the starts given here.
   Response asked;
 };
-// The same for that scene, whole.
+// Returns the complete request: for `scene` with the changed numbers, its release being the first start.
 Response asked_for(const CatalogueResponse& response, const Scene& scene);
 
 struct FigureCurve {
-  std::string scene;  // but for damper_sets tables
+  std::string scene;  // empty in damper_sets tables
   // damper_sets tables only: a run of several dampers and one of a single damper, of the catalogue's runs.
   std::string run, alone;
   // loss_factor and largest_response tables only:
@@ -95,51 +94,53 @@ struct Figure {
   std::string number;  // "1" ... "15", "A" ... "H"
   std::string title;
   TableKind table = TableKind::drawing;
-  // One for motion, phase and largest_response, none for a drawing, response, response_map and design_charts.
+  // One for motion, phase and largest_response; none for a drawing, response, response_map, design_charts.
   std::vector<FigureCurve> curves;
-  std::vector<std::string> responses;           // of the catalogue, for the tables of responses
-  std::string plan;                             // design_charts: of its sweep, a file beside the catalogue
-  std::optional<LossOrdinate> ordinate;         // loss_factor tables, and only they
+  std::vector<std::string> responses;           // names in the catalogue, for tables of responses
+  std::string plan;                             // design_charts: plan of its sweep, beside the catalogue
+  std::optional<LossOrdinate> ordinate;         // of loss_factor tables only
   std::optional<LossOrdinate> second_ordinate;  // of a second panel with the same curves, if there is one
   std::optional<Varied> varied;                 // if there is more than one curve
   std::optional<double> window;   // motion tables: the amplitude of one of the scene's history windows
-  std::optional<double> down_to;  // amplitude that every curve must reach, or its run is short
-  // Two amplitudes. loss_factor: over which the spread is shown, or empty; damper_sets: which are drawn.
+  std::optional<double> down_to;  // amplitude that every curve must reach; otherwise its run is too short
+  // Two amplitudes: the range of the spread in a loss_factor table, empty for none, or of a damper_sets
+  // table.
   std::vector<double> range;
-  std::string script;               // beside the catalogue; each once, without its ending too
+  std::string script;               // beside the catalogue; unique even without its ending
   std::vector<std::string> claims;  // ids in data/claims.json
 };
 
 struct Catalogue {
-  std::int64_t members = 1;  // of each scene's ensemble that are run, the scene itself among them; 1 to 100
+  std::int64_t members = 1;  // of each scene's ensemble, the scene itself included; 1 to 100
   std::vector<CatalogueScene> scenes;
   std::vector<CatalogueRun> runs;
   std::vector<CatalogueResponse> responses;
   std::vector<Figure> figures;
 };
 
-// Reads a catalogue and holds it together: every scene known and recording what its
-// figures draw, every number given once. Throws IoError or InputError.
+// Reads a catalogue and checks it: every scene must be known and record what its figures draw, every number
+// be given once. Throws IoError or InputError.
 inline constexpr FileKind catalogue_kind{"catalogue", 1 << 20};
 Catalogue read_catalogue(const std::filesystem::path& file);
 Catalogue parse_catalogue(const std::string& name, const std::string& text);
 
-// The scene, run, response or figure of that name; a null pointer if there is none.
+// Returns the scene, run, response or figure of that name; a null pointer if there is none.
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name);
 const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_view name);
 const CatalogueResponse* find_response(const std::vector<CatalogueResponse>& responses,
                                        std::string_view name);
 const Figure* find_figure(const Catalogue& catalogue, std::string_view number);
 
-// The name of its table and pictures without their endings: its script's, "fig08" for fig08.gp.
+// Returns the name of the figure's table and pictures without endings, that of its script: "fig08" for
+// fig08.gp.
 std::string file_stem(const Figure& figure);
 
-// The name of its sweep's files without their endings: its plan's.
+// Returns the name of the files of the figure's sweep without their endings, that of its plan.
 std::string sweep_stem(const Figure& figure);
 
-// The scenes of a figure, each once, in the order of its curves.
+// Returns the scenes of a figure, each once, in the order of its curves.
 std::vector<std::string> scenes_of(const Figure& figure);
-// The further runs of a figure, likewise.
+// Returns the further runs of a figure, likewise.
 std::vector<std::string> runs_of(const Figure& figure);
 
 }  // namespace impact_damper

@@ -77,7 +77,7 @@ MeasureCall read_measure(ObjectReader object) {
 bool agrees(Verdict verdict) { return verdict == Verdict::reproduced || verdict == Verdict::holds; }
 bool is_of_ours(Verdict verdict) { return verdict == Verdict::holds || verdict == Verdict::does_not_hold; }
 
-// By the kind of what is printed, or a value or range with a tolerance of its own.
+// Reads what is allowed: by the kind of what is printed, or a value or range with a tolerance of its own.
 Allowed read_allowed(ObjectReader& object) {
   Allowed allowed;
   if (object.has("kind")) {
@@ -111,7 +111,7 @@ Allowed read_allowed(ObjectReader& object) {
   return allowed;
 }
 
-using Names = std::set<std::string, std::less<>>;  // of what a claim measures beside its own number
+using Names = std::set<std::string, std::less<>>;  // of the numbers that a claim measures beside its own
 
 void read_words(ObjectReader& object, Claim& claim, Names& names) {
   if (auto also = object.optional_object("also")) {

@@ -1,4 +1,4 @@
-// What the paper reports, claim by claim, and the verdict on each. Kept in data/claims.json:
+// What the paper reports, claim by claim, and the verdict on each claim. Kept in data/claims.json:
 //
 //   {"schema": "impact-damper/claims/1",
 //    "claims": [{"id": "failure-04", "section": "3, Effects of the coefficient of restitution",
@@ -12,8 +12,8 @@
 // Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
 // "range" (either end null for none) with a "tolerance" and its "reason" take the place of kind and digits.
 // "source" says whose claim it is if not the paper's: "quoted" marks our reading of what the paper quotes
-// from an earlier study, "ours" a claim of this project. What is not in the paper cannot be reproduced: ours
-// "holds" or "does not hold".
+// from an earlier study, "ours" a claim of this project. A claim of ours, which is not in the paper, "holds"
+// or "does not hold".
 //
 // Where another engine's runs are known to give another verdict than the exact engine's, the claim says so
 // and why: "with_engine": {"cem": {"verdict": "not reproduced", "explanation": "..."}}. "cem" is the method
@@ -25,8 +25,8 @@
 // or from another claim, and confirms that derivation. Explanations and evidence are templates as "words" is,
 // so that the results that they name are measured ones.
 //
-// What the paper states and nothing here measures yet stands beside the claims, is listed with them and
-// counts as none of them:
+// Statements of the paper that nothing here measures yet are listed beside the claims and do not count as
+// claims:
 //
 //    "open": [{"id": "several-dampers", "section": "...", "statement": "...", "printed": "...",
 //              "explanation": "..."}]           why it is open
@@ -50,7 +50,7 @@ std::string_view name_of(Verdict verdict);  // "not reproduced" and so on
 
 enum class Source { paper, quoted, ours };  // whose claim it is
 
-// How our value is found: a name out of measures.hpp, the runs it looks at and its numbers.
+// How our value is found: the name of a measure (measures.hpp), the runs that it uses and its numbers.
 struct MeasureCall {
   std::string name;
   std::vector<std::string> scenes;  // and further runs of the catalogue, by their names
@@ -85,21 +85,21 @@ struct ClaimsFile {
   std::vector<OpenStatement> open;
 };
 
-// The verdict recorded for runs of that engine.
+// Returns the verdict recorded for runs of that engine.
 Verdict recorded_for(const Claim& claim, std::string_view engine);
 
-// Throws IoError if the file cannot be read, InputError with what is not valid: unknown
-// measures and measure parameters and duplicate ids among it.
+// Throws IoError if the file cannot be read, InputError if it is not valid, as with unknown measures or
+// measure parameters, or duplicate ids.
 inline constexpr FileKind claims_kind{"claims file", 1 << 22};
 ClaimsFile read_claims_file(const std::filesystem::path& file);
 ClaimsFile parse_claims_file(const std::string& name, const std::string& text);
-// The claims alone.
+// Return the claims alone.
 std::vector<Claim> read_claims(const std::filesystem::path& file);
 std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
 
-// The verdict that `ours`, the median of an ensemble, gives: if it lies in the allowed interval widened by
-// the tolerance, derived for a claim recorded as that, reproduced for any other; corrected if it does not but
-// lies in the corrected interval; else not reproduced. Ours holds or does not hold instead. NaN never agrees.
+// Returns the verdict for `ours`, the median of an ensemble. In the allowed interval widened by the tolerance
+// it is reproduced, or derived for a claim recorded as that; otherwise corrected if `ours` lies in the
+// corrected interval, else not reproduced. A claim of ours holds or does not hold instead. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
 
 }  // namespace impact_damper

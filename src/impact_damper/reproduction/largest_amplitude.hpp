@@ -1,4 +1,4 @@
-// Which amplitude stands for several steady motions under the same force: Figure D and its claims.
+// The amplitude that represents several steady motions under the same force: Figure D and its claims.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace impact_damper {
 
 using SweepWay = std::vector<SteadyState> Sweep::*;
 
-// The largest amplitude that the motions of one way have at the axis's value of index `i`, in the `n`-th
-// sweep of each response, along the same values. NaN if one of them has none: a smaller one does not stand
-// for it.
+// Returns the largest amplitude of the motions of one way at the axis's value of index `i`, in the `n`-th
+// sweep of each response; all have the same values. NaN if one of them has no amplitude, which may be the
+// largest.
 inline double largest_amplitude(const std::vector<const SweepResponse*>& responses, std::size_t n,
                                 SweepWay way, std::size_t i) {
   double largest = 0;

@@ -38,7 +38,7 @@ bool read_text_of(ObjectReader& object, std::string_view key, std::string& targe
   return false;
 }
 
-// Whether its sum is one.
+// Reads a cited file. False if its SHA-256 is not valid.
 bool read_cited_file(ObjectReader object, CitedFile& file) {
   read_text_of(
       object, "file", file.file, is_path,

@@ -46,7 +46,7 @@ struct CitedFigure {
   std::vector<CitedFile> scenes;
   std::vector<CitedTable>
       tables;  // none for a drawing; else the exact engine's, which the picture shows, first
-  std::optional<CitedFile> csv;  // that table once more, as CSV; none in a manifest of before there was one
+  std::optional<CitedFile> csv;  // the first table as CSV; absent in a manifest older than that file
   CitedFile script, picture;
   std::vector<std::string> claims;
 };
@@ -59,27 +59,27 @@ struct Manifest {
   std::vector<CitedFigure> figures;
 };
 
-// Throws IoError if the file cannot be read, InputError with what is not valid: a figure
-// given twice and a stamp that its table does not have among it.
+// Throws IoError if the file cannot be read, InputError if it is not valid, as with a figure given twice or a
+// stamp that is not its table's.
 inline constexpr FileKind manifest_kind{"manifest", 1 << 20};
 Manifest read_manifest(const std::filesystem::path& file);
 Manifest parse_manifest(const std::string& name, const std::string& text);
 
-// What stands on a picture, as somebody types it.
+// The stamp of a picture, as a user types it.
 struct Stamp {
   std::string digits;                  // 8 to 64, in lower case: of a stamp, or more of the same SHA-256
   std::optional<std::string> version;  // if it was given, too
 };
-// "1a2b3c4d · 0.1.0", with or without dot and version, in either case; absent if `text` is none.
+// Reads "1a2b3c4d · 0.1.0", with or without dot and version, in either case; absent if `text` is no stamp.
 std::optional<Stamp> parse_stamp(std::string_view text);
 
-// What carries a stamp: a figure, drawn from this table of its own; a null pointer for a drawing.
+// A figure and the table of its own that carries the stamp; a null pointer for a drawing.
 struct Stamped {
   const CitedFigure* figure = nullptr;
   const CitedTable* table = nullptr;
 };
-// Every table, and every script of a drawing, whose SHA-256 begins with the digits; the exact engine's come
-// first within a figure. Valid as long as the manifest.
+// Returns every table, and every drawing by its script, whose SHA-256 begins with the digits; the exact
+// engine's come first within a figure. Valid as long as the manifest.
 std::vector<Stamped> find_stamped(const Manifest& manifest, std::string_view digits);
 
 }  // namespace impact_damper

@@ -16,14 +16,14 @@ void multiply_entry(std::optional<double>& entry, double factor) {
   if (entry) *entry *= factor;
 }
 
-// One column of one section.
+// Multiplies one column of one section.
 template <auto section, auto column>
 void multiply(Run& run, double factor) {
   if (!(run.*section)) return;
   for (auto& entry : (*(run.*section)).*column) multiply_entry(entry, factor);
 }
 
-// All that measures look at.
+// Returns a record of all that measures use.
 Record measured() {
   Record record;
   record.impacts = record.contacts = true;

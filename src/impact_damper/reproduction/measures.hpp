@@ -1,5 +1,5 @@
-// Our side of the claims: a table of names, each a function that finds one number, from runs and, where a
-// claim is about a short experiment of its own, from simulations (Runs::simulated).
+// The measures behind our side of the claims: a table of named functions, each of which finds one number,
+// from runs or, where a claim is about a short experiment of its own, from simulations (Runs::simulated).
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace impact_damper {
 
-// The numbers of the analysis that are the same for all claims.
+// Options of the analysis, the same for all claims.
 struct AnalysisOptions {
   LossFactorOptions loss;               // the averaged loss factor
   LossFactorOptions smoother_loss{18};  // the smoother one that measures of the smoothing compare it with
@@ -36,17 +36,17 @@ struct RecordedColumn {
 };
 const std::vector<RecordedColumn>& recorded_columns();
 
-// A column that is multiplied by a factor in every run, whoever made it, before it is looked at: power.hpp
-// asks which verdicts that turns.
+// A column that is multiplied by a factor in every run before a measure uses it; power.hpp finds which
+// verdicts that turns.
 struct WrongColumn {
   RecordedColumn column;
   double factor = 1;
 };
 
-// The runs that measures look at, of scenes and the catalogue's further runs, each by its name. From a folder
-// of run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is
-// read once, when somebody asks. Without a folder, as power.hpp needs it to try other scenes and other
-// ensembles, there are the scenes' runs that were put; further runs of these and all ensembles are simulated.
+// The runs that measures use, of scenes and the catalogue's further runs, each by its name. With a folder of
+// run files, NAME.json each with the other members of its ensemble beside it (scene_runs.hpp), each is read
+// once, when it is first needed. Without a folder, which power.hpp uses to try other scenes and other
+// ensembles, the scenes' runs are those that were put; further runs of these and all ensembles are simulated.
 class Runs {
  public:
   explicit Runs(std::optional<std::filesystem::path> folder, EnsembleOptions options = {},
@@ -60,25 +60,26 @@ class Runs {
         wrong_(wrong),
         responses_(std::move(responses)) {}
 
-  // The run file; throws IoError or InputError, std::invalid_argument without a folder if none was put. The
-  // reference is valid until ensemble() of the same name or put() is called.
+  // Returns the run of that name. Throws IoError or InputError, std::invalid_argument without a folder if
+  // none was put. The reference is valid until ensemble() of the same name or put() is called.
   const Run& file(const std::string& name);
-  // From now on this run stands for the scene's file, and further runs of the scene start from its scene.
+  // Puts this run in place of the scene's file; further runs of the scene then start from its scene.
   void put(const std::string& scene, Run run);
-  // From now on this response is the one of that name, until another run stands for its scene: then it is
-  // made anew for that run's scene.
+  // Puts this response in place of the one of that name. Once another run is put for its scene, it is made
+  // anew for that run's scene.
   void put(const std::string& name, Response response) { found_.insert_or_assign(name, std::move(response)); }
-  // The run file, then the other members; throws what read_members() throws. Valid until put() is called.
+  // Returns the run of that name, then the other members of its ensemble. Throws what read_members() throws.
+  // Valid until put() is called.
   const std::vector<Run>& ensemble(const std::string& name);
-  // The catalogue's response of that name, read, or put, or made for the scene whose run was put. Throws as
-  // file() does.
+  // Returns the catalogue's response of that name: read, put, or made for the scene whose run was put. Throws
+  // what file() throws.
   const Response& response(const std::string& name);
-  // The name of the engine of the scenes' runs read so far ("cem --locate" if it locates touch and release);
-  // empty if none was or if they are of several.
+  // Returns the name of the engine of the scenes' runs read so far ("cem --locate" if it locates touch and
+  // release); empty if none was or if they are of several.
   std::string engine() const;
   const AnalysisOptions& analysis() const { return analysis_; }
 
-  // What a measure simulates itself.
+  // Simulates a run for a measure.
   Run simulated(const Scene& scene, const Engine& engine, const Record& record) const;
 
  private:
@@ -94,21 +95,22 @@ class Runs {
   std::map<std::string, Response> found_;              // of responses_
 };
 
-// A measure finds its number in each member of an ensemble; one that no chaos enters finds it once.
-// NaN where there is nothing to find: it agrees with no claim.
+// A measure finds its number in each member of an ensemble, or once if chaos does not affect it. It is NaN
+// where there is nothing to find, which agrees with no claim.
 struct Measure {
   std::string_view name;
   std::size_t least_scenes, most_scenes;
-  std::vector<std::string_view> numbers;  // its parameters, all to be given
+  std::vector<std::string_view> numbers;  // its parameters, all required
   Spread (*find)(Runs& runs, const MeasureCall& call);
   std::string_view meaning;
   std::size_t least_responses = 0, most_responses = 0;
-  bool takes_dampers = false;  // runs of a list of dampers, too
+  bool takes_dampers = false;  // takes runs with a list of dampers, too
 };
 const std::vector<Measure>& measures();  // in the order of names
 inline Spread once(double value) { return {value, value, value}; }
 
-// Throws what reading runs and simulating throw; std::invalid_argument if a run lacks a column.
+// Returns the number of `call`. Throws what reading runs and simulating throw; std::invalid_argument if a run
+// lacks a column.
 Spread measure(Runs& runs, const MeasureCall& call);
 
 // The parts of the table, by subject: measures_*.cpp.

@@ -1,4 +1,4 @@
-// Measures of the paper's slips: what its formulas say, against what the model they stand for does.
+// Measures of errors in the paper's formulas: compared with the model that they describe.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@
 namespace impact_damper {
 namespace {
 
-// The secondary mass hovers at rest, out of reach of walls that move by less than half the travel: what is
-// left is a viscous oscillator.
+// Returns the decay of a viscous oscillator: the secondary mass stays at rest, out of reach of walls that
+// move by less than half the clearance.
 HalfCycles viscous_decay(const Runs& runs, double damping_ratio) {
   Scene scene;
   scene.damping_ratio = damping_ratio;
@@ -35,7 +35,8 @@ Spread viscous_loss_per_cycle(Runs& runs, const MeasureCall& call) {
   return once(2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * zeta));
 }
 
-// From the release up to half a unit of time, before any wall is met, nothing is lost.
+// Returns the change of an energy, in percent, from the release to until_time. Nothing is lost before a wall
+// is met; throws std::invalid_argument if one is.
 Spread flight_energy(const Runs& runs, const MeasureCall& call, double (*energy)(const Energy&)) {
   Scene scene;
   scene.x0 = number(call, "x0");
@@ -53,7 +54,7 @@ Spread energy_drift(Runs& runs, const MeasureCall& call) {
   return flight_energy(runs, call, [](const Energy& energy) { return energy.total(); });
 }
 
-// Halfway through a lossless impact nothing is lost either.
+// Returns how much energy, in percent, is missing halfway through a lossless impact.
 Spread impact_energy(const Runs& runs, const MeasureCall& call, bool with_wall) {
   Scene scene;
   scene.x0 = 0;
@@ -75,8 +76,8 @@ Spread impact_energy_with_wall(Runs& runs, const MeasureCall& call) {
   return impact_energy(runs, call, true);
 }
 
-// A forced plastic scene of heavy secondary mass between compliant walls, finely sampled. The engine knows no
-// stuck motion: a mass that sticks is a sustained contact, and obeys the equations of contact.
+// Simulates a forced scene with e = 0, a heavy secondary mass and compliant walls, finely sampled. The engine
+// has no stuck motion: a mass that sticks is in sustained contact and obeys the equations of contact.
 Run stuck_run(const Runs& runs, const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");
@@ -92,7 +93,8 @@ Run stuck_run(const Runs& runs, const MeasureCall& call) {
   return runs.simulated(scene, Exact{}, record);
 }
 
-// Every sample of the contacts, once the wall's own motion, which dies as exp(-sqrt(k/nu) t), is gone.
+// Visits every sample of the contacts after the wall's own motion, which decays as exp(-sqrt(k/nu) t), has
+// died away.
 template <class Visit>
 void for_each_stuck_sample(const Run& run, Visit visit) {
   const std::vector<double>& time = run.history->time;
@@ -101,7 +103,7 @@ void for_each_stuck_sample(const Run& run, Visit visit) {
       if (time[i - 1] > run.contacts->begin[c] + 0.2 && time[i + 1] < run.contacts->end[c]) visit(i, c);
 }
 
-// The coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t) by least squares.
+// Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t) by least squares.
 Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
   const Run run = stuck_run(runs, call);
   const History& h = *run.history;
@@ -115,8 +117,8 @@ Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
   return once(products / squares);
 }
 
-// zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck motion by
-// least squares: a mass pressed to the wall at rest moves with it, in a sustained contact.
+// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck
+// motion by least squares: a mass at rest against its wall moves with it, in a sustained contact.
 Spread stuck_damping(Runs&, const MeasureCall& call) {
   Scene scene;
   scene.mass_ratio = number(call, "mass_ratio");
@@ -141,7 +143,7 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
   return once(products / squares);
 }
 
-// How far the stuck mass moves from its wall, divided by how far y'' = -x'' would carry it.
+// Returns how far the stuck mass moves from its wall, divided by how far y'' = -x'' would move it.
 Spread stuck_drift(Runs& runs, const MeasureCall& call) {
   const Run run = stuck_run(runs, call);
   const History& h = *run.history;

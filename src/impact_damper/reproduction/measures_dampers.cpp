@@ -15,7 +15,7 @@ std::vector<double> edges_of(const MeasureCall& call) {
   return descending_amplitudes(number(call, "to"), number(call, "from"), set_bins_in_decade);
 }
 
-// The greatest mean loss factor between the amplitudes divided by the least.
+// Returns the greatest mean loss factor between the amplitudes divided by the least.
 double loss_ratio_of(Runs& runs, const MeasureCall& call) {
   const std::vector<double> losses = losses_between(runs.ensemble(call.scenes.front()), edges_of(call)).mean;
   const auto [least, greatest] = std::ranges::minmax(losses);
@@ -30,8 +30,8 @@ Spread loss_variation_percent(Runs& runs, const MeasureCall& call) {
   return once(percent);
 }
 
-// The widest range of amplitudes in which no loss factor is farther than the share `within` from the middle
-// of the greatest and the least: its ends divided by each other.
+// Returns the ratio of the ends of the widest range of amplitudes in which every loss factor lies within the
+// share `within` of the middle between the greatest and the least.
 Spread alike_range(Runs& runs, const MeasureCall& call) {
   const std::vector<double> edges = edges_of(call),
                             losses = losses_between(runs.ensemble(call.scenes.front()), edges).mean;
@@ -49,8 +49,8 @@ Spread alike_range(Runs& runs, const MeasureCall& call) {
   return once(widest);
 }
 
-// By how much the loss factor of several dampers differs from the sum of theirs, divided by the sum, in the
-// bins between the amplitudes: median, least and greatest.
+// Returns the difference between the loss factor of several dampers and the sum of theirs, divided by the
+// sum, in the bins between the amplitudes: median, least and greatest.
 Spread from_sum(Runs& runs, const MeasureCall& call) {
   const std::vector<double> edges = edges_of(call);
   const std::vector<Run>& together = runs.ensemble(call.scenes[0]);

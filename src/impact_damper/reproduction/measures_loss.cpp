@@ -79,7 +79,7 @@ double worst_spread_percent(const std::vector<Curve>& curves, double from, doubl
 
 namespace {
 
-// Of the ordinates A eta_s / nu of all runs together, A in [from, to].
+// Applies `find` to the ordinates A eta_s / nu of all runs together, A in [from, to].
 template <class Find>
 Spread of_products(Runs& runs, const MeasureCall& call, FirstPoint first, Find find) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
@@ -105,7 +105,7 @@ Spread collapse(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// The point of the highest ordinate.
+// Returns the point of the highest ordinate.
 std::pair<double, double> highest(const Curve& curve) {
   const auto top = std::max_element(curve.y.begin(), curve.y.end());
   if (top == curve.y.end()) return {std::nan(""), std::nan("")};
@@ -212,7 +212,7 @@ Spread product_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// A eta over A.
+// Returns the curve of A eta over A.
 Curve product_of_total_loss(const Runs& runs, const Run& run, const MeasureCall& call) {
   Curve curve =
       loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
@@ -220,8 +220,8 @@ Curve product_of_total_loss(const Runs& runs, const Run& run, const MeasureCall&
   return curve;
 }
 
-// Neither the mass ratio nor the restitution of the scenes enters: what is compared with the factor is their
-// motion alone.
+// The mass ratio and the restitution of the scenes do not enter: their motion alone is compared with the
+// factor.
 Spread loss_ratio_exponent(Runs& runs, const MeasureCall& call) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
     const double ratio = mean(product_of_total_loss(runs, *group[0], call).y) /
@@ -230,7 +230,7 @@ Spread loss_ratio_exponent(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Weighted with the amplitude, so that all bins count alike: the scatter of eta is as 1/A.
+// Weighted with the amplitude, so that all bins count alike: the scatter of eta is proportional to 1/A.
 Spread added_loss_error(Runs& runs, const MeasureCall& call) {
   const double from = number(call, "from"), to = number(call, "to");
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
@@ -264,7 +264,7 @@ Spread smoothing_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// How wide the peak of eta is: ln of the ratio of the amplitudes around it down to half its height.
+// Width of the peak of eta: ln of the ratio of the amplitudes around it at half its height.
 Spread smoothing_width_ratio(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     const auto width = [&](const LossFactorOptions& fit) {

@@ -1,4 +1,4 @@
-// Measures that hold one run against another, of another engine, release or wall, and those of walls and time
+// Measures that compare a run with one of another engine, release or wall, and measures of walls and time
 // steps.
 #include <algorithm>
 #include <cmath>
@@ -14,13 +14,13 @@
 namespace impact_damper {
 namespace {
 
-// When the first half cycle below `amplitude` has its peak. NaN if none does.
+// Returns the time of the peak of the first half cycle below `amplitude`. NaN if there is none.
 double time_below(const Run& run, double amplitude) {
   const auto row = first_row_below(half_cycles_of(run), amplitude);
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
 
-// For each member of the two ensembles of `call`, side by side.
+// Applies `find` to each member of the two ensembles of `call`, in pairs.
 template <class Find>
 Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
   return over_groups(runs, call,
@@ -43,7 +43,7 @@ Spread time_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Share of the half cycles with an amplitude in [from, to] that belong to no regular window.
+// Returns the share of the half cycles with an amplitude in [from, to] that belong to no regular window.
 double mixed_share(const Run& run, const RegimeOptions& regimes, double from, double to) {
   const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
   const std::vector<RegularWindow> windows = regular_windows(run, regimes);
@@ -76,7 +76,8 @@ Spread zeta_difference(Runs&, const MeasureCall& call) {
   return once(std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e)));
 }
 
-// Both masses at rest but for the secondary's unit velocity towards the left wall, half the travel away.
+// Returns a scene with both masses at rest, except for the secondary's unit velocity towards the left wall,
+// half the clearance away.
 Scene single_impact_scene(const MeasureCall& call) {
   Scene scene;
   scene.x0 = 0;
@@ -109,8 +110,8 @@ Spread contact_frequency(Runs& runs, const MeasureCall& call) {
   return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
 }
 
-// Run once more by its own engine, the wall sampled finely through the contact that its fastest impact
-// begins.
+// Simulates each run again with its own engine, the wall sampled finely through the contact that its fastest
+// impact begins.
 Spread wall_overlap(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
@@ -131,8 +132,8 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Whether the component element method, ten thousand steps of length h long, keeps the amplitude of a primary
-// mass that swings by a hundredth of the travel, its secondary mass out of reach.
+// Whether the component element method, in ten thousand steps of length h, keeps the amplitude of a primary
+// mass that swings by 0.01 of the clearance, its secondary mass out of reach.
 bool is_stable(const Runs& runs, double h) {
   Scene scene;
   scene.x0 = 0.01;
@@ -145,11 +146,12 @@ bool is_stable(const Runs& runs, double h) {
     const std::vector<double> amplitude = runs.simulated(scene, cem, Record{}).half_cycles->amplitude;
     return std::ranges::none_of(amplitude, [&](double a) { return !(a < 10 * scene.x0); });
   } catch (const NumericalError&) {
-    return false;  // beyond the largest number
+    return false;  // overflow
   }
 }
 
-// Largest step that stays bounded, by bisection. The highest mode is the primary mass's, of frequency 1.
+// Returns the largest step that stays bounded, by bisection. The highest mode is the primary mass's, of
+// frequency 1.
 Spread step_limit(Runs& runs, const MeasureCall&) {
   double low = 0.5, high = 8;
   while (high - low > 1e-6) {
@@ -159,11 +161,11 @@ Spread step_limit(Runs& runs, const MeasureCall&) {
   return once(low);
 }
 
-// The power of the time step as which the error of the component element method falls, by least squares: of
-// the half cycles' amplitudes against the exact engine, up to t = 30, before chaos can set in. The steps are
-// spaced evenly in the logarithm. The error of a single one scatters by a factor of three, because it depends
-// on where impacts happen to fall in a step; over 32 steps and a factor of 16 the exponent has a standard
-// error of 0.2.
+// Returns the exponent of the time step in the error of the component element method, by least squares. The
+// error is that of the half cycles' amplitudes against the exact engine, up to t = 30, before chaos can set
+// in. The steps are spaced evenly in the logarithm. The error of a single one scatters by a factor of three,
+// because it depends on where impacts happen to fall in a step; over 32 steps and a factor of 16 the exponent
+// has a standard error of 0.2.
 template <bool locate>
 Spread step_order(Runs& runs, const MeasureCall& call) {
   Scene scene = runs.file(call.scenes.front()).scene;

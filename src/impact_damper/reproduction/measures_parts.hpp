@@ -1,4 +1,4 @@
-// What the measures_*.cpp share.
+// Functions that the measures_*.cpp share.
 #pragma once
 
 #include <limits>
@@ -19,30 +19,31 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-// One ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from, to]. The
-// first point is left out unless it is asked for: row 0, which ran from the release and is less than a half
-// cycle, is among the peaks it is fitted to.
+// Returns one ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from,
+// to]. The first point is left out by default: row 0, which ran from the release and is less than a half
+// cycle, is among the peaks that it is fitted to.
 enum class FirstPoint { left_out, counted };
 Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
                  double to = everywhere, FirstPoint first = FirstPoint::left_out);
 
-// Slope of ln y against ln x by least squares.
+// Returns the slope of ln y against ln x by least squares.
 double log_slope(const Curve& curve);
 
-// The mean ordinate of each curve, for each of the bins that all of them reach.
+// Returns the mean ordinate of each curve, for each of the bins that all of them reach.
 std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
                                            int bins);
-// How far curves lie apart at equal x: the largest minus the least of their bin means divided by the mean of
-// these, in percent, for each of the bins that all of them reach. The bins are equal in ln x on [from, to].
+// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
+// mean of these, in percent, for each of the bins that all of them reach. The bins are equal in ln x on
+// [from, to].
 inline constexpr int default_bins = AnalysisOptions{}.bins;
 std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to,
                                         int bins = default_bins);
-// Their mean, and the largest of them. NaN if there is none.
+// Return the mean, and the largest, of these. NaN if there is none.
 double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins = default_bins);
 double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
                             int bins = default_bins);
 
-// NaN of none.
+// Returns NaN for an empty list.
 inline double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;

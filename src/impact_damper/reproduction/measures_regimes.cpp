@@ -93,8 +93,8 @@ Spread first_missed_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// What `find` says of the regular window of so many impacts that lies nearest to an amplitude. Infinite if
-// there is none: unlike NaN, that leaves the median over other members alone.
+// Applies `find` to the regular window of a given number of impacts that lies nearest to an amplitude.
+// Infinite if there is none: unlike NaN, that keeps the median over the other members.
 template <class Find>
 Spread of_nearest_window(Runs& runs, const MeasureCall& call, Find find) {
   const double amplitude = number(call, "amplitude");
@@ -143,7 +143,7 @@ Spread mixed_gaps(Runs& runs, const MeasureCall& call) {
     double gaps = 0;
     for (std::int64_t count = static_cast<std::int64_t>(number(call, "most")); count >= 2; --count) {
       const auto above = longest_window(windows, count), below = longest_window(windows, count - 1);
-      // Between two windows that merely adjoin one half cycle may be of neither.
+      // Between two adjoining windows one half cycle may belong to neither.
       if (above && below && below->first > above->last + 2) ++gaps;
     }
     return gaps;
@@ -164,9 +164,9 @@ Spread rows_with_impacts(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// How the number of impacts in a half cycle that ends stuck grows as e comes closer to 1: the power of
-// 1/(1 - e) by least squares over e = 0.4, 0.6, 0.8 and 0.9, each from a release at 1.1 times the amplitude
-// above which its bounces end. At a fixed amplitude there would be no such half cycle beyond some e. NaN if a
+// Returns how the number of impacts in a half cycle that ends stuck grows as e approaches 1: the exponent of
+// 1/(1 - e) by least squares over e = 0.4, 0.6, 0.8 and 0.9. Each is released at 1.1 times the amplitude
+// above which its bounces end; at a fixed amplitude no half cycle would end stuck beyond some e. NaN if a
 // scene, as one with a heavy secondary mass, has too few half cycles in that time.
 Spread stuck_impacts_growth(Runs& runs, const MeasureCall& call) {
   const Run& base = runs.file(call.scenes.front());
@@ -243,7 +243,7 @@ Spread phase_difference(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Degrees of the half cycle against amplitude: per unit of amplitude, by least squares.
+// Returns the slope against amplitude by least squares: degrees of the half cycle per unit of amplitude.
 double slope(const Curve& curve) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -260,7 +260,8 @@ Spread stuck_degrees_slope(Runs& runs, const MeasureCall& call) {
     for (std::size_t i = 0; i < stuck.amplitude.size(); ++i) {
       const bool within =
           stuck.amplitude[i] >= number(call, "from") && stuck.amplitude[i] <= number(call, "to");
-      // A release lags the zero crossing a little: the remnant at the start of a half cycle is not its own.
+      // The mass is released slightly after the zero crossing: the remnant at the start belongs to the half
+      // cycle before.
       if (!within || stuck.begin_deg[i] <= 0) continue;
       curve.x.push_back(stuck.amplitude[i]);
       curve.y.push_back(stuck.end_deg[i] - stuck.begin_deg[i]);
@@ -294,7 +295,7 @@ double farthest_from(double centre, const std::vector<double>& values) {
   });
 }
 
-// What `find` says of each scene: of them the number that is farthest from a given one.
+// Applies `find` to each scene and returns the number that is farthest from `centre`.
 template <class Find>
 Spread farthest_over_scenes(Runs& runs, const MeasureCall& call, double centre, Find find) {
   return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
@@ -322,7 +323,7 @@ Spread first_impact_place(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// An impact at the relative speed w takes nu (1 - e^2) w^2 / (2 (1 + nu)) out; without viscous damping
+// An impact at the relative speed w dissipates nu (1 - e^2) w^2 / (2 (1 + nu)); without viscous damping
 // nothing else is lost between the first amplitude and the last.
 Spread impact_loss_error(Runs& runs, const MeasureCall& call) {
   return farthest_over_scenes(runs, call, 0, [](const Run& run) {
@@ -336,7 +337,7 @@ Spread impact_loss_error(Runs& runs, const MeasureCall& call) {
   });
 }
 
-// Of ln (fastest impact of the half cycle by A^power) against ln A.
+// Returns the slope of ln (speed of the half cycle's fastest impact divided by A^power) against ln A.
 Spread impact_speed_slope(Runs& runs, const MeasureCall& call) {
   return over_members(runs, call, [&](const Run& run) {
     const Impacts& impacts = impacts_of(run);

@@ -1,6 +1,6 @@
-// Measures on steady motions under a force: beside what a free decay predicts of them (docs/mathematics.md,
-// chapter 14: M14.9, which follows from M14.6, M14.7 and M14.8), beside each other, and beside the closed
-// form of two impacts in a period.
+// Measures on steady motions under a force: compared with the prediction from a free decay
+// (docs/mathematics.md, chapter 14: M14.9, which follows from M14.6, M14.7 and M14.8), with each other, and
+// with the closed form of two impacts in a period.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-// Throws std::invalid_argument if the response is of another kind.
+// Returns the response of that name. Throws std::invalid_argument if it is of another kind.
 template <class Kind>
 const Kind& response_of(Runs& runs, const std::string& name) {
   const auto* const found = std::get_if<Kind>(&runs.response(name));
@@ -33,7 +33,8 @@ double amplitude_of(const SteadyState& steady) { return steady.means ? steady.me
 
 constexpr SweepWay rising = &Sweep::up, falling = &Sweep::down;
 
-// The sweeps of a call. Throws std::invalid_argument if not all have as many, each from its own start.
+// Returns the sweeps of a call. Throws std::invalid_argument unless all responses have equally many, each
+// from its own start.
 std::vector<const SweepResponse*> sweeps_of(Runs& runs, const MeasureCall& call) {
   std::vector<const SweepResponse*> responses;
   for (const std::string& name : call.responses) {
@@ -44,7 +45,7 @@ std::vector<const SweepResponse*> sweeps_of(Runs& runs, const MeasureCall& call)
   return responses;
 }
 
-// The largest amplitude at each force that the sweeps have, for each start. Throws std::invalid_argument if
+// Returns, for each start, the largest amplitude at each force of the sweeps. Throws std::invalid_argument if
 // they are not over the same forces.
 std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
   const std::vector<const SweepResponse*> responses = sweeps_of(runs, call);
@@ -63,7 +64,8 @@ std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, Sweep
   return curves;
 }
 
-// F over A (M14.7) from the amplitude of the largest F on down, in the order of time; A in [from, to].
+// Returns F over A (M14.7) from the amplitude of the largest F downwards, in the order of time; A in [from,
+// to].
 Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
   Curve curve =
       loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
@@ -75,7 +77,7 @@ Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
   return curve;
 }
 
-// A number for each start of the sweeps, by each member of the decay's ensemble. find(amplitudes, needed).
+// Applies find(amplitudes, needed) for each start of the sweeps to each member of the decay's ensemble.
 template <class Find>
 Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find) {
   std::vector<Curve> needed;
@@ -87,7 +89,8 @@ Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find)
   return spread_of(values);
 }
 
-// (M14.9), linear between the curve's points; NaN for a force above all of it or below all of it.
+// Returns the amplitude by (M14.9), linear between the curve's points; NaN for a force above or below all of
+// it.
 double predicted_amplitude(const Curve& needed, double force) {
   for (std::size_t i = 0; i + 1 < needed.x.size() && force <= needed.y[0]; ++i) {
     if (!(needed.y[i + 1] <= force)) continue;
@@ -128,14 +131,14 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
 Spread jump_ratio(Runs& runs, const MeasureCall& call) {
   constexpr double half_of_the_clearance = 0.5;
   return over_starts(runs, call, falling, [](const Curve& found, const Curve& needed) {
-    std::size_t least = found.x.size();  // the least force that holds such an amplitude from there on
+    std::size_t least = found.x.size();  // index of the least force from which on that holds
     while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
     return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
   });
 }
 
-// For each value of a sweep, with what the rising and the falling way have there.
+// Visits each value of a sweep, with the motions of the rising and of the falling way.
 template <class Visit>
 void for_each_value(const Sweep& sweep, Visit visit) {
   for (std::size_t i = 0; i < sweep.up.size(); ++i)
@@ -159,7 +162,7 @@ Spread one_motion_share(Runs& runs, const MeasureCall& call) {
   return spread_of(shares);
 }
 
-// Of the points of a map, those that end in a motion with one impact on each wall in a period of the force.
+// Numbers of points of a map that end in a motion with one impact on each wall in a period of the force.
 struct TwoImpactPoints {
   std::int64_t symmetric = 0, all = 0;
 };
@@ -185,9 +188,8 @@ Spread equally_spaced_share(Runs& runs, const MeasureCall& call) {
   return spread_of({static_cast<double>(points.symmetric) / static_cast<double>(points.all)});
 }
 
-// Relative difference of the power that impacts take out from what they would take out in the closed form, of
-// whose two orbits the nearer counts. An impact with the relative speed w costs nu (1 - e^2) w^2 / (2 (1 +
-// nu)).
+// Returns the relative difference of the power lost in impacts from that of the closed form, of whose two
+// orbits the nearer counts. An impact with the relative speed w dissipates nu (1 - e^2) w^2 / (2 (1 + nu)).
 double power_error(const Scene& scene, double impact_power) {
   const double nu = scene.mass_ratio, e = scene.restitution;
   double least = std::numeric_limits<double>::infinity();
@@ -205,7 +207,7 @@ Spread two_impact_error(Runs& runs, const MeasureCall& call) {
     const auto& response = response_of<SweepResponse>(runs, name);
     const auto add = [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
       const Scene scene = response.axis.at(response.scene, i);
-      // Undamped at resonance there is no linear response, which the closed form is made of.
+      // The closed form uses the linear response, which does not exist at resonance without damping.
       if (scene.force_frequency == 1 && scene.damping_ratio == 0) return;
       for (const SteadyState* each : {&up, &down})
         if (each->period == 1 && each->symmetric && each->impacts == ImpactCounts{1, 1})

@@ -1,4 +1,4 @@
-// A measure of the paper's stuck regime: the steps that it saves the component element method.
+// A measure of the paper's stuck regime: the number of steps that it saves the component element method.
 #include <cstdint>
 #include <optional>
 
@@ -9,8 +9,9 @@
 namespace impact_damper {
 namespace {
 
-// Small steps only near contact, touch and release located: the way of the method whose own error, 1e-5 of
-// the time of a decay, is below what the regime changes. The catalogue's further runs by it go the same way.
+// Returns the component element method with small steps only near contact, and touch and release located. Its
+// own error, 1e-5 of the time of a decay, is below what the regime changes. The catalogue's further runs by
+// this method have the same options.
 Cem method(std::optional<double> stuck_speed) {
   Cem engine;
   engine.locate = true;
@@ -19,7 +20,7 @@ Cem method(std::optional<double> stuck_speed) {
   return engine;
 }
 
-// The scene's own decays down to an amplitude.
+// Returns the call's scene, which decays down to `amplitude`.
 Scene decay_of(Runs& runs, const MeasureCall& call, double amplitude) {
   Scene scene = runs.file(call.scenes.front()).scene;
   scene.until_time.reset();
@@ -27,7 +28,7 @@ Scene decay_of(Runs& runs, const MeasureCall& call, double amplitude) {
   return scene;
 }
 
-// The least budget of steps that a run does not use up.
+// Returns the least budget of steps that a run does not exhaust.
 double steps_of(const Scene& scene, Cem engine) {
   std::int64_t least = 0, most = engine.max_steps;
   while (most - least > 1) {

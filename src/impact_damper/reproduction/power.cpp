@@ -21,7 +21,7 @@ constexpr std::string_view of_analysis = "analysis", of_columns = "columns";
 
 enum class Change { larger, smaller, added };
 
-// Changes of two digits from 10^decade to `most`, first of them 1, 2, 5, 10 ... of the least.
+// Returns changes of two digits from 10^decade to `most`; scanned first are 1, 2, 5, 10 ... times the least.
 Trials two_digit_trials(double value, Change change, int decade, double most) {
   Trials trials;
   for (;; ++decade) {
@@ -38,7 +38,7 @@ Trials two_digit_trials(double value, Change change, int decade, double most) {
   }
 }
 
-// To four times the value, and to a quarter of it.
+// The least change is 10^thousandths; the largest gives four times the value, or a quarter of it.
 constexpr int thousandths = -3;
 constexpr double to_four_times = 3;
 
@@ -96,7 +96,7 @@ std::vector<PowerNumber> numbers_of(const std::string& name, const Scene& scene)
   for (const SceneNumber& each : scene_numbers) {
     const double value = each.get(scene);
     if (!(value == value)) continue;                                             // a stop that is not given
-    if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // of no force
+    if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
     PowerNumber number{
         .of = name, .name = std::string(each.name), .value = value, .noticed_by = from_reference};
     const auto is_valid = [&](double becomes) {
@@ -120,7 +120,7 @@ std::vector<PowerNumber> numbers_of(const std::string& name, const Scene& scene)
   return numbers;
 }
 
-// What verdicts are found with, beside the runs.
+// Options that verdicts depend on, besides the runs.
 struct Settings {
   EnsembleOptions ensemble;
   AnalysisOptions analysis;
@@ -130,7 +130,7 @@ struct AnalysisNumber {
   double (*get)(const Settings&);
   void (*set)(Settings&, double);
   double least, most,
-      step;  // whole numbers in such steps; 0: any number, between a thousandth and a thousand
+      step;  // whole numbers in steps of this; 0: any number, by changes from 0.001 to 1000
   std::string_view noticed_by;
 };
 const std::vector<AnalysisNumber>& analysis_numbers() {
@@ -229,7 +229,7 @@ bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& i
          });
 }
 
-// Sweeps from further starts would be made anew for each change, and take most of the time.
+// Leaves each sweep its first start: others would be repeated for each change and take most of the time.
 void keep_first_starts(PowerInput& input) {
   for (CatalogueResponse& each : input.asked)
     if (auto* const sweeps = std::get_if<SweepResponse>(&each.asked)) sweeps->sweeps.resize(1);
@@ -240,7 +240,7 @@ void keep_first_starts(PowerInput& input) {
 }  // namespace
 
 std::optional<Trial> smallest_turn(const Trials& trials, const std::function<bool(double)>& turns) {
-  std::size_t low = 0;  // no trial before it is known to turn a verdict
+  std::size_t low = 0;  // the trials before it count as turning no verdict
   for (const std::size_t next : trials.first) {
     if (!turns(trials.all[next].value)) {
       low = next + 1;
@@ -287,7 +287,7 @@ std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t 
 
 Power::Power(PowerInput input)
     : input_(std::move(input)), threads_(input_.ensemble.threads), unchanged_(std::nullopt) {
-  // The searches share the processors; no ensemble by itself does.
+  // The threads are for the searches; each ensemble uses one.
   input_.ensemble.threads = 1;
   keep_first_starts(input_);
   const Settings settings{input_.ensemble, {}};
@@ -330,7 +330,7 @@ std::vector<std::string> Power::turned(const PowerNumber& number, double value, 
       if (!runs) runs = changed(number, value);
       if (judge(claim, measure(*runs, claim.measure).median) == verdicts_[i]) continue;
     } catch (const std::exception&) {
-      // `verify` ends with an error there: that is noticed.
+      // `verify` ends with an error there, which counts as a turned verdict.
     }
     claims.push_back(claim.id);
     if (!all) break;

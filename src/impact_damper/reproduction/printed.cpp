@@ -19,7 +19,7 @@ double value_of(const std::string& digits) {
   return *value;
 }
 
-// So many units of the last digit of a number, at most a tenth of the number.
+// Returns `units` of the last digit of a number, at most a tenth of the number.
 double tolerance_of(const std::string& digits, double units) {
   return std::min(units * *last_digit(digits), value_of(digits) / 10);
 }

@@ -1,5 +1,5 @@
-// From what the paper prints to the interval that a result must lie in: one rule for all claims. What decides
-// is how the paper says it, a number by its digits or a word, never what comes out here.
+// The interval that a result must lie in, from what the paper prints: one rule for all claims. It depends on
+// the printed digits or word alone, never on the result found here.
 //
 //   a number              half a unit of its last digit to either side: what rounding leaves open
 //   "approximately" it    a whole unit to either side, and so of "about" and "nearly" it
@@ -34,19 +34,19 @@ struct PrintedKind {
 };
 const std::vector<PrintedKind>& printed_kinds();
 
-// The unit of the last digit of a number as printed, "0.339" -> 0.001, "31" -> 1, "10" -> 10. Absent if the
-// text is not digits with at most one point among them, or all of them are zero.
+// Returns the unit of the last digit of a number as printed, "0.339" -> 0.001, "31" -> 1, "10" -> 10. Absent
+// if the text is not digits with at most one point among them, or all of them are zero.
 std::optional<double> last_digit(std::string_view digits);
 
-// What a printed value allows: the value (or both ends of the range) before the tolerance, the tolerance at
-// each end, and its reason.
+// The interval that a printed value allows: the value (or both ends of the range) before the tolerance, the
+// tolerance at each end, and its reason.
 struct Allowed {
   Interval printed;
   double below = 0, above = 0;  // tolerances, >= 0
   std::string reason;
 };
-// `digits` as many as the kind takes, each with a last_digit(), a range ascending; std::invalid_argument
-// else.
+// Returns it for `digits`: as many as the kind takes, each with a last_digit(), a range ascending. Throws
+// std::invalid_argument otherwise.
 Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digits);
 
 }  // namespace impact_damper

@@ -25,7 +25,7 @@ Engine without_defaults_by_scene(Engine engine) {
   return engine;
 }
 
-// `source` says whose scene is wanted.
+// `source` names the origin of the scene that is needed.
 void require_scene(const Run& run, const fs::path& file, const Scene& scene, const std::string& source) {
   std::vector<Problem> problems;
   const auto compare = [&](std::string_view name, std::optional<double> wanted, std::optional<double> given) {
@@ -44,7 +44,7 @@ void require_scene(const Run& run, const fs::path& file, const Scene& scene, con
   if (!problems.empty()) throw InputError(file.string(), problems);
 }
 
-// `source` says whose engine is wanted.
+// `source` names the origin of the engine that is needed.
 void require_engine(const Run& run, const fs::path& file, const Engine& engine, const std::string& source) {
   if (without_defaults_by_scene(run.engine) == without_defaults_by_scene(engine)) return;
   throw InputError(file.string(),
@@ -56,7 +56,7 @@ void require_engine(const Run& run, const fs::path& file, const Engine& engine, 
 Run read_run_of_one_damper(const fs::path& file) { return read_run(file); }
 Run read_run_of_any(const fs::path& file) { return read_run(file, DamperList::allowed); }
 
-// Reads a file; if there is none, what is thrown names the command that makes it.
+// Reads a file. If it is missing, the error names the command that makes it.
 template <class Content>
 Content read_or_name_command(Content (*read)(const fs::path&), const fs::path& file,
                              const std::string& command) {

@@ -1,5 +1,5 @@
-// Runs that stand for the project's scenes, FOLDER/SCENE.json each, and the other members of their ensembles
-// beside them: read, and held against what they stand for.
+// Runs of the project's scenes, FOLDER/SCENE.json each, and the other members of their ensembles beside them:
+// functions that read them and check that they are what they should be.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace impact_damper {
 
 // Throws InputError, naming `file`, unless the run agrees with itself (consistency.hpp).
 void require_consistent(const Run& run, const std::filesystem::path& file);
-// The same of a response (response_file.hpp).
+// The same for a response (response_file.hpp).
 void require_consistent(const Response& response, const std::filesystem::path& file);
 
 // Throws InputError, naming both files, unless the run is one of the scene in `scene_file`, number by number.
-// Throws what reading that throws.
+// Throws what reading `scene_file` throws.
 void require_scene(const Run& run, const std::filesystem::path& file,
                    const std::filesystem::path& scene_file);
 
-// Throws InputError, naming both files, unless both runs are of the same engine with the same options, but
-// for those that follow from the scene where they are not given: the time step and the latest time.
+// Throws InputError, naming both files, unless both runs are of the same engine with the same options, except
+// those that follow from the scene where they are not given: the time step and the latest time.
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
                          const std::filesystem::path& other_file);
 
@@ -34,28 +34,29 @@ void require_same_engine(const Run& run, const std::filesystem::path& file, cons
 inline constexpr std::int64_t most_members = 100;
 std::filesystem::path member_file(const std::filesystem::path& run_file, std::int64_t member);
 
-// What a member records of what its scene's run does: all but the history and the energy balance, which
-// nothing looks at in an ensemble.
+// Returns what a member of an ensemble records: what its scene's run does, except the history and the energy
+// balance, which nothing uses.
 Record record_of_member(Record record);
 
-// The other members of the ensemble whose first is `first`, the run in `run_file`, read by as many threads as
-// the options say. Each must agree with itself, be of its own release and of the engine of `first` with its
+// Reads the other members of the ensemble whose first is `first`, the run in `run_file`, with the threads of
+// the options. Each must agree with itself, be of its own release and of the engine of `first` with its
 // options. Throws IoError, naming the command that makes it, if a file is missing, and InputError.
 std::vector<Run> read_members(const Run& first, const std::filesystem::path& run_file,
                               const EnsembleOptions& options = {});
 
-// Where runs and the scenes that they are of are kept.
+// The folders of runs and of their scenes.
 struct SceneRuns {
   std::filesystem::path runs, scenes;
 
   std::filesystem::path file_of(const std::string& scene) const { return runs / (scene + ".json"); }
-  // The run of that scene, consistent and of the scene in the other folder. Throws IoError, naming the
-  // command that makes it if it is missing, or InputError.
+  // Reads the run of that scene, which must be consistent and of the scene in the other folder. Throws
+  // IoError, naming the command that makes it if it is missing, or InputError.
   Run read(const std::string& scene) const;
-  // The further run, consistent, of its scene with its changes and by its engine, or that of the scene's run,
-  // which is then read as well. Throws the same.
+  // Reads a further run, which must be consistent, of its scene with its changes, and by its engine or else
+  // that of the scene's run, which is then read as well. Throws the same.
   Run read(const CatalogueRun& wanted) const;
-  // The response, consistent, of what the catalogue asks for. Throws the same; no run is read.
+  // Reads a response, which must be consistent and what the catalogue asks for. Throws the same; no run is
+  // read.
   Response read(const CatalogueResponse& wanted) const;
 };
 

@@ -26,12 +26,12 @@ double of(const Scene& scene, Varied varied) {
   return 0;
 }
 
-// In percent, without the rounding error of the product by 100.
+// Returns a ratio in percent, without the rounding error of the product by 100.
 std::string percent(double ratio) {
   return number_text(std::round(ratio * 1e12) / 1e10) + (ratio == 0 ? "" : " %");
 }
 
-// "ν = 2 %", as legends and subtitles have it.
+// Returns "ν = 2 %", as legends and subtitles show it.
 std::string equation(const Scene& scene, Varied varied) {
   switch (varied) {
     case Varied::mass_ratio:
@@ -63,7 +63,7 @@ struct EngineWords {
   }
 };
 
-// What all curves have in common, and what sets one apart, for the line under the title.
+// Returns the line under the title: what all curves have in common, and what distinguishes one.
 std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs, const Scene& scene) {
   std::string text;
   for (const Varied varied : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
@@ -98,7 +98,7 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRun*>&
   }
 }
 
-// All of the scene's walls and masses, whatever the force is.
+// Throws unusable() unless all have the scene's mass ratio, restitution and damping ratio; forces may differ.
 void check_comparable(const Figure& figure, const std::vector<const FigureResponse*>& sources,
                       const Scene& scene) {
   for (const FigureResponse* source : sources)
@@ -108,7 +108,7 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRespon
                        "must have the same " + std::string(name_of(same)) + " as the figure's others");
 }
 
-// What a response was asked for, but for the scene.
+// Returns the request of a response without its scene, as text.
 std::string question_of(const Response& response) {
   std::string text;
   for (const auto& [pointer, part] : asked_of(response))

@@ -28,13 +28,13 @@ struct FigureResponse {
 using FigureResponses = std::map<std::string, FigureResponse>;  // by name
 using FigureSweeps = std::map<std::string, SweepTable>;         // by the name of the plan's file
 
-// The members, the scene's own run among them, of the largest ensemble of that scene that the figure shows;
-// 0 if it shows none.
+// Returns the number of members, the scene's own run among them, of the largest ensemble of that scene that
+// the figure shows; 0 if it shows none.
 std::int64_t members_shown(const Figure& figure, const std::string& scene);
 
-// The table of `figure`, which must not be a drawing; `runs` holds at least its scenes and further runs, with
-// as many members of each as the figure shows, `responses` at least the responses, `sweeps` that of its plan.
-// Blocks by kind:
+// Returns the table of `figure`, which must not be a drawing; `runs` holds at least its scenes and further
+// runs, with as many members of each as the figure shows, `responses` at least the responses, `sweeps` that
+// of its plan. Blocks by kind:
 //
 //   motion       "motion" (time, x, x + 1, z = x + y, y); "impacts", which are also vertices of "motion", so
 //                that its line meets the wall however few the samples; "stuck" if the mass sticks

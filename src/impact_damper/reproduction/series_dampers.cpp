@@ -1,4 +1,4 @@
-// Tables of several dampers: what they lose together, and the sum of what each would lose alone.
+// Tables of several dampers: their loss together, and the sum of the losses of each alone.
 #include <cmath>
 #include <numeric>
 
@@ -10,7 +10,7 @@
 namespace impact_damper {
 namespace {
 
-// The first of them and the others of its ensemble.
+// Returns the run and the others of its ensemble.
 std::vector<Run> releases_of(const FigureRun& source) {
   std::vector<Run> runs{source.run};
   runs.insert(runs.end(), source.others.begin(), source.others.end());

@@ -14,7 +14,7 @@ namespace {
 const char* const of_peak = "peak amplitude, divided by the clearance";
 const char* const of_mean_loss = "loss factor eta per radian, mean of the releases";
 
-// What the report reads off the charts as an example.
+// The example that the report reads off the charts.
 struct {
   double restitution = 0.6, mass_ratio = 0.02, amplitude = 1;
 } constexpr example;

@@ -35,14 +35,14 @@ std::string meaning(LossOrdinate which) {
   return "";
 }
 
-// i-th of last + 1 amplitudes, equally spaced in the logarithm, both ends included.
+// Returns amplitude i of last + 1, equally spaced in the logarithm, both ends included.
 double amplitude_at(int i, int last, double from, double to) {
   if (i == 0) return from;
   if (i == last) return to;
   return from * exponential(logarithm(to / from) * i / last);
 }
 
-// Amplitudes along a closed form, no further apart than a factor of exp(spacing).
+// Returns amplitudes along a closed form, no further apart than a factor of exp(spacing).
 std::vector<double> theory_amplitudes(double from, double to, double spacing) {
   const int last = static_cast<int>(std::ceil(logarithm(to / from) / spacing));
   std::vector<double> amplitudes;
@@ -50,7 +50,7 @@ std::vector<double> theory_amplitudes(double from, double to, double spacing) {
   return amplitudes;
 }
 
-// How many rows of `loss` have a peak before impact failure among those they average; all, if none is found.
+// Returns how many rows of `loss` average at least one peak before impact failure; all, if none is found.
 std::size_t before_failure(const Run& run, const LossFactor& loss, int span) {
   const auto missed = impact_failure(run).first_missed;
   if (!missed) return loss.eta.size();
@@ -74,21 +74,22 @@ struct LossCurve {
         kept(before_failure(run, loss, curve.loss_factor.half_cycles)) {}
 };
 
-// The closed forms for zeta = 0, with eta / nu for eta. They depend on no more than the restitution and how
-// far up they are drawn, so one serves all curves that differ in something else.
+// The closed forms for zeta = 0, with eta / nu for eta. They depend only on the restitution and on the
+// largest amplitude drawn, so curves that differ in something else share them.
 struct ClosedForms {
   double restitution, largest;
   LossFactor one_impact, bounce_down;
 
   ClosedForms(double e, double most) : restitution(e), largest(most) {
-    // It leaves the fold steeply; bounce-down bends so little that its chords are within 1e-4 of it.
+    // The curve is steep at the fold; that of bounce-down is so straight that its chords are within 1e-4 of
+    // it.
     for (const double amplitude : theory_amplitudes(fold_amplitude(e), equal_spacing_amplitude(e), 0.01)) {
       const auto motion = single_impact(e, amplitude);
       if (!motion) continue;  // the fold itself, by rounding
       one_impact.amplitude.push_back(amplitude);
       one_impact.eta.push_back(motion->loss);
     }
-    // Below 1/pi the far wall is not met before x returns to 0.
+    // Below 1/pi the opposite wall is not met before x returns to 0.
     if (e > 0.95 || !(largest > 1 / std::numbers::pi) || !impact_damper::bounce_down(e, largest).sticks)
       return;
     bounce_down.amplitude = theory_amplitudes(bounce_down_end(e), largest, 0.04);
@@ -126,8 +127,7 @@ void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& r
                   {count + " releases", "greatest ordinate", {}, Ordinate::high}}};
   const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
   const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
-  // From the largest amplitude down: each member is then walked through once, its row being the first that
-  // lies below the amplitude.
+  // The amplitudes descend, so that each member is traversed once: its row is the first below the amplitude.
   constexpr int last = 240;
   std::vector<std::size_t> row(members.size(), 0);
   std::vector<double> values(members.size());
@@ -206,7 +206,7 @@ void add_spread_block(const Figure& figure, Table& table) {
   double least = std::numeric_limits<double>::max(), most = std::numeric_limits<double>::lowest();
   for (const TableBlock& block : table.blocks) {
     if (!block.name.starts_with("curve-")) continue;
-    // But for the first point: among the peaks that it is fitted to is the release.
+    // Without the first point: the release is among the peaks that it is fitted to.
     for (std::size_t i = 1; i < block.columns[0].values.size(); ++i) {
       const double amplitude = block.columns[0].values[i], value = block.columns[1].values[i];
       if (amplitude < figure.range[0] || amplitude > figure.range[1]) continue;
@@ -234,7 +234,7 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
   std::optional<ClosedForms> forms;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Scene& scene = sources[i]->run.scene;
-    // The closed forms are for zeta = 0 and for a rebound; below e = 1 only.
+    // The closed forms are for zeta = 0 and for a rebound, 0 < e < 1.
     if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
     const double largest = largest_amplitude(sources[i]->run);
     if (!forms || forms->restitution != scene.restitution || forms->largest != largest)

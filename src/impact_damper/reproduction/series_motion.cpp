@@ -10,7 +10,7 @@ namespace impact_damper {
 namespace {
 
 // The samples [first, last] of the history that belong to the window opened by `amplitude`. A window ends
-// where the samples' even spacing does.
+// where the samples are no longer evenly spaced.
 struct Samples {
   std::size_t first = 0, last = 0;
 };

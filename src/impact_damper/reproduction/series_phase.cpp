@@ -1,4 +1,4 @@
-// Figure 15: where in the half cycle the impacts fall, the stuck regime, and the closed forms for both.
+// Figure 15: phases of the impacts in the half cycle, the stuck regime, and the closed forms for both.
 #include <algorithm>
 #include <iterator>
 #include <numbers>
@@ -30,7 +30,8 @@ TableBlock impacts_block(const Impacts& impacts) {
   return block;
 }
 
-// One row per half cycle in which the mass sticks; a gap wherever half cycles without sticking lie between.
+// Returns a row for each half cycle in which the mass sticks; a gap where half cycles without sticking lie
+// between.
 TableBlock stuck_block(const HalfCycles& rows, const StuckPhases& stuck) {
   TableBlock block{.name = "stuck",
                    .notes = {"an interval that runs on past the zero crossing is listed where it begins"},
@@ -51,7 +52,7 @@ TableBlock stuck_block(const HalfCycles& rows, const StuckPhases& stuck) {
   return block;
 }
 
-// The longest regular window of each count of impacts.
+// Returns the longest regular window of each number of impacts.
 TableBlock windows_block(const Run& run) {
   const std::vector<RegularWindow> windows = regular_windows(run);
   TableBlock block{

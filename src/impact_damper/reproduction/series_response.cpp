@@ -17,7 +17,7 @@ constexpr const char *of_frequency = "frequency of the force, divided by Omega_n
                      *of_force = "f0 / nu, amplitude of the force divided by K epsilon and nu",
                      *of_amplitude = "largest |x|, divided by the clearance";
 
-// Rows of two columns under a name; nothing where there are none.
+// Points of a block of two columns; without points there is no block.
 struct Points {
   std::vector<double> x, y;
   std::vector<std::size_t> gaps;
@@ -39,7 +39,8 @@ void add_block(Table& table, const std::string& name, const char* of_x, const st
                           .gaps = points.gaps});
 }
 
-// With the damper's mass locked in, or without it: resonance without damping leaves a gap.
+// Adds the linear response with the damper's mass locked, or without it; resonance without damping leaves a
+// gap.
 void add_linear_block(Table& table, const std::string& name, const std::string& legend, const Scene& scene,
                       const Axis& axis, double mass) {
   constexpr std::int64_t each = 4;  // points between two values of the axis
@@ -56,7 +57,7 @@ void add_linear_block(Table& table, const std::string& name, const std::string& 
   add_block(table, name, of_frequency, legend, of_amplitude, points);
 }
 
-// What is drawn of the steady motions under one force, from sweeps and from branches.
+// The steady motions under one force that are drawn, from sweeps and from branches.
 struct Panel {
   double force = 0;
   Points rising, falling, rising_open, falling_open, stable, unstable;
@@ -74,8 +75,8 @@ void add_ways(Panel& panel, const SweepResponse& response) {
   }
 }
 
-// Each piece of a branch that is stable, or not, from the last point of the piece before. Of points closer
-// than what can be seen, which there are where an impact passes phase 0 of the force, the first is kept.
+// Adds each piece of a branch that is stable, or not, from the last point of the previous piece. Of points
+// too close to be distinguished, as where an impact passes phase 0 of the force, the first is kept.
 void add_branches(Panel& panel, const OrbitsResponse& response) {
   const double close = 1e-3 * (response.range.most() - response.range.least());
   const auto is_close = [&](const OrbitPoint& a, const OrbitPoint& b) {
@@ -85,7 +86,7 @@ void add_branches(Panel& panel, const OrbitsResponse& response) {
     const OrbitPoint *before = nullptr, *kept = nullptr;
     for (std::size_t i = 0; i < branch.points.size(); ++i) {
       const OrbitPoint& point = branch.points[i];
-      if (point.impacts == ImpactCounts{}) {  // the empty box's motion
+      if (point.impacts == ImpactCounts{}) {  // the motion of the empty box
         before = nullptr;
         continue;
       }
@@ -109,7 +110,7 @@ InputError unusable(const Figure& figure, const FigureResponse& source, const st
   return unusable(figure, source.file, why);
 }
 
-// The response as one of a kind; `wanted` says which.
+// Returns the response as one of a kind, which `wanted` names.
 template <class Kind>
 const Kind& as(const Figure& figure, const FigureResponse& source) {
   const auto* const response = std::get_if<Kind>(&source.response);
@@ -206,7 +207,7 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
       std::vector<double> force;
       for (std::size_t i = 0; i < amplitude.size(); ++i)
         force.push_back(force_at(amplitude[i], block.columns[1].values[i]));
-      // But for the first point: among the peaks that it is fitted to is the release.
+      // Without the first point: the release is among the peaks that it is fitted to.
       const auto most = std::size_t(std::max_element(force.begin() + 1, force.end()) - force.begin());
       for (std::size_t i = 1; i <= most; ++i) beyond.add(force[i], amplitude[i]);
       for (std::size_t i = most; i < force.size(); ++i) prediction.add(force[i], amplitude[i]);
@@ -234,7 +235,7 @@ void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& t
   const BasinResponse& response = as<BasinResponse>(figure, source);
   const double nu = response.scene.mass_ratio;
   const Basin& basin = response.basin;
-  // What a point of the map shows, in the order of the legend.
+  // Returns what a point of the map shows, in the order of the legend.
   const auto kind_at = [&](std::size_t i) -> std::pair<std::string, std::string> {
     if (basin.attractor[i] == undecided) return {"irregular", "nothing periodic found"};
     const Attractor& each = basin.attractors[std::size_t(basin.attractor[i])];

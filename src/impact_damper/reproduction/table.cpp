@@ -35,7 +35,7 @@ void append(std::string& text, const TableBlock& block) {
     text += (c ? " \"" : "\"") + block.columns[c].heading + "\"";
   }
   text += '\n';
-  constexpr std::size_t usual_length = 20;  // of a number and what stands behind it
+  constexpr std::size_t usual_length = 20;  // of a number and the character after it
   text.reserve(text.size() + usual_length * block.columns.size() * block.columns[0].values.size());
   for (std::size_t row = 0; row < block.columns[0].values.size(); ++row) {
     if (std::ranges::binary_search(block.gaps, row)) text += '\n';
@@ -60,7 +60,7 @@ const TableColumn* column_of(const TableBlock& block, Ordinate ordinate) {
   return found == block.columns.end() ? nullptr : &*found;
 }
 
-// The rows of one curve; each of the columns may be absent.
+// Appends the rows of one curve; each of the columns may be absent.
 void append_curve(std::string& text, const TableBlock& block, const std::string& curve, const TableColumn* y,
                   const TableColumn* low, const TableColumn* high) {
   const std::string names = csv_cell(block.name) + ',' + csv_cell(curve);

@@ -10,7 +10,7 @@
 
 namespace impact_damper {
 
-// What the numbers of a column are to the first column, x: a value, or an end of the interval it lies in.
+// Role of a column for each number of the first, x: a value, or an end of the interval it lies in.
 enum class Ordinate { y, low, high };
 
 struct TableColumn {
@@ -36,15 +36,15 @@ struct Table {
 // value is not finite.
 void check(const Table& table);
 
-// The file's text; every number in its shortest form that reads back the same. Checks first.
+// Returns the file's text, with every number in its shortest form that reads back the same. Checks first.
 std::string to_text(const Table& table);
 
-// The same numbers as tidy CSV (RFC 4180) under the header block,curve,x,y,low,high: one row for each x of
-// each curve. A curve is a column y of a block under its heading; the block's columns `low` and `high` stand
-// beside the last of them, or alone where there is none, under the heading of `high`. A cell without a number
-// is empty; a row without any interrupts the line, where the block has a gap. Comment lines are left out.
-// Lines end with LF: every CSV reader takes it, git and text tools keep it, and with CRLF the last cell of a
-// line would end with a CR in awk.
+// Returns the same numbers as tidy CSV (RFC 4180) under the header block,curve,x,y,low,high: one row for each
+// x of each curve. A curve is a column y of a block under its heading; the block's columns `low` and `high`
+// stand beside the last of them, or alone where there is none, under the heading of `high`. A cell without a
+// number is empty; a row without any interrupts the line, where the block has a gap. Comment lines are left
+// out. Lines end with LF: every CSV reader takes it, git and text tools keep it, and with CRLF the last cell
+// of a line would end with a CR in awk.
 std::string to_csv(const Table& table);
 
 }  // namespace impact_damper

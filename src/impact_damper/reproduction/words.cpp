@@ -11,10 +11,10 @@ namespace {
 
 struct Field {
   std::string name, form;
-  std::size_t end;  // behind the closing brace
+  std::size_t end;  // after the closing brace
 };
 
-// The field that opens at `open`. Throws std::invalid_argument if it does not close.
+// Returns the field that opens at `open`. Throws std::invalid_argument if it does not close.
 Field field_at(std::string_view words, std::size_t open) {
   const std::size_t close = words.find('}', open);
   if (close == std::string_view::npos) throw std::invalid_argument("has a { without }");
@@ -24,7 +24,7 @@ Field field_at(std::string_view words, std::size_t open) {
           bar == std::string_view::npos ? std::string() : std::string(inner.substr(bar + 1)), close + 1};
 }
 
-// The N of "of N"; absent for another form.
+// Returns the N of "of N"; absent for another form.
 std::optional<std::int64_t> count_of(const std::string& form) {
   if (!form.starts_with("of ")) return std::nullopt;
   const auto count = parse_integer(std::string_view(form).substr(3));
@@ -37,7 +37,7 @@ std::string bracketed(const std::string& median, const std::string& low, const s
   return median + unit + " (" + low + " to " + high + unit + ")";
 }
 
-// How a number of a field is written: multiplied, in so many digits, with its unit.
+// Format of a field's number: its factor, significant digits and unit.
 struct Written {
   double factor = 1;
   int digits = 4;
@@ -50,7 +50,7 @@ Written written_as(const std::string& form) {
   return {};
 }
 
-// A whole number: each of the three rounded to it.
+// Returns a count as text: the three numbers of the spread are rounded to whole ones.
 std::string counted(const Spread& spread, std::optional<std::int64_t> of) {
   if (!std::isfinite(spread.median)) return "none";
   const auto text = [&](double value) {
@@ -74,7 +74,7 @@ std::string field_text(const Field& field, const Spread& spread) {
   return bracketed(text(spread.median), text(spread.low), text(spread.high), how.unit);
 }
 
-// The form of the first field that is the claim's own number; empty if there is none.
+// Returns the form of the first field that is the claim's own number; empty if there is none.
 std::string own_form(std::string_view words) {
   for (std::size_t open = words.find('{'); open != std::string_view::npos;) {
     const Field field = field_at(words, open);

@@ -25,18 +25,19 @@ namespace impact_damper {
 
 using NamedSpreads = std::map<std::string, Spread, std::less<>>;  // "" is the claim's own measure
 
-// What is wrong with a template whose fields may name `names`, or absent. One that needs fields has at least
-// one.
+// Returns the problem of a template whose fields may name `names`, absent if there is none. With
+// Fields::needed it must have a field.
 enum class Fields { allowed, needed };
 std::optional<std::string> problem_of_words(std::string_view words,
                                             const std::set<std::string, std::less<>>& names, Fields fields);
 
-// The template filled. It must have no problem, and `spreads` all that it names: std::invalid_argument else.
+// Returns the filled template. It must have no problem, and `spreads` all that it names; throws
+// std::invalid_argument otherwise.
 std::string in_words(std::string_view words, const NamedSpreads& spreads);
 
-// What lies between `least` and `most` or, where they are equal, within the tolerance of it, in the unit of
-// the first field "{}" of the template, which must have no problem: "4 to 15 %", ">= 5 degrees", "all 6", "5
-// +- 0.1".
+// Returns what lies between `least` and `most` or, where they are equal, within the tolerance of it, in the
+// unit of the first field "{}" of the template, which must have no problem: "4 to 15 %", ">= 5 degrees", "all
+// 6", "5 +- 0.1".
 std::string allowed_in_words(std::string_view words, const Allowed& allowed);
 
 }  // namespace impact_damper

@@ -19,14 +19,14 @@
 namespace impact_damper {
 namespace {
 
-// A mass at rest anywhere in its cavity is met by a wall if the primary mass moves farther than the
-// clearance, twice the release; the first half cycle of company shortens that.
+// Widest clearance in units of the release. The primary mass moves by twice the release in its first half
+// cycle, less with the masses that it takes along; so a wall meets each mass, wherever it is in its cavity.
 constexpr double widest = 1.8;
 
 // base^exponent, base > 0, with bits that depend on no C library.
 double power_of(double base, double exponent) { return exponential(exponent * logarithm(base)); }
 
-// What one damper does with three restitutions: as it should be, and off either way.
+// Loss of one damper with three restitutions: as designed, and at both ends of the tolerance.
 struct Known {
   LossAlone nominal, lower, higher;
 };
@@ -55,7 +55,8 @@ double least_within(const Known& known, double amplitude, double clearance, doub
   return least;
 }
 
-// eta/nu of one damper with that clearance between each two edges: row by row of the linear programme.
+// Returns the least eta/nu, within the tolerances, of one damper between each two edges: its column of the
+// linear programme (M17.14).
 std::vector<double> column_of(const Known& known, double clearance, const std::vector<double>& edges,
                               double off) {
   constexpr int parts = 4;
@@ -70,8 +71,8 @@ std::vector<double> column_of(const Known& known, double clearance, const std::v
   return column;
 }
 
-// What bounds the clearances: none is wider than `most`, and the narrowest end lies below the clearance whose
-// fold is at `lowest`, which is the range's lower end or, if smaller, the amplitude of the widest one's fold.
+// Bounds of the clearances: none is wider than `most`. The narrowest is below the one whose fold lies at the
+// amplitude `lowest`: the lower end of the range or, if smaller, the fold of the widest clearance.
 struct Bounds {
   double fold, most, lowest;
 };
@@ -91,7 +92,7 @@ std::vector<double> clearances_between(double least, double most, std::int64_t c
   return clearances;
 }
 
-// The clearances whose best shares are best, with their columns.
+// The clearances whose best shares have the largest least sum, with their columns.
 struct Clearances {
   std::vector<double> values;
   std::vector<std::vector<double>> columns;
@@ -103,7 +104,8 @@ Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count
   const Bounds bounds = bounds_of(question);
   Clearances best;
   for (int narrow = 0; narrow < narrow_steps; ++narrow) {
-    // From where the fold is at `lowest` to where it is half of it; one damper may need it wider.
+    // From the clearance whose fold is at `lowest` down to 0.4 times it; a single damper may need up to 30
+    // times it.
     const double c =
         std::min(bounds.most, bounds.lowest / bounds.fold *
                                   power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
@@ -143,8 +145,8 @@ std::vector<Run> runs_of(const DamperSetQuestion& question, const std::vector<Sc
                            {.members = set_releases, .threads = threads});
 }
 
-// Sets that are off at random: each clearance by itself, the restitution, which is the material's, of all
-// alike.
+// Simulates sets drawn within the tolerances: each clearance by itself, the restitution, which is the
+// material's, of all alike.
 std::vector<Run> varied_runs(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
                              const Threads& threads) {
   std::vector<Scene> scenes;
@@ -167,7 +169,7 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
   return lengths;
 }
 
-// All of a set but what is asked of sets that are off, and of one damper.
+// Returns the best set with `run`, `expected` and `worst`, but without `varied` and `one`.
 DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads,
                        const std::function<void(const std::string& doing)>& tell) {
   const double e = question.restitution;
@@ -175,10 +177,10 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
   DamperSet set;
   set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
   tell("what one damper does alone");
-  // The narrowest clearance that is tried, at its narrowest.
+  // The upper amplitude in units of the narrowest clearance tried, with its tolerance; 10 % more.
   const double from =
       1.1 * question.upper * bounds.fold / (0.4 * bounds.lowest) / (1 - question.clearance_off);
-  // f hardly depends on the mass; a very light one takes long.
+  // f hardly depends on the mass, and runs with a very light one take long.
   const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
   const auto alone = [&](double restitution) {
     return measured_alone(alone_mass, restitution, from, threads);
@@ -199,7 +201,7 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
     }
     return sum;
   };
-  // Where the dampers do not quite add their run tells by how much: the programme once more with that.
+  // The dampers do not quite add. Their run shows by how much, and the programme is solved again with that.
   const int passes = question.count == 1 ? 1 : 3;  // the share of one is 1
   double best = -1;
   for (int pass = 0; pass < passes; ++pass) {
@@ -227,12 +229,12 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
 
 }  // namespace
 
-// With z = x/t it is: least sum of z with sum over j of z_j columns[j][i] >= 1. Its dual, largest sum of w
-// with sum over i of w_i columns[j][i] <= 1, begins feasible at w = 0, and the simplex method's prices at its
-// end are z. Bland's rule, so that it ends.
+// With z = x/t: minimise sum_j z_j with sum_j z_j columns[j][i] >= 1. The dual, maximise sum_i w_i with sum_i
+// w_i columns[j][i] <= 1, is feasible at w = 0, and the final prices of the simplex method are z. Bland's
+// rule makes it end.
 Shares best_shares(const std::vector<std::vector<double>>& columns) {
   const std::size_t rows = columns.front().size(), dampers = columns.size(), width = rows + dampers + 1;
-  // A row for each damper: its w, its slack, the right side. The last: what each adds to the sum, negated.
+  // A row for each damper: coefficients of w, slacks, right side. The last: the objective's, negated.
   std::vector<std::vector<double>> tableau(dampers + 1, std::vector<double>(width, 0.0));
   std::vector<std::size_t> basis;
   for (std::size_t j = 0; j < dampers; ++j) {
@@ -254,7 +256,7 @@ Shares best_shares(const std::vector<std::vector<double>>& columns) {
       if (tableau[j][enters] > rounding &&
           (!leaves || ratio(j) < ratio(*leaves) || (ratio(j) == ratio(*leaves) && basis[j] < basis[*leaves])))
         leaves = j;
-    // No damper loses anything in a row: there is no least above 0.
+    // No damper loses anything in some interval: the least cannot exceed 0.
     if (!leaves) return {std::vector<double>(dampers, 1.0 / double(dampers)), 0};
     basis[*leaves] = enters;
     const double pivot = tableau[*leaves][enters];

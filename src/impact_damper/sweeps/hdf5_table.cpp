@@ -40,9 +40,9 @@ bool has_hdf5() { return true; }
 
 namespace {
 
-constexpr hsize_t rows_at_once = 4096;  // that are kept until they are written, together
+constexpr hsize_t rows_at_once = 4096;  // collected before they are written
 
-// The next field of a row, without its quotes; `row` is what stands behind it.
+// Returns the next field of a row, without its quotes, and reduces `row` to what follows.
 std::string next_field(std::string_view& row) {
   std::string field;
   bool quoted = false;
@@ -106,7 +106,7 @@ struct Hdf5Table::File {
   File(const std::filesystem::path& path, const Plan& plan) : name(path.string()), file(made(name)) {
     const auto rows = hsize_t(runs_of(plan));
     const H5::DataSpace space(1, &rows);
-    const H5::DSetCreatPropList timeless;  // or no two files would be equal
+    const H5::DSetCreatPropList timeless;  // otherwise no two files would be equal
     H5Pset_obj_track_times(timeless.getId(), false);
     for (const PlanColumn& column : columns_of(plan)) {
       const bool is_text = column.name == "end" || column.name == "problem";
@@ -141,7 +141,7 @@ struct Hdf5Table::File {
     waiting = 0;
   }
 
-  // What the library says of a failure tells users little.
+  // Replaces the library's message about a failure, which tells users little.
   template <class Act>
   static void guarded(const std::string& name, Act act) {
     try {

@@ -18,13 +18,13 @@ bool has_hdf5();                                   // whether the program was bu
 
 class Hdf5Table {
  public:
-  // Makes `file`. Throws IoError if it cannot be written.
+  // Creates `file`. Throws IoError if it cannot be written.
   Hdf5Table(const std::filesystem::path& file, const Plan& plan);
   ~Hdf5Table();
   Hdf5Table(const Hdf5Table&) = delete;
   Hdf5Table& operator=(const Hdf5Table&) = delete;
 
-  // Whole rows as row_of writes them, each with its end of line, in order.
+  // Appends whole rows as row_of writes them, each with its end of line, in order.
   void add(std::string_view rows);
   void finish();  // after the last one
 

@@ -17,9 +17,9 @@ namespace impact_damper {
 
 // What a number measures.
 enum class Dimension { ratio, count, time, length, velocity, force, frequency, rate };
-// Its unit: that of a scene in units if it is one, "" for pure numbers.
+// Returns its unit: that of a scene in units if it is one, "" for pure numbers.
 std::string_view unit_of(Dimension dimension, bool in_units);
-// What one dimensionless unit is in that unit.
+// Returns the value of one dimensionless unit in that unit.
 double scale_of(Dimension dimension, const Scales& scales);
 
 // Frequencies of the force, equally spaced, both ends included; in the scene's unit.
@@ -38,7 +38,7 @@ struct ForcedRules {
 // the rates at which small changes grow.
 enum class Experiment { run, steady, worst, lyapunov };
 
-// Which of its values one wants.
+// Which values of a quantity are better.
 enum class Better { least, greatest };
 
 class RunFindings;  // of one run, in kept_quantities.cpp
@@ -48,7 +48,7 @@ struct Quantity {
   Dimension dimension;
   std::string_view meaning;
   Experiment experiment = Experiment::run;
-  // What it is asked at: a length or a pure number, > 0. Absent: nothing.
+  // Kind of the number that it is asked at, a length or a pure number, > 0. Absent: nothing.
   std::optional<Dimension> at{};
   std::optional<Better> better{};              // absent: it is neither good nor bad by itself
   bool of_impacts = false, of_energy = false;  // what the run must record beside half cycles
@@ -64,7 +64,7 @@ struct KeptQuantity {
   std::string text() const;    // "time_to_amplitude=0.6", as plans and the command line give it
   std::string column() const;  // "time_to_amplitude_0.6"
 };
-// What `text` spells, or what is wrong with it: "must be ..., got ...".
+// The quantity that `text` names, or the problem with it: "must be ..., got ...".
 struct QuantityReading {
   std::optional<KeptQuantity> kept;
   std::string problem;
@@ -79,7 +79,7 @@ struct KeptNumbers {
   std::string_view end = "done";
   std::string problem;  // of the latter two
 };
-// Of a scene with problems: none of `count` numbers, and why.
+// Returns none of `count` numbers, and why, for a scene with problems.
 KeptNumbers none_kept(std::size_t count, const std::vector<Problem>& problems);
 KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, const Engine& engine,
                     std::span<const KeptQuantity> kept, const ForcedRules& rules);

@@ -17,13 +17,13 @@ namespace impact_damper {
 namespace {
 
 constexpr double coarse_mass_step = 1.1, mass_step = 1.01, clearance_step = 1.05;
-// So many draws that about twenty would be late if exactly the share were in time.
+// Late draws to be expected if exactly the required share were in time; this decides how many are drawn.
 constexpr double late_draws = 20;
-// Of the time and of the widest clearance, for which designs are looked for.
+// Fractions of the time and of the widest clearance for which designs are searched.
 constexpr std::array<std::pair<double, double>, 5> parts{{{1, 1}, {1, 0.5}, {1, 0.25}, {0.8, 1}, {0.6, 1}}};
 constexpr double two_pi = 6.283185307179586;
-constexpr double least_part = 1e-9;  // of the primary mass, which is as if there were no secondary mass
-constexpr double time_step = 1.05;  // in which the soonest is looked for where nothing is in time
+constexpr double least_part = 1e-9;  // of the primary mass: a secondary mass without effect
+constexpr double time_step = 1.05;   // ratio of successive times tried where no design is in time
 
 std::int64_t draws_of_search(double share) {
   return std::int64_t(std::floor(late_draws / (1 - share) + 0.5));
@@ -72,7 +72,8 @@ class Search {
         first_draws_(draws_ / 20),
         late_allowed_(late_allowed_of(draws_, question.share)) {}
 
-  // In coarse steps, then in fine ones behind the last coarse one that was not in time.
+  // Returns the lightest design in time, absent if there is none. The masses tried ascend in coarse steps,
+  // then in fine ones from the last coarse mass that was late.
   std::optional<Design> lightest() {
     const double time = question_.time;
     const std::vector<double> coarse = steps_between(question_.secondary_mass, coarse_mass_step);
@@ -85,7 +86,7 @@ class Search {
     return lighter ? design_of(fine, lighter) : design_of(coarse, found);
   }
 
-  // The shortest of the times time * time_step^n that the heaviest mass keeps.
+  // Returns the heaviest mass with the shortest of the times time * time_step^n that it keeps.
   std::optional<FoundDesign> soonest() {
     double time = question_.time;
     while (time <= longest_followed * question_.time) {
@@ -105,15 +106,15 @@ class Search {
   std::optional<Design> design_of(const std::vector<double>& masses, const std::optional<Place>& at) const {
     return at ? std::optional(Design{masses[at->mass], clearances_[at->clearance]}) : std::nullopt;
   }
-  // The draws of one design so far, up to the one with which too many are late.
+  // The draws of one design so far. They end with the one that is one too many late.
   struct Drawn {
     std::vector<double> times;
     std::int64_t late = 0;
-    double mean = 0;  // of the first of them
+    double mean = 0;  // of the first first_draws_ times
   };
 
-  // The lightest mass of a list that ascends for which a clearance is in time, with that of its clearances
-  // that is soonest (M15.10).
+  // Returns the lightest of ascending masses for which a clearance is in time, with its soonest clearance
+  // (M15.10).
   std::optional<Place> first_of(const std::vector<double>& masses, double time) {
     const Plan plan = search_plan(question_, time, masses, clearances_);
     for (std::size_t m = 0; m < masses.size(); ++m) {
@@ -124,8 +125,9 @@ class Search {
     return std::nullopt;
   }
 
-  // The clearance, of the candidates from `first` on, with the least time of most draws, if one is in time.
-  // Few draws of each show which it may be; with the time of that one the others are given up soon.
+  // Returns the clearance with the least time_of_most() among those in time, absent if there is none. Their
+  // candidates begin at `first`. A few draws of each show which is likely the soonest; its time then ends the
+  // draws of slower ones early.
   std::optional<std::size_t> soonest_of(const Plan& plan, std::size_t first, double time) {
     std::vector<Drawn> drawn(clearances_.size());
     const auto draw = [&](std::size_t c, std::int64_t draws, double latest) {
@@ -152,8 +154,7 @@ class Search {
     return best;
   }
 
-  // Up to that number of draws in all, of which those later than `latest` are late; no more as soon as too
-  // many are.
+  // Draws until there are `draws` in all, or until too many of them are later than `latest`.
   void draw_more(const Plan& plan, std::int64_t candidate, std::int64_t draws, double latest, Drawn& drawn) {
     drawn.late = std::ranges::count_if(drawn.times, [&](double taken) { return taken > latest; });
     const std::int64_t before = std::ssize(drawn.times);
@@ -165,7 +166,7 @@ class Search {
     runs_ += std::ssize(drawn.times) - before;
   }
 
-  // Within which all draws but those that may be late are down.
+  // Returns the time by which all draws except those that may be late are below the amplitude.
   double time_of_most(Drawn& drawn) const {
     const auto most = drawn.times.end() - 1 - late_allowed_;
     std::ranges::nth_element(drawn.times, most);
@@ -215,7 +216,7 @@ DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, co
 
 // (M15.9).
 ShareInterval interval_of_share(std::int64_t count, std::int64_t of) {
-  constexpr double z = 1.959963984540054;  // of a normal distribution 95 % lie within so many deviations
+  constexpr double z = 1.959963984540054;  // 95 % of a normal distribution lie within z standard deviations
   const double n = double(of), p = double(count) / n, z2 = z * z;
   const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
@@ -359,7 +360,7 @@ SceneFile scene_of_design(const DesignQuestion& question, const Design& design, 
 
 Plan search_plan(const DesignQuestion& question, double time, std::vector<double> masses,
                  std::vector<double> clearances) {
-  // A half cycle whose peak is in time must end, too, with the heaviest mass stuck.
+  // The run must include the end of a half cycle whose peak is in time, even with the heaviest mass stuck.
   const SceneInUnits& scene = question.scene;
   const double longest_period = two_pi * std::sqrt((*scene.mass + masses.back()) / *scene.stiffness);
   Plan plan;
@@ -398,7 +399,7 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
     const auto is_it = [&](const FoundDesign& before) { return before.design == *found; };
     if (!found || std::ranges::any_of(answer.designs, is_it)) continue;
     answer.designs.push_back({asked.time, asked.clearance.most, *found, {}});
-    // What is asked for more is not lighter.
+    // No design for less time or clearance is lighter than the first.
     if (answer.designs.size() == 1) asked.secondary_mass.least = found->secondary_mass;
   }
   answer.met = !answer.designs.empty();

@@ -21,7 +21,7 @@ MapAxis axis_of(const GridAxis& grid) {
   return axis;
 }
 
-// The index of a value; the axis has it, as its table was written from the same plan.
+// Returns the index of a value. The axis has it, as its table was written from the same plan.
 std::size_t index_of(const MapAxis& axis, double value) {
   return std::size_t(std::ranges::lower_bound(axis.values, value) - axis.values.begin());
 }
@@ -74,14 +74,14 @@ std::optional<BestPoint> best_of(const Map& map, Better better) {
   return best;
 }
 
-// The amplitude that a limit is compared with, in units of the clearance (M15.8).
+// Returns the amplitude that a limit is compared with, in units of the clearance (M15.8).
 double compared_amplitude(const KeptQuantity& quantity, const PlannedRun& run) {
   if (quantity.at && *quantity.quantity->at == Dimension::length)
     return *quantity.at / (run.scales ? run.scales->length : 1);
   return std::sqrt(run.scene.x0 * run.scene.x0 + run.scene.v0 * run.scene.v0);
 }
 
-// Bounce-down ends at an amplitude that theory.hpp finds up to this restitution.
+// Largest restitution for which theory.hpp finds the amplitude at which bounce-down ends.
 constexpr double highest_restitution = 0.95;
 
 std::optional<double> limit_of(Limit limit, double restitution) {
@@ -168,8 +168,8 @@ MapLine contour(const MapAxis& x, const MapAxis& y, const std::vector<std::optio
           corners.push_back({x.place(x.values[cx]), y.place(y.values[cy]), *value - level});
       }
       if (corners.size() < 4) continue;
-      // The sides that the line passes: none, two, or all four, by pairs. A pair of four cuts off a corner
-      // that the middle of the square is unlike.
+      // The sides that the line crosses: none, two or four. Of four, each pair cuts off a corner whose sign
+      // differs from that in the middle of the square.
       std::vector<std::size_t> sides;
       for (std::size_t i = 0; i < 4; ++i)
         if (passes(corners[i], corners[(i + 1) % 4])) sides.push_back(i);
@@ -188,7 +188,7 @@ MapLine contour(const MapAxis& x, const MapAxis& y, const std::vector<std::optio
 
 std::vector<double> contour_levels(double least, double greatest) {
   constexpr double most_levels = 8;
-  // The smallest of 1, 2, 5, 10, ... times a power of ten that makes no more.
+  // The step is the smallest of 1, 2, 5, 10, ... times a power of ten that gives at most most_levels.
   const double wanted = (greatest - least) / most_levels;
   double step = 1;
   while (step > wanted) step /= 10;
@@ -208,7 +208,7 @@ std::optional<LimitLine> limit_line(const Plan& plan, const MapQuestion& questio
                                     Limit limit) {
   const KeptQuantity& quantity = plan.quantities[question.z];
   if (quantity.quantity->experiment != Experiment::run) return std::nullopt;
-  // The picture, divided finely: the logarithm of amplitude over limit is smooth.
+  // A fine grid over the picture, on which the logarithm of amplitude / limit is smooth.
   constexpr std::size_t parts = 64;
   const auto divided = [](const MapAxis& axis) {
     MapAxis fine{.values = {}, .spacing = axis.spacing};
@@ -237,7 +237,7 @@ std::optional<LimitLine> limit_line(const Plan& plan, const MapQuestion& questio
     }
   LimitLine found{contour(x, y, above, 0), {}};
   if (found.line.x.empty()) return std::nullopt;
-  double rises_x = 0, rises_y = 0;  // from one end to the other, summed
+  double rises_x = 0, rises_y = 0;  // from one end to the other, sums
   for (std::size_t i = 0; i <= parts; ++i) {
     const auto rise = [](const std::optional<double>& from, const std::optional<double>& to) {
       return from && to ? *to - *from : 0;

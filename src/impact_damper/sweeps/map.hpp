@@ -14,16 +14,16 @@
 
 namespace impact_damper {
 
-// What is told of the draws of one point of the grid.
+// What is shown of the draws of one point of the grid.
 enum class Statistic { median, mean, worst };
 
 struct MapQuestion {
-  std::size_t x = 0, y = 1;  // of Plan::grid, two different ones
-  std::size_t z = 0;         // of Plan::quantities
-  // Of the other numbers of the grid, the one of their values that is looked at; as long as the grid.
+  std::size_t x = 0, y = 1;  // indices in Plan::grid, different
+  std::size_t z = 0;         // index in Plan::quantities
+  // For each other number of the grid the value at which the map is taken; as long as the grid.
   std::vector<double> fixed;
   Statistic statistic = Statistic::median;
-  std::optional<Better> better;  // which values are; needed for the worst draw and for the best point
+  std::optional<Better> better;  // which values are better; needed for the worst draw and for the best point
 };
 
 // The values of a number of the grid, ascending, each once.
@@ -31,11 +31,11 @@ struct MapAxis {
   std::vector<double> values;
   Spacing spacing = Spacing::linear;  // logarithmic if the plan's axis is
 
-  // Where `value` lies: itself, or its logarithm.
+  // Returns `value` itself, or its logarithm on a logarithmic axis.
   double place(double value) const;
   double value_at(double place) const;
-  // The limits of the cells, one more than there are values: halfway between two places, and as far beyond
-  // the first and the last. Throws InvalidArguments with fewer than two values.
+  // Returns the limits of the cells, one more than there are values: halfway between two places, and as far
+  // beyond the first and the last. Throws InvalidArguments with fewer than two values.
   std::vector<double> edges() const;
 };
 
@@ -50,10 +50,10 @@ struct Cell {
 };
 
 struct BestPoint {
-  std::size_t x = 0, y = 0;  // of the axes
+  std::size_t x = 0, y = 0;  // indices in the axes
   double value = 0;
-  // Of the up to eight points one step from it (M15.6), the worst; its value is absent if one of them has
-  // none, which is the worst that can be.
+  // The worst of the up to eight points one step from it (M15.6). A point without a value is the worst:
+  // `worst` is then absent.
   std::size_t worst_x = 0, worst_y = 0;
   std::optional<double> worst;
   bool x_is_at_end = false, y_is_at_end = false;  // of its axis: there may be better ones beyond
@@ -72,7 +72,7 @@ struct Map {
 class MapMaker {
  public:
   MapMaker(const Plan& plan, const MapQuestion& question);
-  void add(std::span<const std::string> row);  // the cells of a row as the plan's columns have them
+  void add(std::span<const std::string> row);  // the cells of a row in the order of the plan's columns
   Map finish() const;
 
  private:
@@ -91,23 +91,23 @@ struct MapLine {
   std::vector<double> x, y;
   std::vector<std::size_t> gaps;
 };
-// Where `values` at the points of the axes, x fastest, pass `level`: linear interpolation in the places of
-// the axes (M15.7), around squares of four points that all have a value.
+// Returns the line on which `values`, at the points of the axes with x fastest, pass `level`: by linear
+// interpolation in the places of the axes (M15.7), within squares of four points that all have a value.
 MapLine contour(const MapAxis& x, const MapAxis& y, const std::vector<std::optional<double>>& values,
                 double level);
-// About eight levels at round steps between the least and the greatest value.
+// Returns about eight levels at round steps between the least and the greatest value.
 std::vector<double> contour_levels(double least, double greatest);
 
-// Where an amplitude is that of impact failure, or of the end of bounce-down (M15.8).
+// Lines on which an amplitude is that of impact failure, or of the end of bounce-down (M15.8).
 enum class Limit { impact_failure, bounce_down_end };
 struct LimitLine {
   MapLine line;
-  // On which side of the line the amplitude is below the limit: "left", "right", "below" or "above", that to
-  // which it falls most on the average.
+  // "left", "right", "below" or "above": the side on which the amplitude is below the limit, towards which
+  // amplitude / limit falls most on the average.
   std::string_view lower_side;
 };
-// Absent if neither of the two numbers has a say in it, if it is nowhere in the picture, or if the motion is
-// under a force.
+// Absent if the limit depends on neither of the two numbers, if it is nowhere in the picture, or if the
+// motion is under a force.
 std::optional<LimitLine> limit_line(const Plan& plan, const MapQuestion& question, const Map& map,
                                     Limit limit);
 

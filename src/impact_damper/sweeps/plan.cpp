@@ -10,7 +10,7 @@
 namespace impact_damper {
 namespace {
 
-// (M15.4).
+// Returns the value at the fraction `part` of a range (M15.4).
 double between(double from, double to, Spacing spacing, double part) {
   switch (spacing) {
     case Spacing::linear:
@@ -28,7 +28,7 @@ bool is_in_grid(const Plan& plan, const Variable& variable) {
                              [&](const GridAxis& axis) { return axis.variable.name == variable.name; });
 }
 
-// Of a scene whose numbers have been set.
+// Sets the scene of a run from `changed`, whose numbers have been set, or else its problems.
 void finish(PlannedRun& run, const SceneFile& changed) {
   if (!changed.in_units) {
     run.scene = changed.scene;

@@ -18,18 +18,18 @@
 namespace impact_damper {
 
 // A number of the scene that may take other values: one of a dimensionless scene, or one of a scene in units,
-// whose name and unit are those of its file. Those of several dampers have the damper's number, from 1,
-// behind it: clearance_2. The stops are none.
+// whose name and unit are those of its file. Names of several dampers end in the damper's number, from 1:
+// clearance_2. Stops are not among them.
 struct Variable {
   std::string name{};
   std::string_view unit{};  // "" without one, and in a dimensionless scene
-  NumberRange range{};      // what the scene allows of it
+  NumberRange range{};      // its valid values
   SceneNumber number{};     // of a dimensionless scene; of one in units one of these
   std::optional<double> SceneInUnits::*number_in_units = nullptr;
   std::optional<double> DamperInUnits::*number_of_damper_in_units = nullptr;
-  std::size_t damper = 0;  // which, from 0
+  std::size_t damper = 0;  // index of the damper, from 0
 
-  // Its value; none where a scene in units leaves it out.
+  // Returns its value; absent where a scene in units leaves it out.
   std::optional<double> of(const SceneFile& scene) const;
   // Sets it in scene.scene or, of a scene in units, in scene.in_units, which alone is then up to date.
   void set(SceneFile& scene, double value) const;
@@ -60,8 +60,8 @@ struct SampledNumber {
   Law law = Law::between;
   double from = 0, to = 0;            // between: the ends
   Spacing spacing = Spacing::linear;  // between: uniform in the value, or in its logarithm
-  // uniform, normal: half width, or standard deviation, about the value that the number has otherwise, from
-  // the scene or the grid; of that value the fraction, if `relative`.
+  // uniform: half width, normal: standard deviation, about the value that the scene or the grid gives the
+  // number; a fraction of that value if `relative`.
   double width = 0;
   bool relative = false;
 };
@@ -101,9 +101,9 @@ struct PlannedRun {
   Scene scene;
   std::optional<Scales> scales;  // of a scene in units
 };
-// 0 <= i < runs_of(plan).
+// Returns run i, 0 <= i < runs_of(plan).
 PlannedRun run_of(const Plan& plan, std::int64_t i);
-// One with these numbers of the grid, which need not be among its values, and nothing drawn.
+// Returns the run with these numbers of the grid, which need not be among its values, and without draws.
 PlannedRun run_of(const Plan& plan, const std::vector<double>& grid);
 
 // One row of the table, without its end of line, and its header. RFC 4180: the run's number, the numbers that
@@ -111,7 +111,7 @@ PlannedRun run_of(const Plan& plan, const std::vector<double>& grid);
 std::string header_of(const Plan& plan);
 std::string row_of(const Plan& plan, std::int64_t i);
 
-// What the columns mean.
+// Name, unit and meaning of each column.
 struct PlanColumn {
   std::string name, unit, meaning;
 };

@@ -17,7 +17,7 @@ using Layout = JsonWriter::Layout;
 constexpr std::size_t most_numbers = 16, most_quantities = 64;
 constexpr double most_seed = 9007199254740992;  // 2^53: any JSON reader has it exactly
 
-// The variable that "number" names.
+// Returns the variable that "number" names.
 std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Variable>& variables) {
   std::vector<std::string_view> names(variables.size());
   std::ranges::transform(variables, names.begin(), &Variable::name);
@@ -27,7 +27,7 @@ std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Va
   return variables[*index];
 }
 
-// "from", "to" and "scale".
+// Reads "from", "to" and "scale".
 void read_ends(ObjectReader& object, const NumberRange& range, double& from, double& to, Spacing& spacing) {
   const bool has_from = object.required("from", from, range), has_to = object.required("to", to, range);
   const bool both = has_from && has_to;

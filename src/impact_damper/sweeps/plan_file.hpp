@@ -19,23 +19,23 @@ namespace impact_damper {
 inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
 inline constexpr FileKind plan_kind{"plan", 1 << 20};
 
-// Where a file that a plan names is, if it is not beside the plan.
+// Finds the place of a file that a plan names and that is not beside the plan.
 using FindFile = std::function<std::optional<std::string>(const std::string& name)>;
 
-// Throws IoError if `file`, or the scene file that it names, cannot be read, InputError with a line for each
-// of the first 50 problems in it.
+// Reads a plan. Throws IoError if `file`, or the scene file that it names, cannot be read, InputError with a
+// line for each of the first 50 problems in it.
 Plan read_plan(const std::filesystem::path& file, const FindFile& find = {});
-// The same of a text, whose scene stands in it.
+// Reads a plan, likewise, from a text that contains its scene.
 Plan parse_plan(const std::string& name, const std::string& text);
 
-// The same from an object that may belong to a larger document and collects the problems. A scene that it
-// names is looked for in `folder`, then by `find`.
+// Reads a plan from an object that may belong to a larger document and collects the problems. A scene file
+// that it names is looked for in `folder`, then by `find`.
 Plan read_plan_object(ObjectReader& object, const std::filesystem::path& folder = {},
                       const FindFile& find = {});
-// Its fields, on one line. They read back as an equal plan, and equal plans give equal text.
+// Writes the fields of a plan on one line. They read back as an equal plan, and equal plans give equal text.
 void write_plan_fields(JsonWriter& out, const Plan& plan);
 
-// What is wrong with a plan as a whole, wherever it came from: one entry for each.
+// Returns the problems of a plan as a whole, whatever its origin.
 std::vector<Problem> problems_of(const Plan& plan);
 
 }  // namespace impact_damper

@@ -8,7 +8,7 @@
 namespace impact_damper {
 namespace {
 
-// What a block of random words is for: the last word of its counter. Rounds of the permutation follow.
+// Purpose of a block of random words, the last word of its counter. Rounds of the permutation follow.
 constexpr std::uint32_t for_uniform = 0;
 constexpr std::uint32_t permutation_rounds = 8;
 
@@ -68,7 +68,7 @@ std::int64_t permuted(const Draw& draw, std::int64_t count) {
 }
 
 double normal_quantile(double p) {
-  // M.J. Wichura's PPND16. Where p is near 1/2; elsewhere r = sqrt(-ln(min(p, 1 - p))) up to 5; beyond it.
+  // M.J. Wichura's PPND16: for p near 1/2; else for r = sqrt(-ln(min(p, 1 - p))) up to 5; beyond it.
   constexpr std::array<double, 8> a{
       3.3871328727963666080e+0, 1.3314166789178437745e+2, 1.9715909503065514427e+3, 1.3731693765509461125e+4,
       4.5921953931549871457e+4, 6.7265770927008700853e+4, 3.3430575583588128105e+4, 2.5090809287301226727e+3};

@@ -52,8 +52,8 @@ ShareHead parse_head(const std::string& file, const std::string& line) {
   return head;
 }
 
-// Whether `line`, the first of a share, is as it was written, but for the ends of lines and other blanks that
-// a reader of JSON passes over.
+// Whether `line`, the first of a share, differs from what was written by ends of lines or other blanks, which
+// a JSON reader ignores.
 bool is_altered(const std::string& file, const std::string& line) {
   try {
     return head_line(parse_head(file, line)) != line;
@@ -70,17 +70,17 @@ std::string digest_line(std::int64_t rows, const Sha256& hash) {
   return "# " + std::to_string(rows) + ' ' + hash.digest();
 }
 
-// How far a share is whole.
+// How much of a share is complete.
 struct Whole {
   std::int64_t rows = -1;   // -1: not even its header
-  std::uint64_t bytes = 0;  // up to the last digest that is right
+  std::uint64_t bytes = 0;  // up to the last correct digest
   Sha256 hash;              // of these
-  std::int64_t lines = 1;   // that were looked at
-  bool complete = false;    // nothing stands behind
+  std::int64_t lines = 1;   // that were read
+  bool complete = false;    // nothing follows
 };
 
-// Of a share behind its head, which is `hash` and `bytes` long. visit(rows) is called with the rows of each
-// block that is whole, with their ends of line.
+// Reads a share after its head line `first` and returns how much is complete. visit(rows) is called with the
+// rows of each complete block, with their ends of line.
 template <class Visit>
 Whole scan(std::istream& stream, const ShareHead& head, const std::string& first, Visit visit) {
   Whole whole;
@@ -153,7 +153,7 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
   errno = 0;
   stream_.reset(std::fopen(file.c_str(), "ab"));
   if (!stream_) throw IoError(file.string() + ": cannot be written: " + std::strerror(errno));
-  // Not every file system has locks. Where there are none, the digests tell what two have written at once.
+  // Not every file system has locks. Without them the digests reveal what two processes have written at once.
   if (::flock(::fileno(stream_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw IoError(file.string() + ": cannot be written: another sweep is writing it");
   const std::string first = head_line(head);
@@ -234,7 +234,7 @@ std::string description_of_table(const ShareHead& head, std::uint64_t bytes, con
 
 void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
   if (files.empty()) throw InvalidArguments(std::vector<Problem>{{"files", "at least one must be given"}});
-  // Sorted by part; what is wrong with all of them together is told before any is read through.
+  // Sorted by part. Problems of the whole set are reported before any share is read to its end.
   std::vector<std::pair<fs::path, ShareHead>> shares;
   shares.reserve(files.size());
   for (const fs::path& file : files) shares.emplace_back(file, open(file).head);

@@ -6,8 +6,8 @@
 //   ...
 //   # 64 9f86d081...                             so many rows so far, SHA-256 of all bytes before this line
 //
-// After a line of the last kind whatever stands before it is known to be whole. A share that was interrupted
-// goes on from there; whole shares are joined into the table.
+// A line of the last kind proves that everything before it is complete. An interrupted share continues from
+// there; complete shares are joined into the table.
 #pragma once
 
 #include <cstdint>
@@ -29,21 +29,21 @@ inline constexpr std::string_view share_schema = "impact-damper/share/1";
 struct ShareHead {
   Plan plan;
   std::int64_t part = 1, parts = 1;
-  std::string program;  // version, commit, and what else tells programs apart
+  std::string program;  // version, commit, and whatever else distinguishes programs
 };
-// FOLDER/NAME.part-K-of-N of a table FOLDER/NAME.
+// Returns FOLDER/NAME.part-K-of-N for a table FOLDER/NAME.
 std::filesystem::path share_file(const std::filesystem::path& table, std::int64_t part, std::int64_t parts);
 
-// Goes on with the share in `file`, or begins it. What stands after the last digest that is right is deleted
-// and made anew, also all of a file that ends within the head of this share. Throws IoError if it cannot be
-// read or written or is being written by another process, InputError if it is of another plan, part or
-// program, or no share; then it is left as it was.
+// Continues the share in `file`, or begins it. Whatever follows the last correct digest is deleted and made
+// anew, also a whole file that ends within the head of this share. Throws IoError if it cannot be read or
+// written or is being written by another process, InputError if it is of another plan, part or program, or no
+// share; then it is left unchanged.
 class ShareWriter {
  public:
   ShareWriter(const std::filesystem::path& file, const ShareHead& head);
 
-  std::int64_t rows() const { return rows_; }  // that there are
-  std::int64_t kept() const { return kept_; }  // with a digest behind them: these outlast an interruption
+  std::int64_t rows() const { return rows_; }  // in the file
+  std::int64_t kept() const { return kept_; }  // before the last digest: these survive an interruption
   void append(std::string_view row);
   void finish();  // after the last row
 
@@ -60,13 +60,13 @@ class ShareWriter {
   std::int64_t rows_ = 0, kept_ = -1;
 };
 
-// Joins the shares of one plan, in any order, into the table of `table`, and writes beside it what it is:
-// TABLE.json. CSV by RFC 4180, or HDF5 if is_hdf5(table). Throws InputError, leaving both as they were,
-// unless every part is there once, whole, and of one plan and program; InvalidArguments without `files`. The
-// same bytes, whatever the number of parts; of HDF5 with one version of its library.
+// Joins the shares of one plan, in any order, into the file `table`, and writes its description beside it:
+// TABLE.json. CSV by RFC 4180, or HDF5 if is_hdf5(table). Throws InputError, leaving both unchanged, unless
+// every part is there once, complete, and of one plan and program; InvalidArguments without `files`. The
+// bytes do not depend on the number of parts; for HDF5, with one version of its library.
 void join_shares(const std::vector<std::filesystem::path>& files, const std::filesystem::path& table);
 
-// That text, schema "impact-damper/sweep/1".
+// Returns the text of the description, schema "impact-damper/sweep/1".
 std::string description_of_table(const ShareHead& head, std::uint64_t bytes, const std::string& digest);
 
 }  // namespace impact_damper

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 fs::path description_of(fs::path table) { return table += ".json"; }
 
-// Those of the plan, as they were written.
+// Rejects columns other than those of the plan, as they were written.
 void check_columns(ObjectReader& root, const Plan& plan) {
   const std::vector<PlanColumn> expected = columns_of(plan);
   const std::vector<ObjectReader> columns = root.required_objects("columns", 10'000);
@@ -35,7 +35,7 @@ void check_columns(ObjectReader& root, const Plan& plan) {
   }
 }
 
-// The cells of a line of CSV (RFC 4180). Those that sweep writes hold no ends of line.
+// Splits a line of CSV (RFC 4180) into cells. Those that sweep writes contain no ends of line.
 void split(const std::string& line, std::vector<std::string>& cells) {
   std::size_t count = 1;
   const auto cell = [&]() -> std::string& {

@@ -17,14 +17,14 @@ namespace impact_damper {
 
 inline constexpr FileKind sweep_kind{"sweep", 1 << 24};
 
-// What the file beside a table says.
+// Content of the file beside a table.
 struct SweepDescription {
   Plan plan;
   std::int64_t rows = 0, bytes = 0;
   std::string digest;  // SHA-256 of the table
 };
-// Throws IoError if TABLE.json cannot be read, InputError unless it is as sweep or merge wrote it, for
-// a table as CSV.
+// Reads TABLE.json. Throws IoError if it cannot be read, InputError unless it is as sweep or merge wrote it,
+// for a table as CSV.
 SweepDescription read_sweep_description(const std::filesystem::path& table);
 
 // Calls visit(cells) with the cells of each row, in their order. Before that throws IoError if the table
@@ -39,7 +39,7 @@ struct SweepTable {
   Plan plan;
   std::vector<std::vector<std::string>> rows;
 };
-// Throws as the two above, and InputError unless it is of that plan.
+// Reads a table as a whole. Throws like the two above, and InputError unless it is of that plan.
 SweepTable read_sweep_table(const std::filesystem::path& table, const Plan& plan);
 
 }  // namespace impact_damper
