@@ -26,7 +26,7 @@ consteval std::string_view enumerator() {
   text.remove_prefix(text.find(before) + before.size());
   text = text.substr(0, text.find_first_of(";]"));
   text.remove_prefix(text.rfind(':') + 1);
-  return text.find(')') == text.npos ? text : "";
+  return text.find(')') == std::string_view::npos ? text : "";
 }
 
 // The enumerator's name with a zero behind it, for C.
