@@ -73,6 +73,7 @@ TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
   REQUIRE(losses.size() == bins.size());
   for (const double each : losses) CHECK(std::abs(std::exp(each) / 0.02 * std::sqrt(1 - 1e-4) - 1) < 1e-4);
   CHECK(log_losses(rows, 1, {{0.0035, 0.001}}).empty());
+  CHECK(log_losses(rows, 1, {{0.2, 0.1}}).empty());  // above the whole decay
   CHECK(log_losses(rows, 1, {bins[0], {0.0035, 0.001}}).size() == 1);
 }
 

@@ -556,11 +556,12 @@ std::vector<double> log_losses(const HalfCycles& rows, double length, const std:
     losses.push_back(-2 * line.slope);
   }
   if (losses.empty()) return losses;
+  // A bin above all of the decay has no rows: its end may be 0.
   const std::size_t first = ranges.front().first,
-                    last = std::min(ranges[losses.size() - 1].end, logarithms.size()) - 1;
-  if (!(last > first)) return {};
+                    end = std::min(ranges[losses.size() - 1].end, logarithms.size());
+  if (end < first + 2) return {};
   const double omega =
-      half_turn<double>() * double(last - first) / (rows.peak_time[last] - rows.peak_time[first]);
+      half_turn<double>() * double(end - 1 - first) / (rows.peak_time[end - 1] - rows.peak_time[first]);
   for (double& each : losses) each = logarithm(each / omega);
   return losses;
 }
