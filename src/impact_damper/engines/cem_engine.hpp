@@ -503,11 +503,12 @@ class CemEngine {
       if (!(m.now.x >= m.least && m.now.x <= m.most)) changes_.push_back({i, wall_crossing(m)});
     }
     if (!finite) fail_of_overflow(double(last_step_begin()), double(pace_.h));
-    if (changes_.size() < 2) return;
-    std::sort(changes_.begin(), changes_.end(), [&](const Change& some, const Change& other) {
-      const double at = double(last_step_begin() + some.at), then = double(last_step_begin() + other.at);
-      return at < then || (at == then && masses_[some.index].number < masses_[other.index].number);
-    });
+    if constexpr (!one) {
+      std::sort(changes_.begin(), changes_.end(), [&](const Change& some, const Change& other) {
+        const double at = double(last_step_begin() + some.at), then = double(last_step_begin() + other.at);
+        return at < then || (at == then && masses_[some.index].number < masses_[other.index].number);
+      });
+    }
   }
   // Returns the time in the last step at which a mass came to a wall or left it.
   Real wall_crossing(const Mass& m) const {
@@ -618,7 +619,7 @@ class CemEngine {
     for (const Change& change : changes_)
       if (change.joins) joining.push_back(change.index);
     if (joining.empty()) return;
-    std::ranges::sort(joining);
+    if constexpr (!one) std::ranges::sort(joining);
     const Real before = joined_mass_;
     for (const std::size_t i : joining) set_wall(i, masses_[i].wall, true);
     Real gain = 0;  // of x'
