@@ -27,7 +27,9 @@ surroundings are strange, and at -O0 so are variables that nobody set: what read
 
 With --brief there are three builds: the project's own, clang++'s with sanitizers, which is that of `make sanitize`, and
 s390x. No surrounding is by itself, and the two others are of the library alone, with again.cpp: they simulate anew what
-is in the run and response files of the project's own build, and make no table, verdict or sweep.
+is in the run and response files of the project's own build, and make no table, verdict or sweep. Of an ensemble they run
+the first member: the others differ from it by their release alone. Of the catalogue's further runs and responses whose names
+differ by a number, s390x runs the first.
 
 Exit code 0 if no byte differs but in `provenance`, 1 if any does, 2 if something for the test is missing.
 """
@@ -205,17 +207,18 @@ def run_again(setting: Setting, places: Places, reference: Path, results: Path):
     below = {entry["scene"]: [f"below:{w['amplitude']}:{w['length']}:{w['count']}" for w in entry.get("history_below", [])]
              for entry in catalogue["scenes"]}
     copied = {entry["name"] for kind in ("runs", "responses") for entry in catalogue[kind]}
-    jobs = []
-    for file in sorted(reference.glob("*/runs/**/*.json")):
-        name = file.relative_to(reference)
-        own = name.parts[2].removesuffix(".json").removesuffix(".members")
+    jobs, seen = [], set()
+    for file in sorted(reference.glob("*/runs/*.json")):
+        name, own = file.relative_to(reference), file.stem
         if own.endswith(".csv") or own in copied and name.parts[0] != ENGINES[0]:
             continue
         small = [scene for scene in (HERE / "scenes").glob("*.json") if re.fullmatch(re.escape(scene.stem) + r"(-\d)?", own)]
+        kind = re.sub(r"\d+$", "", own)
         # Another machine's program takes thirty times as long, and the component element method a hundred times.
-        if setting.build in RUNNERS and name.parts[0] == "cem" and not small:
+        if setting.build in RUNNERS and (name.parts[0] == "cem" and not small or own in copied and kind in seen):
             continue
-        windows = ["0:150:301"] if small else below.get(own, []) if len(name.parts) == 3 else []
+        seen.add(kind)
+        windows = ["0:150:301"] if small else below.get(own, [])
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         jobs.append([file, results / name, *(small or ["-"]), *windows])
     parts = os.cpu_count() if setting.build in RUNNERS else 1  # another machine's program takes minutes
@@ -424,7 +427,7 @@ def main() -> int:
         print(f"same bits: NOT COVERED: all builds whose names begin with none of {arguments.only}, left out by --only")
     if arguments.brief:
         print(f"same bits: NOT COVERED: builds other than {', '.join(BRIEF)}, tables, verdicts and sweeps by these, "
-              "surroundings by themselves, left out by --brief")
+              "other members of ensembles, surroundings by themselves, left out by --brief")
     if "fma" not in Path("/proc/cpuinfo").read_text().split():
         print("same bits: NOT COVERED: this processor has no FMA to be switched off")
     say(f"built in {built - begin:.0f} s, ran in {ran - built:.0f} s, drew in {drawn - ran:.0f} s")
