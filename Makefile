@@ -202,8 +202,9 @@ lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no find
 	@$(alone) cmake --build $(BUILD) --target impact_damper_provenance -- --quiet
 	@tests/checks/lint.py $(BUILD)
 
-sanitize:  ## the quick tests once more, under clang's address and undefined-behaviour sanitizers (a quarter of an hour)
-	@$(alone) tests/checks/sanitize sanitize $(BUILD)/sanitize
+sanitize: $(BUILD)/build.ninja  ## the quick tests once more, under clang's address and undefined-behaviour sanitizers (a quarter of an hour)
+	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
+	SIMULATED_BY=$(abspath $(BUILD)/src/impact-damper) tests/checks/sanitize sanitize $(BUILD)/sanitize
 
 coverage:  ## the same with counters; then which lines of the library they ran: at least 95 % of them (twice the time)
 	@$(alone) tests/checks/sanitize count $(BUILD)/count && tests/checks/coverage $(BUILD)/count
