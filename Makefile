@@ -160,8 +160,8 @@ fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 bench:  ## measure run time beside error (ten to twenty minutes), print and draw it
 	@$(alone) $(with_bench) cmake --build $(BUILD) --target bench
 
-bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
-	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
+bench-record: bench  ## the same, and keep page, figures and results in bench/results/
+	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/results.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
 bench-wasm: wasm $(BUILD)/build.ninja  ## what a decay takes in node, beside the library (a minute)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target decay_time || exit; \
