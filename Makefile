@@ -35,7 +35,7 @@ BARE_PACKAGES := debootstrap debian-archive-keyring gpgv
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install report-page figures verify paper docs test bench bench-record bench-wasm \
+.PHONY: help deps deps-bare deps-bench deps-check deps-cluster deps-paper deps-same-bits deps-wasm build install figures verify paper docs test bench bench-record bench-wasm \
   stress stress-results stress-commands check check-long check-all cluster-check bare fuzz kills lint sanitize coverage mutation same-bits wasm wasm-check reference archive clean
 
 help:  ## list the targets
@@ -140,10 +140,6 @@ docs:  ## reference documentation of the library's headers, build/docs/html (dox
 	@$(alone) mkdir -p $(BUILD)/docs && OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile && \
 	echo "The reference documentation: $(BUILD)/docs/html/index.html"
 
-# Without damper and checks: what is compiled is not kept among sources.
-report-page: paper  ## keep the report's page as docs/report.html, for who has no LaTeX
-	@$(alone) paper/report/make.py $(BUILD) --html --out $(BUILD)/paper/kept && cp $(BUILD)/paper/kept/report.html docs/report.html
-
 # CTest's label `long` is on what takes about ten seconds or more (tests/CMakeLists.txt). What a test needs that another
 # one makes, a fixture, is made in each of the two calls.
 run_tests = $(alone) $(with_tests) cmake --build $(BUILD) && ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
@@ -160,8 +156,8 @@ fuzz:  ## fuzz every reader of files, two at a time, for FUZZ_SECONDS=60 each
 bench:  ## measure run time beside error (ten to twenty minutes), print and draw it
 	@$(alone) $(with_bench) cmake --build $(BUILD) --target bench
 
-bench-record: bench  ## the same, and keep page, figures and JSON in bench/results/
-	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/bench.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
+bench-record: bench  ## the same, and keep page, figures and results in bench/results/
+	@$(alone) mkdir -p bench/results && cp $(BUILD)/bench/results.md $(BUILD)/bench/results.json $(BUILD)/bench/time_error.svg $(BUILD)/bench/cost.svg bench/results/
 
 bench-wasm: wasm $(BUILD)/build.ninja  ## what a decay takes in node, beside the library (a minute)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target decay_time || exit; \
@@ -221,10 +217,10 @@ wasm:  ## the library for browsers and node, as an npm package, and pages to pla
 	cmake --build $(BUILD)/wasm --target pages && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the pages: $(BUILD)/wasm/damper.html and own.html"
 
 wasm-check: wasm $(BUILD)/build.ninja  ## the pages work, and the package's run files are the program's, in node and in a browser (minutes)
-	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
+	@$(alone) cmake --build $(BUILD) --target figures-exact runs-exact || exit; \
 	tests/wasm/check.py $(BUILD)
 
-reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, and the outputs in README.md and paper/
+reference: $(BUILD)/build.ninja  ## renew what people cite: data/reference/, docs/report.md, and the outputs in README.md and paper/
 	@$(alone) paper/renew $(BUILD)
 
 archive:  ## write what is deposited: sources, reference data, figures and report, as they are committed

@@ -2,8 +2,9 @@
 //
 //   impact-damper-bench FOLDER [--quick] [--only SCENE]...
 //
-// writes bench.json, results.md and the tables time_error.dat and cost.dat, which gnuplot draws. For trying
-// it out: --quick has short runs and few repeats, --only S3 nothing but that scene's contenders.
+// writes bench.json, results.json, results.md and the tables time_error.dat and cost.dat, which gnuplot
+// draws. For trying it out: --quick has short runs and few repeats, --only S3 nothing but that scene's
+// contenders.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -125,7 +126,7 @@ int bench(const Arguments& arguments) {
   const auto& [folder, quick, only] = arguments;
   if (!quick) add_repeats_for(300);
   std::filesystem::create_directories(folder);
-  for (const char* name : {"bench.json", "results.md", "time_error.dat", "cost.dat"}) {
+  for (const char* name : {"bench.json", "results.json", "results.md", "time_error.dat", "cost.dat"}) {
     require_writable(folder / name);
   }
   const auto begin = std::chrono::steady_clock::now();
@@ -158,6 +159,7 @@ int bench(const Arguments& arguments) {
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   write_file(folder / "bench.json", report_json(found));
+  write_file(folder / "results.json", results_json(found));
   write_file(folder / "time_error.dat", time_error_table(found));
   write_file(folder / "cost.dat", sweep_table(found));
   write_file(folder / "results.md", report_page(found));

@@ -1,4 +1,5 @@
-// What a run of the bench leaves: a JSON with every number, tables for gnuplot, a page for people.
+// What a run of the bench leaves: a JSON with every number, one with the results alone, tables for gnuplot, a
+// page for people.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 namespace impact_damper::bench {
 
 std::string report_json(const Findings& findings);
+std::string results_json(const Findings& findings);
 
 // One block for each curve, "S1-exact": error, median and quartiles of the run time in reference operations,
 // setting.

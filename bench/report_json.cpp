@@ -114,9 +114,8 @@ Json json_of(const Result& result) {
           {"within", result.within()}, {"note", result.note}};
 }
 
-}  // namespace
-
-std::string report_json(const Findings& found) {
+// Returns how it was measured, and the results with their bounds.
+Json head_of(const Findings& found) {
   const Provenance& made = provenance();
   Json json{{"schema", "impact-damper/bench/1"},
             {"machine", {{"processor", found.processor}, {"threads", std::thread::hardware_concurrency()}}},
@@ -134,6 +133,15 @@ std::string report_json(const Findings& found) {
               {"nanoseconds", json_of(found.reference_operation, 1e9)}}},
             {"missing_peers", found.missing_peers}};
   for (const Result& result : results_of(found)) json["results"].push_back(json_of(result));
+  return json;
+}
+
+}  // namespace
+
+std::string results_json(const Findings& found) { return head_of(found).dump(1) + "\n"; }
+
+std::string report_json(const Findings& found) {
+  Json json = head_of(found);
   for (const Findings::Entrant& entrant : found.entrants) json["contenders"][entrant.name] = entrant.about;
   for (const Reference& reference : found.references) json["references"].push_back(json_of(reference));
   for (const Curve& curve : found.curves) json["curves"].push_back(json_of(curve));

@@ -360,8 +360,8 @@ std::string disturbances(const Findings& found) {
 std::string report_page(const Findings& found) {
   const Provenance& made = provenance();
   std::string page =
-      "# Run time and error, as measured\n\nMade by `make bench`; every number is also in "
-      "[bench.json](bench.json).\n\n";
+      "# Run time and error, as measured\n\nMade by `make bench`, which writes every number to "
+      "`build/bench/bench.json`, too.\n\n";
   page += "| | |\n|---|---|\n| processor | " + found.processor + " |\n| compiler | " +
           std::string(made.compiler) + ", " + std::string(made.build_type) +
           (made.flags.empty() ? "" : ", " + std::string(made.flags)) + " |\n| commit | " +

@@ -1,5 +1,6 @@
 """What the report's text calls for: figures with what stands beside them, numbered equations, the list of references, the
-tables of the claims that the figures of a section test, at its end, and of all claims; as HTML and as LaTeX.
+tables of the claims that the figures of a section test, at its end, and of all claims; as HTML, as LaTeX and as Markdown
+for docs/report.md.
 
     ::: figure N             figure N of the catalogue; the lines up to ::: are its caption, in Markdown
     ::: picture LETTER FILE  another picture, an SVG of this project, with the next letter for its number
@@ -55,15 +56,14 @@ def scientific(number: str) -> str:
     return ("" if mantissa == "1" else mantissa + r"\times ") + f"10^{{{int(exponent)}}}"
 
 
-def markdown(text: str) -> str:
-    """The words of a claim with their formulas as Markdown."""
+def markdown(text: str, escaped: str = "\\`*_{}[]<>#^~|@\"'") -> str:
+    """The words of a claim with their formulas as Markdown, by default pandoc's."""
     parts = [text]
     for pattern, formula in FORMULAS:
         # What is already a formula is no text: every other part.
         parts = [piece for i, part in enumerate(parts) for piece in
                  (re.split(r"(\$[^$]*\$)", pattern.sub(formula, part)) if i % 2 == 0 else [part])]
-    return "".join(re.sub(r"([\\`*_{}\[\]<>#^~|@\"'])", r"\\\1", part) if i % 2 == 0 else part
-                   for i, part in enumerate(parts))
+    return "".join(re.sub(f"([{re.escape(escaped)}])", r"\\\1", part) if i % 2 == 0 else part for i, part in enumerate(parts))
 
 
 def rows_of(values: Values, ids) -> list:
@@ -131,15 +131,16 @@ def parameters_of(values: Values, number: str) -> str:
     return found[1] if found else ""
 
 
-def made_from(values: Values, number: str) -> str:
-    """What a figure is made from, as a sentence."""
-    figure, scenes = values.figures[number], scenes_of(values, number)
-    table = table_of(values, number)
+def made_from(values: Values, number: str, link=lambda words, file: words) -> str:
+    """What a figure is made from, as a sentence. `link` makes a link of words and a file of the project."""
+    figure, table = values.figures[number], table_of(values, number)
+    scenes = [link(scene, f"data/scenes/{scene}.json") for scene in scenes_of(values, number)]
     parts = [f"scene{'s' * (len(scenes) > 1)} {', '.join(scenes)}"] * bool(scenes) + \
-        [f"plan {figure['plan']}" if "plan" in figure else "", f"table {table.name}" if table else ""]
+        [f"{what} {link(figure[what], 'figures/' + figure[what])}" for what in ("plan", "script") if what in figure]
+    if table:
+        parts.insert(-1, f"table {link(table.name, f'data/reference/series/{table.stem}.dat')}")
     return (f"{parameters_of(values, number)}. " if parameters_of(values, number) else "") + \
-        f"Made from {', '.join([part for part in parts if part] + ['script ' + figure['script']])}; " \
-        f"stamp {values.stamps[number]} · {values.version}."
+        f"Made from {', '.join(parts)}; stamp {values.stamps[number]} · {values.version}."
 
 
 def damper_html(values: Values, number: str) -> str:
@@ -319,6 +320,44 @@ class Latex(Form):
 
     def claims(self) -> str:
         return self.table(all_rows(self.values))
+
+
+class Markdown(Form):
+    """docs/report.md: GitHub's Markdown, with links to files of the project."""
+
+    def words(self, text: str) -> str:
+        return markdown(text, "\\`*_[]<>|~")
+
+    def value(self, name: str, text: str) -> str:
+        return text
+
+    def reference(self, number: str) -> str:
+        return f"[Figure {number}](#figure-{number})"
+
+    def equation_reference(self, name: str) -> str:
+        return f"equation ({self.equations[name]})"
+
+    def numbered(self, anchor: str, number: str, formula: str) -> str:
+        return rf"$$ {formula} \tag{{{number}}} $$"
+
+    def shown(self, number: str, file: str, title: str, caption: str) -> str:
+        return f'<a id="figure-{number}"></a>![{title}](../{file})\n\n**Figure {number}.** {caption}'
+
+    def figure(self, number: str, caption: str) -> str:
+        figure = self.values.figures[number]
+        shown = self.shown(number, f"data/reference/figures/{stem_of(figure)}.svg", figure["title"], caption)
+        made = made_from(self.values, number, lambda words, file: f"[{Path(file).name}](../{file})")
+        return shown.replace(f"{number}.**", f"{number}. {figure['title']}.**", 1) + f"\n\n{made}"
+
+    def picture(self, letter: str, file: Path, caption: str) -> str:
+        return self.shown(letter, file.relative_to(self.values.source).as_posix(), re.sub(r"\s+", " ", caption.split(". ")[0]), caption)
+
+    def tested(self, figures: list, ids: list) -> str:
+        rows = "".join(f"| {' | '.join(map(self.words, row[1:]))} |\n" for row in rows_of(self.values, ids))
+        return f"Tested by {figures_named(figures)}:\n\n| claim | paper | ours | verdict |\n|:--|:--|:--|:--|\n{rows}"
+
+    def claims(self) -> str:
+        return "The table of all claims is [paper/claims.md](../paper/claims.md)."
 
 
 def raw(form: str, text: str) -> str:

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Makes the report: BUILD/paper/report.html and, unless --html, BUILD/paper/report.pdf, both from text.md, with
-docs/mathematics.md as the appendix.
+docs/mathematics.md as the appendix. With --markdown it makes docs/report.md instead, the same text without the appendix,
+which says nothing of commit and day.
 
     paper/report/make.py BUILD [--html] [--verdicts FILE] [--wasm FOLDER] [--out FOLDER]
+    paper/report/make.py BUILD --markdown FILE [--verdicts FILE]
 
 BUILD holds the figures, tables and runs of the exact engine (make figures) and its verdicts (make verify). With what
 `make wasm` builds in FOLDER the page has a damper to play with beside some figures, and makes its tables and verdicts anew
@@ -20,7 +22,7 @@ import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-from blocks import Html, Latex, filled  # noqa: E402
+from blocks import Html, Latex, Markdown, filled  # noqa: E402
 from formulas import tidied  # noqa: E402
 from mathematics import appendix  # noqa: E402
 from values import Mistake, Values  # noqa: E402
@@ -119,6 +121,28 @@ def pdf_of(text: str, values: Values) -> bytes:
         return (work / "report.pdf").read_bytes()
 
 
+def markdown_of(text: str, values: Values) -> str:
+    """docs/report.md, in GitHub's Markdown: headings a level lower, links to them by the names that they have there."""
+    title, subtitle, text = re.fullmatch("---\ntitle: (.*)\nsubtitle: (.*)\n---\n(.*)", text, re.S).groups()
+    text += "\n# Appendix: the mathematics {#mathematics}\n\nEquations, methods and proofs are in [mathematics.md](mathematics.md).\n"
+    anchors = {}
+
+    def heading(match) -> str:
+        anchors[match[3]] = "#" + re.sub(r"[^\w\- ]", "", match[2].lower()).replace(" ", "-")
+        return f"#{match[1]} {match[2]}"
+
+    def link(match) -> str:
+        if match[1] not in anchors:
+            raise Mistake(f"#{match[1]}: no heading is called so")
+        return f"]({anchors[match[1]]})"
+
+    text = re.sub(r"^(#+) (.*) \{#([\w-]+)\}$", heading, filled(text, values, Markdown(values)), flags=re.M)
+    text = re.sub(r"\]\(#reference-\d+\)", "](#references)", re.sub(r"\[\]\{#reference-\d+\} ", "", text))
+    text = re.sub(r"\n{3,}", "\n\n", re.sub(r"\]\(#(?!figure-)([\w-]+)\)", link, text).replace("\\ ", " ").strip())
+    return f"# {title}\n\n*{subtitle}*\n\nMade by `make reference` from [text.md](../paper/report/text.md), with numbers and verdicts " \
+        f"from the results; `make paper` makes a page and a PDF of it.\n\n{text}\n"
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Makes the report from paper/report/text.md.")
     parser.add_argument("build", type=Path, help="build folder with figures and verdicts")
@@ -126,13 +150,17 @@ def main() -> int:
     parser.add_argument("--verdicts", type=Path, help="default BUILD/verdicts-exact.json")
     parser.add_argument("--wasm", type=Path, help="BUILD/wasm (make wasm); without it the page has no damper and no checks")
     parser.add_argument("--out", type=Path, help="default BUILD/paper")
+    parser.add_argument("--markdown", type=Path, metavar="FILE", help="only docs/report.md, to FILE: needs no pandoc")
     asked = parser.parse_args()
     build = asked.build.resolve()
     try:
         values = Values(SOURCE, build, (asked.verdicts or build / "verdicts-exact.json").resolve())
+        text = (HERE / "text.md").read_text(encoding="utf-8")
+        if asked.markdown:
+            put(markdown_of(text, values), asked.markdown)
+            return 0
         values.out = (asked.out or build / "paper").resolve()
         values.out.mkdir(parents=True, exist_ok=True)
-        text = (HERE / "text.md").read_text(encoding="utf-8")
         put(html_of(text, values, asked.wasm), values.out / "report.html")
         if not asked.html:
             put(pdf_of(text, values), values.out / "report.pdf")

@@ -10,7 +10,7 @@ counting, picking, comparing and dividing; all come from what the program made:
                             its scene or engine; run.NAME.half_cycles, .impacts, .end_time
     figNN.BLOCK.N.first     of column N of a table's block: the first row's value, or last, least, most, count;
     figNN.BLOCK.N.peak      column N where column 2 is greatest
-    bench.TARGET            what the bench measured: TARGET is its words in bench.json, joined by "-"
+    bench.TARGET            what the bench measured: TARGET is its words in results.json, joined by "-"
     study.NAME              percent of time saved, by a run of studies.json against its base, on the way to the
                             amplitude study.until; study.NAME.OPTION a number that it changes, such as mass-ratio
     rate.SCENE              average -dA/dt of a decay of Figure 7, divided by the mass ratio (its block "law"); rate.rule
@@ -126,7 +126,7 @@ class Values:
         self.lines = {json.loads(line)["claim"]: line for line in re.findall(r'^ *(\{"claim".*\}),?$', verdicts_file.read_text(), re.M)}
         self.catalogue = read(source / "figures/catalogue.json")
         self.figures = {each["figure"]: each for each in self.catalogue["figures"]}
-        self.bench = read(source / "bench/results/bench.json")
+        self.bench = read(source / "bench/results/results.json")
         self.tables, self.sha256, self.stamps = {}, {}, {}
         self.state = state_of(source, build / "src/impact-damper")
         self.version = re.search(r"project\(impact-damper VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]

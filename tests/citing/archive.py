@@ -119,11 +119,15 @@ wanted({(member.uid, member.uname) for member in members} == {(0, "root")}, "som
 wanted({member.mode for member in members} <= {0o644, 0o755}, "modes of somebody's umask")
 files = {member.name.removeprefix(name + "/") for member in members if member.isfile()}
 committed = set(git("ls-files", "-z").split("\0")) - {""}
-wanted(files == committed | {"report.html", "report.pdf"}, f"files: {files ^ committed}")
+wanted(files == committed | {"report.html", "report.pdf", "ro-crate-metadata.json"}, f"files: {files ^ committed}")
 differing = [file for file in committed if (unpacked / file).read_bytes() != (COPY / file).read_bytes()]
 substituted = re.findall(r"^(\S+) export-subst$", (SOURCE / ".gitattributes").read_text(), re.M)
 wanted(sorted(differing) == sorted(substituted), f"other bytes than those committed: {differing}")
 wanted((unpacked / "report.pdf").read_text() == "report.pdf of the test\n", "another report")
+crate = json.loads((unpacked / "ro-crate-metadata.json").read_text())
+described = {each["@id"]: each["sha256"] for each in crate["@graph"] if "sha256" in each}
+wanted(len(described) > 60 and all(hashlib.sha256((unpacked / file).read_bytes()).hexdigest() == sum for file, sum in described.items()),
+       "the crate has other sums than the files")
 faults += listed_problems(unpacked)
 sums = run("sha256sum", "-c", "--quiet", "SHA256SUMS", cwd=unpacked / "data/reference")
 wanted(sums.returncode == 0, f"SHA256SUMS: {sums.stdout}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds CITATION.cff, codecheck.yml and ro-crate-metadata.json, as paper/refresh made them, against the rules of their
+"""Holds CITATION.cff and codecheck.yml, as paper/refresh made them, and the ro-crate-metadata.json of archives against the rules of their
 formats (formats.py), against each other, and against the project; and sees each rule find its fault in a changed copy.
 
     test_formats.py NEW        a folder like the source folder, by paper/refresh
@@ -22,7 +22,7 @@ except ImportError as missing:
 
 SOURCE = Path(__file__).resolve().parents[2]
 NEW = Path(sys.argv.pop(1) if len(sys.argv) > 1 else SOURCE)
-DESCRIBED = ("CITATION.cff", "codecheck.yml", "ro-crate-metadata.json")
+DESCRIBED = ("CITATION.cff", "codecheck.yml")
 
 
 def read(name: str) -> bytes:
@@ -32,6 +32,14 @@ def read(name: str) -> bytes:
 
 def text(name: str) -> str:
     return read(name).decode("utf-8")
+
+
+def crate_of(reference: Path, folder: Path, **options) -> str:
+    return subprocess.run([SOURCE / "paper/describe", "--crate", reference, folder], check=True, stdout=subprocess.PIPE,
+                          encoding="utf-8", **options).stdout
+
+
+CRATE = crate_of(NEW / "data/reference", NEW)
 
 
 class Formats(unittest.TestCase):
@@ -104,11 +112,11 @@ class Formats(unittest.TestCase):
         self.assertFalse({"codechecker", "report", "certificate", "check_time"} & checked.keys())
 
     def test_the_crate_keeps_to_its_format_and_profile(self):
-        self.assertEqual(crate_problems(text("ro-crate-metadata.json"), read), [])
+        self.assertEqual(crate_problems(CRATE, read), [])
 
     def test_a_faulty_crate_is_found_out(self):
         def changed(change):
-            crate = json.loads(text("ro-crate-metadata.json"))
+            crate = json.loads(CRATE)
             change(crate, {each["@id"]: each for each in crate["@graph"]})
             return crate_problems(json.dumps(crate), read)
 
@@ -150,7 +158,7 @@ class Formats(unittest.TestCase):
         self.assertIn("no JSON", crate_problems("{", read)[0])
 
     def test_the_crate_tells_of_every_figure_how_it_came_from_its_scenes(self):
-        crate = {each["@id"]: each for each in json.loads(text("ro-crate-metadata.json"))["@graph"]}
+        crate = {each["@id"]: each for each in json.loads(CRATE)["@graph"]}
         for figure in json.loads(text("data/reference/manifest.json"))["figures"]:
             drawing = crate[f"#picture-{figure['figure']}"]
             self.assertEqual(references(drawing, "result"), [figure["picture"]["file"]])
@@ -158,7 +166,7 @@ class Formats(unittest.TestCase):
             for table in figure["tables"][:1]:
                 self.assertIn(table["file"], references(drawing, "object"))
                 making = crate[f"#table-{figure['figure']}"]
-                self.assertEqual(references(making, "result"), [table["file"], table["file"].replace(".dat", ".csv")])
+                self.assertEqual(references(making, "result"), [table["file"]])
                 for scene in figure["scenes"]:
                     self.assertIn(scene["file"], references(making, "object"))
 
@@ -172,6 +180,7 @@ class Formats(unittest.TestCase):
             subprocess.run([SOURCE / "paper/describe", reference, folder], check=True, env=around, cwd="/")
             for name in DESCRIBED:
                 self.assertEqual((Path(folder) / name).read_bytes(), read(name), name)
+            self.assertEqual(crate_of(reference, Path(folder), env=around, cwd="/"), CRATE)
             self.assertEqual((reference / "manifest.json").read_bytes(), read("data/reference/manifest.json"))
 
 

@@ -9,7 +9,7 @@ The fast tests are the doctest binaries, in the order of what they cost, those n
 the one that has caught the fault before first; at last the command lines and files of tests/cli and tests/corpus. Not
 among them are the comparisons with data/reference/, which would notice any change at all, right or wrong.
 
-The pass takes hours, and goes on where it was stopped, on another machine, too: found.json keeps what was found of each
+The pass takes hours, and goes on where it was stopped, on another machine, too: results.md keeps what was found of each
 fault. What was caught, or has its excuse, is not done again while its line in the sources stays as it is, unless with
 --afresh.
 """
@@ -30,6 +30,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+PAGE = HERE / "results.md"
 SOURCE = HERE.parents[1]
 LIBRARY = Path("src/impact_damper")
 BUILD_TIMEOUT = 900
@@ -52,8 +53,8 @@ class Fault:
         end = begin + len(self.fragment)
         return text[text.rfind("\n", 0, begin) + 1:text.find("\n", end)].strip()
 
-    def key(self, text):
-        return " | ".join((self.file, self.line(text), self.fragment, self.replacement))
+    def digest(self, text):
+        return hashlib.sha256(" | ".join((self.file, self.line(text), self.fragment, self.replacement)).encode()).hexdigest()[:8]
 
 
 def read_faults(file):
@@ -208,7 +209,7 @@ def check_sound(tree, state, memory):
 def examine(tree, fault, sound, before):
     """Who catches the fault: (verdict, by whom)."""
     stem = Path(fault.file).stem
-    caught = (before or {}).get("by", "").split(": ")[0]
+    caught = before[1].split(": ")[0] if before else ""
     caught = tree.program.get(caught, caught)
 
     def cost(test):
@@ -232,34 +233,35 @@ def examine(tree, fault, sound, before):
     return "survived", ""
 
 
-def keep(file, known):
-    half = file.with_suffix(".tmp")
-    half.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n")
-    half.rename(file)
+def known_results():
+    """What results.md says: verdict and by whom, by the digest of a fault."""
+    rows = re.findall(r"^\| .* \| ([0-9a-f]{8}) \| (?:\*\*(.*?)\*\*.*|(.*)) \|$", PAGE.read_text() if PAGE.exists() else "", re.MULTILINE)
+    return {digest: (verdict or "caught", by) for digest, verdict, by in rows}
 
 
 def page(faults, results):
     """The table as Markdown, and whether all is well."""
-    caught = [fault for fault, result in results if result["verdict"] == "caught"]
-    left = [(fault, result) for fault, result in results if result["verdict"] != "caught"]
+    def row(fault, digest, verdict, by):
+        end = by if verdict == "caught" else f"**{verdict}**{fault.excuse and ': ' + fault.excuse}"
+        return f"| {fault.file} | {fault.kind}: {fault.meaning} | {digest} | {end} |".replace("\n", " ")
+
+    left = [result for result in results if result[2] != "caught"]
+    caught = [result for result in results if result[2] == "caught"]
     share = 100 * len(caught) / len(results)
     well = len(results) == len(faults) and share >= 95 and all(
-        result["verdict"] == "survived" and fault.excuse for fault, result in left)
-
-    def code(text):
-        return "`" + " ".join(text.split()).replace("|", "\\|") + "`" if text else "nothing"
-
+        verdict == "survived" and fault.excuse for fault, _, verdict, _ in left)
     lines = ["# Planted faults and who caught them", "",
-             f"By `make mutation` ([mutate.py](mutate.py) says how). {len(results)} faults of {len(faults)} have been "
-             f"tried, {len(caught)} caught ({share:.1f} %), {len(left)} survived.", ""]
-    if left:
-        lines += ["| survived | fault | instead of | stands | why |", "|---|---|---|---|---|"]
-        lines += [f"| {fault.file} | {fault.kind}: {fault.meaning} | {code(fault.fragment)} | {code(fault.replacement)} | "
-                  f"{fault.excuse or result['verdict']} |" for fault, result in left] + [""]
-    lines += ["| file | fault | instead of | stands | caught by |", "|---|---|---|---|---|"]
-    lines += [f"| {fault.file} | {fault.kind}: {fault.meaning} | {code(fault.fragment)} | {code(fault.replacement)} | "
-              f"{result['by']} |".replace("\n", " ") for fault, result in results if result["verdict"] == "caught"]
-    return "\n".join(lines) + "\n", well
+             f"By `make mutation` ([mutate.py](mutate.py) says how), which also reads this page. {len(results)} faults of {len(faults)} "
+             f"have been tried, {len(caught)} caught ({share:.1f} %), {len(left)} survived. What each changes: "
+             "[faults.txt](faults.txt). The digest is of the fault and its line in the sources.", "",
+             "| file | fault | digest | caught by |", "|---|---|---|---|"]
+    return "\n".join(lines + [row(*result) for result in left + caught]) + "\n", well
+
+
+def keep(text):
+    half = PAGE.with_suffix(".tmp")
+    half.write_text(text)
+    half.rename(PAGE)
 
 
 def main():
@@ -290,16 +292,18 @@ def main():
     state = json.loads(memory.read_text()) if memory.exists() else {}
     check_sound(tree, state, memory)
 
-    found = HERE / "found.json"
-    known = json.loads(found.read_text()) if found.exists() else {}
-    results = []
+    known = known_results()
+    digests = [fault.digest((tree.sources / LIBRARY / fault.file).read_text()) for fault in faults]
+
+    def told():  # without faults that are no more
+        return page(faults, [(fault, digest, *known[digest]) for fault, digest in zip(faults, digests) if digest in known])
+
     for number, fault in enumerate(faults, 1):
         file = tree.sources / LIBRARY / fault.file
         text, times = file.read_text(), (file.stat().st_atime_ns, file.stat().st_mtime_ns)
-        key = fault.key(text)
-        before = known.get(key)
+        before = known.get(digests[number - 1])
         wanted = re.search(options.only, f"{fault.file}: {fault.meaning}")
-        finished = before and (before["verdict"] == "caught" or fault.excuse)
+        finished = before and (before[0] == "caught" or fault.excuse)
         if wanted and (options.afresh or not finished):
             print(f"[{number}/{len(faults)}] {fault.file}: {fault.kind}: {fault.meaning}", file=sys.stderr, end=" ",
                   flush=True)
@@ -309,17 +313,14 @@ def main():
                 verdict, by = examine(tree, fault, state["sound"], before)
             finally:
                 tree.restore(file, text, times)
-            before = known[key] = {"verdict": verdict, "by": by}
-            keep(found, known)
+            known[digests[number - 1]] = (verdict, by)
+            keep(told()[0])
             print(f"- {verdict}, {time.monotonic() - begin:.0f} s: {by[:2000]}", file=sys.stderr)
-        if before:
-            results.append((fault, key, before))
-    if not results:
+    if known.keys().isdisjoint(digests):
         sys.exit("no fault matches")
-    keep(found, {key: result for _, key, result in results})  # without those of faults that are no more
-    text, well = page(faults, [(fault, result) for fault, _, result in results])
-    (HERE / "results.md").write_text(text)
-    print("\n".join(text.splitlines()[2:3]))
+    text, well = told()
+    keep(text)
+    print(text.splitlines()[2])
     sys.exit(0 if well else 1)
 
 

@@ -32,12 +32,9 @@ FIRST = list(dict.fromkeys(sum(OWN.values(), [])))
 HEAD = """# Faults planted in what is given out, and who noticed
 
 By [outputs.py](outputs.py), a test: {faults} faults in {outputs} numbers and columns, {caught} caught. What is altered \
-where, and how: [planter.hpp](planter.hpp). The first part of a name is where the fault is planted: in what an engine returns (`exact`, \
-`restitution`, `cem`; of several dampers `exact-dampers` and so on), in what is written to a run file (`file`) or read from one (`read`), in a figure's table \
-(`table`, with block and column), in a measure (`measure`).
-
-| output | faults | caught by |
-|---|---|---|
+where, and how: [planter.hpp](planter.hpp). Below each test stands which faults it caught, in which numbers; the first word is where they are \
+planted: in what an engine returns (`exact`, `restitution`, `cem`; of several dampers `exact-dampers` and so on), in what is written to a run \
+file (`file`) or read from one (`read`), in a figure's table (`table`, with block and column), in a measure (`measure`).
 """
 
 
@@ -58,8 +55,24 @@ def failing_case(program, fault, case=""):
 
 def noticed_before():
     """What outputs.md says: the test by fault, as "program: case"."""
-    rows = (line.strip("| \n").split(" | ") for line in PAGE.read_text().splitlines() if "/" in line.split(" | ")[0])
-    return {(output, kind): by for output, kinds, by in rows for kind in kinds.split(", ")}
+    return {(f"{place}/{name}", kind): by for by, lines in re.findall(r"^## (.*)\n\n((?:- .*\n)*)", PAGE.read_text(), re.MULTILINE)
+            for place, kinds, names in re.findall(r"^- (\S+) (.*?): (.*)$", lines, re.MULTILINE)
+            for kind in kinds.split(", ") for name in names.split(", ")}
+
+
+def page(found):
+    """outputs.md for what was found: pairs of a fault and the test that noticed it, or none."""
+    kinds, lines = defaultdict(list), defaultdict(list)
+    for (output, kind), by in found:
+        if by:
+            kinds[output, by].append(kind)
+    for (output, by), those in kinds.items():
+        place, name = output.split("/", 1)
+        lines[by, f"{place} {', '.join(those)}"].append(name)
+    text = HEAD.format(faults=len(found), outputs=len({output for (output, _), _ in found}), caught=sum(1 for _, by in found if by))
+    for test in dict.fromkeys(by for by, _ in lines):
+        text += f"\n## {test}\n\n" + "".join(f"- {what}: {', '.join(names)}\n" for (by, what), names in lines.items() if by == test)
+    return text
 
 
 def who_notices(programs, before, output, kind):
@@ -108,15 +121,10 @@ def main():
         found = list(threads.map(
             lambda fault: who_notices(programs, before.get(fault, ""), *fault), faults))
 
-    rows = defaultdict(list)
     for (output, kind), by in zip(faults, found):
-        if by:
-            rows[output, by].append(kind)
-        else:
+        if not by:
             print(f"survives: {output}/{kind}")
-    new = HEAD.format(faults=len(faults), outputs=len({output for output, _ in faults}),
-                      caught=len(found) - found.count(None))
-    new += "".join(f"| {output} | {', '.join(kinds)} | {by} |\n" for (output, by), kinds in rows.items())
+    new = page(list(zip(faults, found)))
     print(f"{len(faults)} faults, {found.count(None)} survive")
     if options.renew:
         PAGE.write_text(new)

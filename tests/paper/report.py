@@ -33,7 +33,7 @@ def copied() -> Path:
     copy = FOLDER / "source"
     shutil.rmtree(copy, ignore_errors=True)
     for part in ("paper", "wasm", "data", "docs", "figures", "bench/results", "tests/stress/results"):
-        shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference", "report.html"))
+        shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference"))
     shutil.copy(SOURCE / "CMakeLists.txt", copy)
     return copy
 
@@ -227,6 +227,16 @@ class TheReport(unittest.TestCase):
             self.assertEqual((first / file).read_bytes(), (second / file).read_bytes(), file)
         if whole:
             print("(no LaTeX here: the PDF is not compared)")
+
+
+class TheMarkdown(unittest.TestCase):
+    def test_nothing_stands_raw_in_it_and_its_values_are_the_results(self):
+        file = FOLDER / "report.md"
+        subprocess.run([SOURCE / "paper/report/make.py", BUILD, "--verdicts", VERDICTS, "--markdown", file], check=True)
+        text = file.read_text(encoding="utf-8")
+        self.assertEqual(re.findall(r"\{\{[a-z]|:::|\{#|\[\]\{|\\ |^---", text, re.M), [])
+        verdicts = {each["claim"]: each for each in json.loads(VERDICTS.read_text())["verdicts"]}
+        self.assertIn(f"the middle, here {verdicts['product-mid-range']['ours']:.4g}", re.sub(r"\s+", " ", text))
 
 
 class TheAppendix(unittest.TestCase):

@@ -47,9 +47,10 @@ def differences(committed: Path, new: Path) -> list:
             difference = name.endswith(".svg") and difference_in_files(name, committed, new)
         if difference:
             found.append(str(difference))
-    others = [sums_of(folder / "other-engines.sha256") for folder in (committed, new)]
-    found += [f"{name}: another SHA-256 sum than in other-engines.sha256"
-              for name in sorted(others[0].keys() | others[1].keys()) if others[0].get(name) != others[1].get(name)]
+    for listed in ("csv.sha256", "other-engines.sha256"):
+        sums = [sums_of(folder / listed) for folder in (committed, new)]
+        found += [f"{name}: another SHA-256 sum than in {listed}"
+                  for name in sorted(sums[0].keys() | sums[1].keys()) if sums[0].get(name) != sums[1].get(name)]
     return found
 
 

@@ -4,7 +4,7 @@ pages work: in the report the cited tables and verdicts are made anew.
 
     check.py BUILD
 
-BUILD holds the native program, commands.json and wasm/; it is worked in BUILD/wasm/check, which is filled anew. Exit code
+BUILD holds the figures of the exact engine, what they were made from and by, and wasm/; it is worked in BUILD/wasm/check, which is filled anew. Exit code
 77: there is no node or no Chromium.
 """
 import functools
@@ -24,10 +24,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 sys.dont_write_bytecode = True
-sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits"), str(SOURCE / "wasm/page")]
+sys.path[:0] = [str(HERE.parent / "paper"), str(HERE.parent / "same_bits")]
 import chromium  # noqa: E402
 import firefox  # noqa: E402
-import pages  # noqa: E402
 from differences import compare_files  # noqa: E402
 
 PROGRAM, TARBALL, WASM, WORK = None, None, None, None
@@ -282,26 +281,18 @@ class InABrowser(unittest.TestCase):
         return f"{run['end_time'] / 6.283185307179586:.3g} periods", f"{len(run['impacts']['time'])} impacts"
 
 
-def report_page(wasm: Path, page: Path) -> Path:
-    """docs/report.html with all that is compiled, as make paper makes it."""
-    compiled = {"damper-module": pages.damper_pieces(wasm)["module"]} | {
-        f"project-{name}": piece for name, piece in pages.project_pieces(wasm, WASM.parent / "commands.json").items()
-        if name in ("program", "archive", "worker")}
-    text = (SOURCE / "docs/report.html").read_text(encoding="utf-8")
-    for name, piece in compiled.items():
-        place = f'id="{name}"></script>'
-        if place not in text:
-            raise AssertionError(f"docs/report.html has no {place}")
-        text = text.replace(place, place.replace("><", f">{piece}<"))
-    page.write_text(text, encoding="utf-8")
-    return page
+def report_page(wasm: Path, folder: Path) -> Path:
+    """The report's page with all that is compiled, as make paper makes it, in the folder."""
+    call(SOURCE / "paper/report/make.py", WASM.parent, "--html", "--verdicts", SOURCE / "data/reference/verdicts.json",
+         "--wasm", wasm, "--out", folder)
+    return folder / "report.html"
 
 
 class Report(InABrowser):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.page = report_page(WASM, WORK / "report.html")
+        cls.page = report_page(WASM, WORK / "report")
 
     def test_a_link_leads_to_a_damper_and_its_parameters(self):
         self.browser.open(self.page, 1280)
@@ -345,7 +336,7 @@ class Report(InABrowser):
         shutil.copytree(WASM / "program", WORK / "wrong-bit/program")
         shutil.copytree(WASM / "package", WORK / "wrong-bit/package")
         plant_wrong_bit(WORK / "wrong-bit/program/impact-damper.wasm")
-        self.browser.open(report_page(WORK / "wrong-bit", WORK / "wrong-bit.html"), 1280)
+        self.browser.open(report_page(WORK / "wrong-bit", WORK / "wrong-bit/report"), 1280)
         self.assertRegex(self.checked("#figure-15 .check", 120), "^different: ")
         self.assertRegex(self.checked("#figure-8 .check", 120), "^different: ")
 
@@ -510,7 +501,7 @@ class InFirefox(InABrowser):
     kind = firefox
 
     def test_the_papers_figures_have_the_cited_tables(self):
-        self.browser.open(report_page(WASM, WORK / "report-for-firefox.html"))
+        self.browser.open(report_page(WASM, WORK / "report-for-firefox"))
         for figure in range(1, 16):
             with self.subTest(figure):
                 self.assertRegex(self.checked(f"#figure-{figure} .check", 300), "^equal: ")

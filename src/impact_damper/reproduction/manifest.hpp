@@ -10,7 +10,7 @@
 //                 "tables": [{"engine": "exact", "file": "data/reference/series/fig08.dat",
 //                             "sha256": "1a2b3c4d...", "swhid": "swh:1:cnt:..."},
 //                            {"engine": "restitution", ...}, {"engine": "cem", ...}],
-//                 "csv": {"file": "data/reference/series/fig08.csv", "sha256": "..."},
+//                 "csv": {"file": "build/series/exact/fig08.csv", "sha256": "..."},
 //                 "script": {"file": "figures/fig08.gp", "sha256": "..."},
 //                 "picture": {"file": "data/reference/figures/fig08.svg", "sha256": "..."},
 //                 "claims": ["..."]}]}
