@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Runs the command lines of command_lines.txt, or `check` of each file of corpus/manifest.txt, and holds what they print,
+"""Runs the command lines of command_lines.txt, or `check` of each file that is packed in a folder, and holds what they print,
 leave and end with against what is expected.
 
     command_lines.py PROGRAM LIST FOLDER [--share K/N] [--only NUMBER,...]
 
-LIST is command_lines.txt, whose cases run in a copy of files/, or manifest.txt. FOLDER is made anew, for the copies. --share
-takes the K-th of N parts; --only takes the cases with these numbers, which failures name. A command that fails leaves
-stdout empty and no new file; one that is done leaves stderr empty (where a ! stands behind the exit code it warns), and
-makes its -o file. None changes a file that it was given.
+LIST is command_lines.txt, whose cases run among the files of files.packed, or a folder with a KIND.packed for each kind of
+files that `check` knows (packed_files.py). FOLDER is made anew, for the files. --share takes the K-th of N parts; --only
+takes the cases with these numbers, which failures name. A command that fails leaves stdout empty and no new file; one that
+is done leaves stderr empty (where a ! stands behind the exit code it warns), and makes its -o file. None changes a file
+that it was given.
 """
 import argparse
 import os
@@ -16,6 +17,9 @@ import re
 import shutil
 import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from packed_files import read, unpack  # noqa: E402
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("program", type=lambda text: pathlib.Path(text).resolve())
@@ -26,23 +30,23 @@ parser.add_argument("--only")
 options = parser.parse_args()
 
 # What takes longer than two seconds says how far it is: on a slow machine, or under the sanitizers.
-PROGRESS = re.compile(r"(verify|response|sweep): [0-9]+ of [0-9]+ [^\n]*\n|compare: (fitting|simulating|drawing)[^\n]*\n|"
+PROGRESS = re.compile(r"(verify|response|sweep): [0-9]+ (of [0-9]+|branches) [^\n]*\n|compare: (fitting|simulating|drawing)[^\n]*\n|"
                       r"design: (searched|checking) [^\n]*\n|report: (release [0-9]|simulating|recording|drawing)[^\n]*\n")
 
 
 def cases():
-    """Of each its number, what it runs in, the words, exit code, whether it warns (absent: it may), and the text."""
-    text = options.list.read_text(encoding="utf-8")
-    if options.list.name == "manifest.txt":
-        for number, line in enumerate((line for line in text.splitlines() if re.match("[a-z]", line)), 1):
-            kind, file, said = re.fullmatch(r"([a-z]+)/([a-z0-9_]+\.json) \|(.*)", line).groups()
-            said = said.strip()
-            yield (number, options.list.parent / kind, f"check {kind} {file}", 3 if said else 0, None,
-                   said or f"{file}: valid")
+    """Of each its number, the packed files among which it runs, the words, exit code, whether it warns (absent: it may), and
+    the text."""
+    if options.list.is_dir():
+        checked = [(packed, file, note) for packed in sorted(options.list.glob("*.packed"))
+                   for file, (note, _) in read(packed).items()]
+        for number, (packed, file, note) in enumerate(checked, 1):
+            yield number, packed, f"check {packed.stem} {file}", 3 if note else 0, None, note or f"{file}: valid"
     else:
-        for number, line in enumerate((line for line in text.splitlines() if re.match("[0-9]", line)), 1):
+        lines = options.list.read_text(encoding="utf-8").splitlines()
+        for number, line in enumerate((line for line in lines if re.match("[0-9]", line)), 1):
             code, warned, words, said = re.fullmatch(r"([0-9])(!?) \|(.*) \|(.*)", line).groups()
-            yield number, options.list.parent / "files", words.strip(), int(code), bool(warned), said.strip()
+            yield number, options.list.parent / "files.packed", words.strip(), int(code), bool(warned), said.strip()
 
 
 def files_in(folder):
@@ -55,27 +59,26 @@ def files_in(folder):
     return found
 
 
-fresh = {}  # the copies that are as they were made
+fresh = {}  # the folders that are as they were unpacked
 
 
-def faults_of(source, words, code, warned, said):
-    folder = options.folder / source.name
-    if source not in fresh:
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.copytree(source, folder)
-        fresh[source] = files_in(folder)
-    before = fresh[source]
+def faults_of(packed, words, code, warned, said):
+    folder = options.folder / packed.stem
+    if packed not in fresh:
+        unpack(packed, folder)
+        fresh[packed] = files_in(folder)
+    before = fresh[packed]
     try:
         # By a shell that leaves [] and * as they are.
         done = subprocess.run(["sh", "-fc", f'exec "$0" {words}', str(options.program)], cwd=folder, timeout=60,
                               stdin=subprocess.DEVNULL, capture_output=True, check=False)
     except subprocess.TimeoutExpired:
-        del fresh[source]
+        del fresh[packed]
         return ["not done after 60 s"]
     out, err = done.stdout.decode("utf-8", "replace"), PROGRESS.sub("", done.stderr.decode("utf-8", "replace"))
     after = files_in(folder)
     if after != before:
-        del fresh[source]
+        del fresh[packed]
     faults = []
     if done.returncode != code:
         faults.append(f"exit code {done.returncode} instead of {code}")

@@ -7,9 +7,11 @@ import shutil
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from packed_files import unpack  # noqa: E402
+
 program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-shutil.rmtree(folder, ignore_errors=True)
-shutil.copytree(source / "tests/cli/files", folder)
+unpack(source / "tests/cli/files.packed", folder)
 faults = []
 
 

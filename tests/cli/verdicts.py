@@ -1,6 +1,6 @@
 """The file of verdicts holds the further numbers of a claim that its words show, and what is open counts as no claim.
 
-    verdicts.py PROGRAM FILES FOLDER        FILES is tests/cli/files; FOLDER, made anew, is for what is written
+    verdicts.py PROGRAM FILES FOLDER        FILES holds those of files.packed; FOLDER, made anew, is for what is written
 
 A number that stands beside a claim is measured once more as a claim of its own: both must agree to the last digit.
 """
