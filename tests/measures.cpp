@@ -85,7 +85,7 @@ TEST_CASE("the spread is averaged over twelve bins, equal in the logarithm") {
 TEST_CASE("measures have names of their own, in order, each with its meaning") {
   for (std::size_t i = 0; i < measures().size(); ++i) {
     CHECK(!measures()[i].meaning.empty());
-    CHECK(measures()[i].least_scenes <= measures()[i].most_scenes);
+    CHECK(measures()[i].scenes.least <= measures()[i].scenes.most);
     if (i > 0) CHECK(measures()[i - 1].name < measures()[i].name);
   }
   CHECK_THROWS_AS(measure(no_runs, {"no_such_measure", {}, {}}), std::invalid_argument);

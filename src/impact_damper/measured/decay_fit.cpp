@@ -5,19 +5,18 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/sweeps/sampling.hpp"
 
 namespace impact_damper {
 namespace {
-
-using Vector = std::vector<double>;
-using Matrix = std::vector<Vector>;
 
 // Straight line fitted by least squares; the variance of its slope follows from `squares`, the sum of (x -
 // mean_x)^2.
@@ -188,98 +187,67 @@ Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const
 
 // --- The loss factor as a polynomial ----------------------------------------------------------------------
 
-// Replaces the lower triangle of m by its Cholesky factor L, m = L L^T. False if m is not positive definite.
-bool factorise(Matrix& m) {
-  for (std::size_t j = 0; j < m.size(); ++j) {
-    for (std::size_t k = 0; k < j; ++k) m[j][j] -= m[j][k] * m[j][k];
-    if (!(m[j][j] > 0)) return false;
-    m[j][j] = std::sqrt(m[j][j]);
-    for (std::size_t i = j + 1; i < m.size(); ++i) {
-      for (std::size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
-      m[i][j] /= m[j][j];
-    }
-  }
-  return true;
-}
-void solve_lower(const Matrix& l, Vector& x) {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= l[i][k] * x[k];
-    x[i] /= l[i][i];
-  }
-}
-void solve_upper(const Matrix& l, Vector& x) {  // replaces x by the solution of L^T z = x
-  for (std::size_t i = x.size(); i-- > 0;) {
-    for (std::size_t k = i + 1; k < x.size(); ++k) x[i] -= l[k][i] * x[k];
-    x[i] /= l[i][i];
-  }
-}
-
 // Quadratic polynomial of ln eta of each bin over a box, and the covariance of the runs about it (M16.6).
-class Emulator {
- public:
-  // Fits the polynomial. False if it has fewer than least_runs for each coefficient or a singular matrix.
-  bool fit(const Points& points, const Box& box, const std::vector<LossBin>& bins) {
-    box_ = box;
+struct Emulator {
+  Vector scatter;  // standard deviations of ln eta
+  Box box;
+  Matrix coefficients;
+  Cholesky covariance;
+  Vector observed;  // ln eta of the record
+
+  // Returns the fitted polynomial; nothing if it has fewer than least_runs for each coefficient or a singular
+  // matrix.
+  static std::optional<Emulator> fitted(const Points& points, const Box& box,
+                                        const std::vector<LossBin>& bins) {
     const std::size_t count = points.place.size(), terms = terms_of(Vector(box.low.size(), 0.0)).size();
-    if (count < least_runs * terms) return false;
-    Matrix design, normal(terms, Vector(terms, 0.0));
+    if (count < least_runs * terms) return {};
+    Matrix design, products(terms, Vector(terms, 0.0));
     for (const Vector& place : points.place) {
-      design.push_back(terms_of(within_box(place)));
+      design.push_back(terms_of(within(box, place)));
       for (std::size_t a = 0; a < terms; ++a)
-        for (std::size_t b = 0; b < terms; ++b) normal[a][b] += design.back()[a] * design.back()[b];
+        for (std::size_t b = 0; b < terms; ++b) products[a][b] += design.back()[a] * design.back()[b];
     }
-    if (!factorise(normal)) return false;
-    Matrix residual(bins.size(), Vector(count));
-    coefficients_.assign(bins.size(), {});
+    const auto normal = Cholesky::of(std::move(products));
+    if (!normal) return {};
+    Matrix residual(bins.size(), Vector(count)), coefficients;
     for (std::size_t k = 0; k < bins.size(); ++k) {
       Vector right(terms, 0.0);
       for (std::size_t i = 0; i < count; ++i)
         for (std::size_t a = 0; a < terms; ++a) right[a] += design[i][a] * points.loss[i][k];
-      solve_lower(normal, right);
-      solve_upper(normal, right);
+      coefficients.push_back(normal->solution(std::move(right)));
       for (std::size_t i = 0; i < count; ++i)
-        residual[k][i] =
-            points.loss[i][k] - std::inner_product(right.begin(), right.end(), design[i].begin(), 0.0);
-      coefficients_[k] = std::move(right);
+        residual[k][i] = points.loss[i][k] - dot_product(coefficients[k], design[i]);
     }
-    covariance_.assign(bins.size(), Vector(bins.size(), 0.0));
-    scatter.clear();
-    observed_.clear();
+    Matrix covariance(bins.size(), Vector(bins.size()));
+    Vector scatter, observed;
     for (std::size_t a = 0; a < bins.size(); ++a) {
       for (std::size_t b = 0; b < bins.size(); ++b)
-        covariance_[a][b] =
-            std::inner_product(residual[a].begin(), residual[a].end(), residual[b].begin(), 0.0) /
-            double(count - terms);
-      scatter.push_back(std::sqrt(covariance_[a][a]));
-      covariance_[a][a] += bins[a].error * bins[a].error;
-      observed_.push_back(logarithm(bins[a].loss));
+        covariance[a][b] = dot_product(residual[a], residual[b]) / double(count - terms);
+      scatter.push_back(std::sqrt(covariance[a][a]));
+      covariance[a][a] += bins[a].error * bins[a].error;
+      observed.push_back(logarithm(bins[a].loss));
     }
-    return factorise(covariance_);
+    auto factor = Cholesky::of(std::move(covariance));
+    if (!factor) return {};
+    return Emulator{std::move(scatter), box, std::move(coefficients), *std::move(factor),
+                    std::move(observed)};
   }
 
-  Vector log_loss(const Vector& place) const {
-    const Vector terms = terms_of(within_box(place));
-    Vector loss;
-    for (const Vector& each : coefficients_)
-      loss.push_back(std::inner_product(each.begin(), each.end(), terms.begin(), 0.0));
-    return loss;
-  }
+  Vector log_loss(const Vector& place) const { return product(coefficients, terms_of(within(box, place))); }
   double chi_square(const Vector& place) const {  // (M16.7)
     Vector deviation = log_loss(place);
-    for (std::size_t k = 0; k < deviation.size(); ++k) deviation[k] -= observed_[k];
-    solve_lower(covariance_, deviation);
-    return std::inner_product(deviation.begin(), deviation.end(), deviation.begin(), 0.0);
+    for (std::size_t k = 0; k < deviation.size(); ++k) deviation[k] -= observed[k];
+    deviation = covariance.forward(std::move(deviation));
+    return dot_product(deviation, deviation);
   }
-
-  Vector scatter;  // standard deviations of ln eta
 
  private:
   static constexpr std::size_t least_runs = 5;  // for each coefficient
 
-  Vector within_box(const Vector& place) const {  // z: from -1 to 1
+  static Vector within(const Box& box, const Vector& place) {  // z: from -1 to 1
     Vector z(place.size());
     for (std::size_t j = 0; j < place.size(); ++j)
-      z[j] = 2 * (place[j] - box_.low[j]) / (box_.high[j] - box_.low[j]) - 1;
+      z[j] = 2 * (place[j] - box.low[j]) / (box.high[j] - box.low[j]) - 1;
     return z;
   }
   static Vector terms_of(const Vector& z) {
@@ -290,10 +258,6 @@ class Emulator {
     }
     return terms;
   }
-
-  Box box_;
-  Matrix coefficients_, covariance_;  // covariance_ as its Cholesky factor L
-  Vector observed_;
 };
 
 // --- chi square on a grid ---------------------------------------------------------------------------------
@@ -659,27 +623,27 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     box = box_of_nearest(points, bins, box, kept);
   }
   // The polynomial of the previous stage decides at which points of the box decays are simulated.
-  Emulator emulator, before;
+  std::optional<Emulator> emulator, before;
   Profiles profiles;
   std::optional<double> limit;
-  const auto is_near = [&](const Vector& place) { return !limit || before.chi_square(place) <= *limit; };
+  const auto is_near = [&](const Vector& place) { return !limit || before->chi_square(place) <= *limit; };
   const auto refine = [&](std::int64_t runs) {
-    if (!emulator.fit(search.points(box, runs, is_near), box, bins)) return false;
-    profiles = profiles_of(emulator, box, nodes, is_near);
+    emulator = Emulator::fitted(search.points(box, runs, is_near), box, bins);
+    if (!emulator) return false;
+    profiles = profiles_of(*emulator, box, nodes, is_near);
     return !profiles.best.empty();
   };
   // The misfit of the polynomial counts as scatter and may keep the box from shrinking. The half of the box
   // about the best point is then tried, and the search goes on there if the scatter is less.
   struct Stopped {
     Box box;
-    Emulator before;
+    std::optional<Emulator> before;
     std::optional<double> limit;
-    Vector scatter;
   };
   std::optional<Stopped> stopped;
   for (int stage = 0; stage < most_stages; ++stage) {
     if (!refine(options.runs)) return none;
-    if (stopped && !is_less(emulator.scatter, stopped->scatter)) break;
+    if (stopped && !is_less(emulator->scatter, stopped->before->scatter)) break;
     stopped.reset();
     const Narrowed next = narrowed(profiles, box, profiles.least + generous);
     double part = 0;
@@ -691,7 +655,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     if (next.was_too_small) limit.reset();
     constexpr double little = 0.2;
     if (!next.was_too_small && part < little) {
-      stopped = Stopped{box, before, limit, emulator.scatter};
+      stopped = Stopped{box, before, limit};
       box = half_about(profiles.best, box);
     }
   }
@@ -713,8 +677,8 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                               .open_above = interval.reaches_high});
   }
   fit.correlation = profiles.correlation;
-  for (const double each : emulator.log_loss(profiles.best)) fit.loss.push_back(exponential(each));
-  fit.scatter = emulator.scatter;
+  for (const double each : emulator->log_loss(profiles.best)) fit.loss.push_back(exponential(each));
+  fit.scatter = emulator->scatter;
   fit.chi_square = profiles.least;
   fit.degrees = std::int64_t(bins.size() - count);
   const double ninth = 2.0 / (9.0 * double(fit.degrees));  // (M16.9)

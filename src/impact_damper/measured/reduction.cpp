@@ -9,6 +9,7 @@
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -104,33 +105,13 @@ struct PeakFit {
   bool is_covered = false, is_single = false;
 };
 
-struct Solved {
-  std::array<double, 3> x{};
-  std::array<std::array<double, 3>, 3> inverse{};
-  // b^T m^-1 b: the leverage of a sample with the basis b.
-  double leverage(const std::array<double, 3>& b) const {
-    double sum = 0;
-    for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t k = 0; k < 3; ++k) sum += b[j] * inverse[j][k] * b[k];
-    return sum;
-  }
-};
-// Solves m x = r by Gauss-Jordan elimination, m being symmetric. Absent if m is not positive definite.
-std::optional<Solved> solved(std::array<std::array<double, 3>, 3> m, std::array<double, 3> r) {
-  std::array<std::array<double, 3>, 3> inverse{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double pivot = m[k][k];
-    if (!(pivot > 1e-12)) return std::nullopt;
-    for (std::size_t j = 0; j < 3; ++j) m[k][j] /= pivot, inverse[k][j] /= pivot;
-    r[k] /= pivot;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (i == k) continue;
-      const double f = m[i][k];
-      for (std::size_t j = 0; j < 3; ++j) m[i][j] -= f * m[k][j], inverse[i][j] -= f * inverse[k][j];
-      r[i] -= f * r[k];
-    }
-  }
-  return Solved{r, inverse};
+using Normal = SolutionAndInverse<3>;  // of the normal equations
+// Returns b^T m^-1 b: the leverage of a sample with the basis b.
+double leverage(const Normal& normal, const std::array<double, 3>& b) {
+  double sum = 0;
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t k = 0; k < 3; ++k) sum += b[j] * normal.inverse[j][k] * b[k];
+  return sum;
 }
 
 struct Samples {
@@ -160,7 +141,7 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
     }
     std::vector<double> residual(count, 0.0);
     std::vector<bool> used(count, true);
-    std::optional<Solved> solution;
+    std::optional<Normal> solution;
     std::size_t left = count;
     for (const std::size_t least_left = count - count / 4;;) {
       std::array<std::array<double, 3>, 3> m{};
@@ -172,7 +153,7 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
           r[j] += basis[i][j] * samples.value[first + i];
         }
       }
-      solution = solved(m, r);
+      solution = solution_and_inverse(m, r, 1e-12);
       if (!solution) return peak;
       double sum = 0;
       for (std::size_t i = 0; i < count; ++i) {
@@ -188,7 +169,7 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
       std::size_t at = count;
       for (std::size_t i = 0; i < count; ++i) {
         if (!used[i]) continue;
-        const double share = residual[i] * residual[i] / (1 - solution->leverage(basis[i]));
+        const double share = residual[i] * residual[i] / (1 - leverage(*solution, basis[i]));
         if (share > worst) worst = share, at = i;
       }
       // Squares of the studentised residual and of its limit, times the variance of the others.

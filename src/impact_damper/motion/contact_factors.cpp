@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "impact_damper/math/eigenvalues.hpp"
+#include "impact_damper/math/dense.hpp"
 
 namespace impact_damper {
 namespace {

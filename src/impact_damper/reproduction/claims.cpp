@@ -39,20 +39,14 @@ MeasureCall read_measure(ObjectReader object) {
   }
   const Measure& measure = measures()[*index];
   call.name = measure.name;
-  if (measure.most_scenes > 0) {
-    const bool is_read = object.required("scenes", call.scenes, a_name, measure.most_scenes);
-    const std::size_t count = call.scenes.size();
-    if (is_read && count < measure.least_scenes)
-      object.reject("scenes", "must name " + std::to_string(measure.least_scenes) + " to " +
-                                  std::to_string(measure.most_scenes) + " scenes, got " +
-                                  std::to_string(count));
-  }
-  if (measure.most_responses > 0 &&
-      object.required("responses", call.responses, a_name, measure.most_responses) &&
-      call.responses.size() < measure.least_responses)
-    object.reject("responses", "must name " + std::to_string(measure.least_responses) + " to " +
-                                   std::to_string(measure.most_responses) + " responses, got " +
-                                   std::to_string(call.responses.size()));
+  const auto read_names = [&](const std::string& key, const Count& count, std::vector<std::string>& into) {
+    if (count.most == 0 || !object.required(key, into, a_name, count.most) || into.size() >= count.least)
+      return;
+    object.reject(key, "must name " + std::to_string(count.least) + " to " + std::to_string(count.most) +
+                           " " + key + ", got " + std::to_string(into.size()));
+  };
+  read_names("scenes", measure.scenes, call.scenes);
+  read_names("responses", measure.responses, call.responses);
   for (const std::string_view number : measure.numbers) {
     double value = 0;
     if (!object.required(number, value)) continue;

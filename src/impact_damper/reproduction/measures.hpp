@@ -95,15 +95,20 @@ class Runs {
   std::map<std::string, Response> found_;              // of responses_
 };
 
+// How many scenes, or responses, a claim may name for a measure.
+struct Count {
+  std::size_t least = 0, most = 0;
+};
+
 // A measure finds its number in each member of an ensemble, or once if chaos does not affect it. It is NaN
 // where there is nothing to find, which agrees with no claim.
 struct Measure {
   std::string_view name;
-  std::size_t least_scenes, most_scenes;
-  std::vector<std::string_view> numbers;  // its parameters, all required
   Spread (*find)(Runs& runs, const MeasureCall& call);
   std::string_view meaning;
-  std::size_t least_responses = 0, most_responses = 0;
+  std::vector<std::string_view> numbers = {};  // its parameters, all required
+  Count scenes = {1, 1};
+  Count responses = {};
   bool takes_dampers = false;  // takes runs with a list of dampers, too
 };
 const std::vector<Measure>& measures();  // in the order of names

@@ -67,48 +67,25 @@ Spread from_sum(Runs& runs, const MeasureCall& call) {
 }  // namespace
 
 std::vector<Measure> damper_measures() {
-  return {
-      {"loss_ratio",
-       1,
-       1,
-       {"from", "to"},
-       loss_ratio,
+  std::vector<Measure> all{
+      {"loss_ratio", loss_ratio,
        "greatest loss factor between two amplitudes divided by the least, in bins of a twelfth of a decade",
-       0,
-       0,
-       true},
-      {"loss_variation_percent",
-       1,
-       1,
-       {"from", "to"},
-       loss_variation_percent,
+       numbers("from", "to")},
+      {"loss_variation_percent", loss_variation_percent,
        "half the difference of greatest and least loss factor between two amplitudes, in percent of their "
        "mean, in bins of a twelfth of a decade",
-       0,
-       0,
-       true},
-      {"alike_range",
-       1,
-       1,
-       {"from", "to", "within"},
-       alike_range,
+       numbers("from", "to")},
+      {"alike_range", alike_range,
        "widest range of amplitudes in which the loss factor is constant to a share either way, in bins of a "
        "twelfth of a decade: its upper end divided by the lower",
-       0,
-       0,
-       true},
-      {"from_sum",
-       2,
-       2,
-       {"from", "to"},
-       from_sum,
+       numbers("from", "to", "within")},
+      {"from_sum", from_sum,
        "loss factor of the dampers of the first run less the sum of what each would lose alone, by the "
-       "second "
-       "run, divided by the sum: median, least and greatest of the bins between two amplitudes",
-       0,
-       0,
-       true},
+       "second run, divided by the sum: median, least and greatest of the bins between two amplitudes",
+       numbers("from", "to"), scenes(2, 2)},
   };
+  for (Measure& each : all) each.takes_dampers = true;
+  return all;
 }
 
 }  // namespace impact_damper

@@ -1,9 +1,11 @@
 // Functions that the measures_*.cpp share.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "impact_damper/analysis/loss_factor.hpp"
@@ -12,6 +14,15 @@
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
+
+// Return the last entries of a measure's row: the names of the numbers that it requires, and how many scenes
+// and responses a claim may name.
+template <class... Name>
+std::vector<std::string_view> numbers(const Name&... names) {
+  return {names...};
+}
+constexpr Count scenes(std::size_t least, std::size_t most) { return {least, most}; }
+constexpr Count responses(std::size_t least, std::size_t most) { return {least, most}; }
 
 inline constexpr double everywhere = std::numeric_limits<double>::infinity();
 

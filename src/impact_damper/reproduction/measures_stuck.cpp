@@ -49,13 +49,10 @@ Spread steps_percent(Runs& runs, const MeasureCall& call) {
 
 std::vector<Measure> stuck_measures() {
   return {
-      {"stuck_regime_steps_percent",
-       1,
-       1,
-       {"stuck_speed", "amplitude"},
-       steps_percent,
+      {"stuck_regime_steps_percent", steps_percent,
        "steps of the component element method that the paper's stuck regime saves, down to an amplitude, in "
-       "percent"},
+       "percent",
+       numbers("stuck_speed", "amplitude")},
   };
 }
 

@@ -39,12 +39,6 @@ std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
   return all;
 }
 
-Matrix identity_of(std::size_t n) {
-  Matrix one(n, std::vector<double>(n));
-  for (std::size_t i = 0; i < n; ++i) one[i][i] = 1;
-  return one;
-}
-
 // Takes a mass that lies beyond a rigid wall across its impact (M13.13), or back if it moves away from the
 // wall. All others fly. Nothing if it has no speed, or an impact with e = 0 would have to be undone.
 std::optional<Step> across_impact(double zeta, const Cavity& cavity, const StateVector& s) {

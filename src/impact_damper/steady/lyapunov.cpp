@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
 #include "impact_damper/steady/run_with_variation.hpp"
@@ -19,48 +20,11 @@ namespace {
 
 using FourNumbers = std::array<double, 4>;
 
-template <class Column>
-double dot(const Column& a, const Column& b) {
-  double sum = a[0] * b[0];
-  for (std::size_t i = 1; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-// Makes column j orthogonal to those before it by modified Gram-Schmidt, scales it to length 1, and adds the
-// logarithm of the length that it had, its stretch (M13.15). Two passes: a slow impact shears so much that
-// one would leave rounding errors.
+// Makes column j orthonormal to those before it, and adds the logarithm of the length that it had, its
+// stretch (M13.15).
 template <class Columns>
-void orthonormalise(Columns& columns, std::size_t j, double& logarithm_of_stretch) {
-  auto& column = columns[j];
-  for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t k = 0; k < j; ++k) {
-      const double along = dot(columns[k], column);
-      for (std::size_t i = 0; i < column.size(); ++i) column[i] -= along * columns[k][i];
-    }
-  }
-  const double size = std::sqrt(dot(column, column));
-  if (!(size > 0)) return;  // the direction is lost
-  for (double& entry : column) entry /= size;
-  logarithm_of_stretch += logarithm(size);
-}
-
-// Replaces the columns from `first` on, whose directions are lost, by vectors orthonormal to the others.
-template <class Columns>
-void replace_lost(Columns& columns, std::size_t first) {
-  for (std::size_t j = first; j < columns.size(); ++j) {
-    auto& column = columns[j];
-    double largest = 0;
-    for (std::size_t k = 0; k < column.size(); ++k) {  // the unit vector that is least along the others
-      double left = 1;
-      for (std::size_t i = 0; i < j; ++i) left -= columns[i][k] * columns[i][k];
-      if (!(left > largest)) continue;
-      largest = left;
-      std::fill(column.begin(), column.end(), 0.0);
-      column[k] = 1;
-    }
-    double unused = 0;
-    orthonormalise(columns, j, unused);
-  }
+void take_stretch(Columns& columns, std::size_t j, double& logarithm_of_stretch) {
+  if (const auto stretch = orthonormalise(columns, j)) logarithm_of_stretch += logarithm(*stretch);
 }
 
 // The frame Q of (M13.15): four orthonormal changes of the state, and the logarithms of their stretches.
@@ -73,7 +37,7 @@ class Frame final : public VariationReceiver {
     return pieces_of(loss);
   }
   void begin_to_average() {
-    replace_lost(columns_, dimensions_);
+    complete_basis(columns_, dimensions_);
     dimensions_ = 4;
     logarithms_ = {};
   }
@@ -87,7 +51,7 @@ class Frame final : public VariationReceiver {
       for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t k = 0; k < 4; ++k) carried[i] += a[i][k] * columns_[j][k];
       columns_[j] = carried;
-      orthonormalise(columns_, j, logarithms_[j]);
+      take_stretch(columns_, j, logarithms_[j]);
     }
   }
 
@@ -129,17 +93,15 @@ class SeveralDampers {
  public:
   SeveralDampers(const Scene& scene, const Engine& engine)
       : scene_(scene, engine), state_(release_of(scene)) {
-    const std::size_t n = dimensions_of(scene);
-    columns_.assign(n, ChangeOfState(n, 0.0));
-    for (std::size_t j = 0; j < n; ++j) columns_[j][j] = 1;
-    logarithms_.assign(n, 0.0);
+    columns_ = identity_of(dimensions_of(scene));
+    logarithms_.assign(columns_.size(), 0.0);
   }
   double duration() const { return scene_.period(); }
   StopReason pass_period() {
     const Run run = scene_.record(state_, duration());
     if (run.stop_reason != StopReason::time) return run.stop_reason;
     const Carried carried = carry_changes(run, columns_, [&] {
-      for (std::size_t j = 0; j < columns_.size(); ++j) orthonormalise(columns_, j, logarithms_[j]);
+      for (std::size_t j = 0; j < columns_.size(); ++j) take_stretch(columns_, j, logarithms_[j]);
     });
     lost_ = std::max(lost_, carried.lost);
     one_sided_ = one_sided_ || carried.one_sided;
@@ -147,7 +109,7 @@ class SeveralDampers {
     return run.stop_reason;
   }
   void begin_to_average() {
-    replace_lost(columns_, dimensions());
+    complete_basis(columns_, dimensions());
     lost_ = 0;
     one_sided_ = false;
     logarithms_.assign(logarithms_.size(), 0.0);

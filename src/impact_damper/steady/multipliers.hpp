@@ -1,10 +1,9 @@
-// Floquet multipliers, and the linear solver that Newton's method for orbits uses.
+// Floquet multipliers.
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "impact_damper/math/eigenvalues.hpp"
+#include "impact_damper/math/dense.hpp"
 
 namespace impact_damper {
 
@@ -18,8 +17,5 @@ using Multipliers = std::vector<Multiplier>;
 
 // The eigenvalues of a matrix, the largest modulus first; of a conjugate pair the one with im > 0 first.
 Multipliers multipliers_of(const Matrix& matrix);
-
-// The solution of a x = b; nothing if it is not finite. By Gaussian elimination with row pivots.
-std::optional<std::vector<double>> solution(Matrix a, std::vector<double> b);
 
 }  // namespace impact_damper

@@ -7,32 +7,24 @@
 #include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/math/complex.hpp"
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/steady/across_phase_0.hpp"
 #include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
 
-using Point = std::vector<double>;  // the components of a state, then the parameter
+using Point = Vector;  // the components of a state, then the parameter
 
-double dot(const Point& a, const Point& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 Point along(const Point& from, double step, const Point& direction) {
   Point p = from;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] += step * direction[i];
   return p;
 }
-Point normalized(Point p) {
-  const double size = std::sqrt(dot(p, p));
-  for (double& entry : p) entry /= size;
-  return p;
-}
 double distance(const Point& a, const Point& b) {
   const Point d = along(a, -1, b);
-  return std::sqrt(dot(d, d));
+  return std::sqrt(dot_product(d, d));
 }
 double largest(const StateVector& s) {
   double most = 0;
@@ -79,7 +71,8 @@ struct Equation {
   }
 };
 
-// The plane of points p with dot(normal, p - through) = 0, on which the corrector looks for a solution.
+// The plane of points p with dot_product(normal, p - through) = 0, on which the corrector looks for a
+// solution.
 struct Plane {
   Point through, normal;
 };
@@ -144,7 +137,7 @@ Rest rest_of(const Solution& at) {
   Rest rest;
   rest.state = vector_of(at.image.state);
   for (std::size_t k = 0; k < rest.state.size(); ++k) rest.state[k] -= at.point[k];
-  rest.off = dot(at.plane.normal, along(at.point, -1, at.plane.through));
+  rest.off = dot_product(at.plane.normal, along(at.point, -1, at.plane.through));
   rest.size = std::max(largest(rest.state), std::fabs(rest.off)) / std::max(1.0, largest(state_at(at.point)));
   return rest;
 }
@@ -298,10 +291,7 @@ std::optional<StateVector> reversed_by(const PoincareImage& image) {
   for (int pass = 0; pass < 4; ++pass) {
     const auto next = solution(a, v);
     if (!next) return {};
-    double size = 0;
-    for (const double entry : *next) size += entry * entry;
-    size = std::sqrt(size);
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (*next)[i] / size;
+    v = normalized(*next);
   }
   if (image.idle.empty()) return v;
   StateVector whole(image.by_state.size());
@@ -329,19 +319,16 @@ struct Products {
 };
 Products products_of(const PoincareImage& image) {
   const Multipliers all = multipliers_of(image);
-  struct Complex {
-    double re = 1, im = 0;
-    void times(double re2, double im2) { *this = {re * re2 - im * im2, re * im2 + im * re2}; }
-  };
-  Complex fold, flip, pairs;
+  const auto complex = [](const Multiplier& m) { return Complex<double>(m.re, m.im); };
+  const Complex<double> one(1);
+  Complex<double> fold = one, flip = one, pairs = one;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    fold.times(1 - all[i].re, -all[i].im);
-    flip.times(1 + all[i].re, all[i].im);
+    fold = fold * (one - complex(all[i]));
+    flip = flip * (one + complex(all[i]));
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      pairs.times(1 - (all[i].re * all[j].re - all[i].im * all[j].im),
-                  -(all[i].re * all[j].im + all[i].im * all[j].re));
+      pairs = pairs * (one - complex(all[i]) * complex(all[j]));
   }
-  return {fold.re, flip.re, pairs.re};
+  return {fold.real(), flip.real(), pairs.real()};
 }
 
 // Whether two orbits have equally many impacts; if not, a grazing lies between them. Orbits with sticking
@@ -385,7 +372,7 @@ class Follower {
       const Solved found = between(now, *tangent, step);
       const auto turned =
           found && follows(now, *found, step) ? tangent_at(*found, found->plane.normal) : std::nullopt;
-      if (!turned || !(dot(*turned, found->plane.normal) > 0.9) ||
+      if (!turned || !(dot_product(*turned, found->plane.normal) > 0.9) ||
           jumped(now, (*tangent).back(), *found, (*turned).back())) {
         step /= 2;
         if (step >= options_.smallest_step) continue;
@@ -405,7 +392,7 @@ class Follower {
       }
       add(branch, next);
       const bool is_back = branch.orbits.size() > 3 && distance(next.point, origin) < step &&
-                           dot(along(origin, -1, now.point), *tangent) > 0;
+                           dot_product(along(origin, -1, now.point), *tangent) > 0;
       now = next;
       tangent = turned;
       if (is_back) {
@@ -471,7 +458,7 @@ class Follower {
     const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
     if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
     const Point across = normalized(point_at(*rest, 0));
-    const double along_tangent = dot(across, tangent);
+    const double along_tangent = dot_product(across, tangent);
     if (!(std::fabs(along_tangent) > 0.95)) return tangent;
     return along_tangent > 0 ? across : along(Point(across.size()), -1, across);
   }
@@ -538,9 +525,7 @@ class Follower {
     const auto before = rest_after(equation_, now.point, equation_.half_periods / 2),
                after = rest_after(equation_, next.point, equation_.half_periods / 2);
     if (!before || !after) return false;
-    double product_of_both = 0;
-    for (std::size_t i = 0; i < before->size(); ++i) product_of_both += (*before)[i] * (*after)[i];
-    return product_of_both < 0;
+    return dot_product(*before, *after) < 0;
   }
   static bool is_flip(const PoincareImage& image) {
     const Multipliers all = multipliers_of(image);

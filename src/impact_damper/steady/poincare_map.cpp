@@ -85,12 +85,6 @@ SceneState state_of(const StateVector& s, const Scene& scene) {
   for (std::size_t i = 2; i < s.size(); i += 2) state.dampers.push_back({s[i], s[i + 1]});
   return state;
 }
-StateVector product(const StateMatrix& a, const StateVector& s) {
-  StateVector t(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < s.size(); ++k) t[i] += a[i][k] * s[k];
-  return t;
-}
 
 PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_periods)
     : scene_(scene), engine_(engine), half_periods_(half_periods) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "impact_damper/base/expected.hpp"
-#include "impact_damper/math/eigenvalues.hpp"
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/steady/steady_state.hpp"
@@ -22,12 +22,11 @@
 namespace impact_damper {
 
 // x, v = x', then y and w = y' of each damper, by number in the scene.
-using StateVector = std::vector<double>;
+using StateVector = Vector;
 using StateMatrix = Matrix;
 StateVector vector_of(const SceneState& s);
 // The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
 SceneState state_of(const StateVector& s, const Scene& scene);
-StateVector product(const StateMatrix& a, const StateVector& s);
 
 struct OrbitImpact {
   double time = 0;  // since the beginning of the run, where the force's phase is 0

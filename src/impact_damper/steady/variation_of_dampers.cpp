@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/impact_law.hpp"
@@ -442,8 +443,6 @@ class CompliantWalls {
     Step(const Numbers& of, const HeldBy& held, double duration, bool with_force) : duration_(duration) {
       for (std::size_t i = 0; i < held.size(); ++i) (held[i] == 0 ? free_ : pushed_).push_back(i);
       const std::size_t n = 2 + 2 * pushed_.size() + (with_force ? 4 : 0);
-      // The exponential of a matrix by scaling and squaring: Taylor's series of a time so short that its
-      // terms fall from the first on, squared as often as the duration is halved for that.
       double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
       for (const std::size_t i : pushed_) {
         const Damper& each = of.dampers[i];
@@ -452,23 +451,8 @@ class CompliantWalls {
         rate += (1 + each.nu) * each.damping;
       }
       rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
-      int halvings = 0;
-      while (duration * rate > 1) {
-        duration /= 2;
-        ++halvings;
-      }
-      matrix_.assign(n, std::vector<double>(n));
-      std::vector<double> term(n), next(n);
-      for (std::size_t j = 0; j < n; ++j) {
-        std::fill(term.begin(), term.end(), 0.0);
-        term[j] = 1;
-        for (int order = 0; order < terms; ++order) {
-          for (std::size_t i = 0; i < n; ++i) matrix_[i][j] += term[i];
-          derive(of, term, next);
-          for (std::size_t i = 0; i < n; ++i) term[i] = next[i] * (duration / (order + 1));
-        }
-      }
-      for (; halvings > 0; --halvings) square();
+      matrix_ = matrix_exponential(n, duration, rate,
+                                   [&](const Vector& s, Vector& rates) { derive(of, s, rates); });
     }
 
     // (g, h, a, b) of (M13.27) at a time: g is the change of the force by f0 (harmonic) or by omega_f
@@ -485,7 +469,7 @@ class CompliantWalls {
 
     // Carries a change s through the step. `force`: (g, h, a, b) at its beginning, the last four components.
     void carry(ChangeOfState& s, const std::array<double, 4>& force) const {
-      std::vector<double> from(matrix_.size());
+      Vector from(matrix_.size());
       from[0] = s[0], from[1] = s[1];
       const std::size_t n = 2 + 2 * pushed_.size();
       for (std::size_t k = 0; k < pushed_.size(); ++k) {
@@ -493,11 +477,11 @@ class CompliantWalls {
         from[3 + 2 * k] = s[index_of_w(pushed_[k])];
       }
       if (from.size() > n) std::copy(force.begin(), force.end(), from.begin() + std::ptrdiff_t(n));
-      s[0] = product(matrix_[0], from);
-      s[1] = product(matrix_[1], from);
+      const Vector to = product(matrix_, from);
+      s[0] = to[0], s[1] = to[1];
       for (std::size_t k = 0; k < pushed_.size(); ++k) {
-        s[index_of_y(pushed_[k])] = product(matrix_[2 + 2 * k], from);
-        s[index_of_w(pushed_[k])] = product(matrix_[3 + 2 * k], from);
+        s[index_of_y(pushed_[k])] = to[2 + 2 * k];
+        s[index_of_w(pushed_[k])] = to[3 + 2 * k];
       }
       for (const std::size_t i : free_) {
         s[index_of_y(i)] += duration_ * s[index_of_w(i)] - (s[0] - from[0] - duration_ * from[1]);
@@ -506,9 +490,8 @@ class CompliantWalls {
     }
 
    private:
-    static constexpr int terms = 24;
     // The right-hand sides of the variational equations (M13.27).
-    void derive(const Numbers& of, const std::vector<double>& s, std::vector<double>& rates) const {
+    void derive(const Numbers& of, const Vector& s, Vector& rates) const {
       const std::size_t n = 2 + 2 * pushed_.size();
       double a = -2 * of.zeta * s[1] - s[0];
       if (s.size() > n) a += s[n];
@@ -528,25 +511,11 @@ class CompliantWalls {
       rates[n + 2] = omega * g[3];
       rates[n + 3] = -omega * g[2];
     }
-    static double product(const std::vector<double>& row, const std::vector<double>& column) {
-      double sum = 0;
-      for (std::size_t k = 0; k < row.size(); ++k) sum += row[k] * column[k];
-      return sum;
-    }
-    void square() {
-      const std::vector<std::vector<double>> one = matrix_;
-      for (std::size_t i = 0; i < one.size(); ++i) {
-        for (std::size_t j = 0; j < one.size(); ++j) {
-          matrix_[i][j] = 0;
-          for (std::size_t k = 0; k < one.size(); ++k) matrix_[i][j] += one[i][k] * one[k][j];
-        }
-      }
-    }
 
     double duration_;
     std::vector<std::size_t> pushed_, free_;
     // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
-    std::vector<std::vector<double>> matrix_;
+    Matrix matrix_;
   };
 
   const Numbers& of_;
