@@ -394,45 +394,36 @@ struct Request {
   bool quiet = false;
 };
 
-std::string swept(const Request& asked) {
+Response swept(const Request& asked) {
   const Scene& scene = asked.file.scene;
   const Axis& axis = asked.axes[0];
   Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
   const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, nudged(asked.starts, asked.nudge),
                             asked.threads, [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(sweeps, asked.sweep);
-  return asked.format == Format::csv
-             ? sweep_csv(scene, axis, sweeps, asked.units)
-             : response_text(SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps},
-                             asked.file.scales);
+  return SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps};
 }
 
-std::string mapped(const Request& asked) {
+Response mapped(const Request& asked) {
   const Scene& scene = asked.file.scene;
   const Axis &first = asked.axes[0], &second = asked.axes[1];
   Progress progress("points", first.count * second.count);
   const Basin map = basin(scene, asked.engine, first, second, asked.basin, asked.threads,
                           [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(map, asked.basin.steady);
-  return asked.format == Format::csv
-             ? basin_csv(first, second, map, asked.units)
-             : response_text(BasinResponse{scene, asked.engine, asked.basin, first, second, map},
-                             asked.file.scales);
+  return BasinResponse{scene, asked.engine, asked.basin, first, second, map};
 }
 
-std::string followed(const Request& asked) {
+Response followed(const Request& asked) {
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
   const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
                                        asked.threads, [&](std::int64_t done) { progress(done); });
   if (!asked.quiet) warn_of(found, asked.orbits);
-  return asked.format == Format::csv
-             ? orbits_csv(scene, *asked.range, found, asked.units)
-             : response_text(orbits_response(scene, asked.engine, asked.orbits, *asked.range, found),
-                             asked.file.scales);
+  return orbits_response(scene, asked.engine, asked.orbits, *asked.range, found);
 }
 
-std::string averaged(const Request& asked) {
+Response averaged(const Request& asked) {
   const Scene& scene = asked.file.scene;
   const auto [periods, discard] = asked.averaging;
   Progress progress("periods", periods + discard);
@@ -441,13 +432,10 @@ std::string averaged(const Request& asked) {
         if (done % 100 == 0 || !scene.dampers.empty()) progress(done);
       });
   if (!asked.quiet) warn_of(found, scene.dampers.empty() ? 4 : dimensions_of(scene));
-  return asked.format == Format::csv
-             ? lyapunov_csv(found, asked.units)
-             : response_text(LyapunovResponse{scene, asked.engine, periods, discard, found},
-                             asked.file.scales);
+  return LyapunovResponse{scene, asked.engine, periods, discard, found};
 }
 
-std::string text_of(const Request& asked) {
+Response found_for(const Request& asked) {
   switch (asked.kind) {
     case Kind::sweep:
       return swept(asked);
@@ -459,6 +447,12 @@ std::string text_of(const Request& asked) {
       return averaged(asked);
   }
   return {};
+}
+
+std::string text_of(const Request& asked) {
+  const Response found = found_for(asked);
+  return asked.format == Format::csv ? response_csv(found, asked.units)
+                                     : response_text(found, asked.file.scales);
 }
 
 // Returns text_of(). A problem of a value of --vary names that option, not one that was not given.

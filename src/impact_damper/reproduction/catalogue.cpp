@@ -11,7 +11,7 @@
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/scene_runs.hpp"
-#include "impact_damper/steady/response_parts.hpp"
+#include "impact_damper/steady/response_fields.hpp"
 
 namespace impact_damper {
 namespace {
@@ -278,8 +278,10 @@ std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
   if (entries.size() != count && item.has("vary"))
     item.reject("vary", "must be " + std::string(count == 1 ? "one number" : "two numbers") + ", got " +
                             std::to_string(entries.size()));
-  for (ObjectReader entry : entries)
-    if (const auto axis = read_axis(entry, Scene{})) axes.push_back(*axis);
+  for (ObjectReader entry : entries) {
+    Axis axis;
+    if (describe(JsonFields(entry), axis, Scene{})) axes.push_back(axis);
+  }
   axes.resize(count);
   return axes;
 }
@@ -289,7 +291,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
                 SweepResponse& asked) {
   double nudge = 0;
   if (rule) {
-    read_rule(*rule, true, asked.rule);
+    describe(JsonFields(*rule, true), asked.rule);
     if (rule->optional("nudge", nudge, nudges) && nudge > 0 && starts.empty())
       rule->reject("nudge", "must come with further starts");
   }
@@ -302,7 +304,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
 }
 void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 BasinResponse& asked) {
-  if (rule) read_rule(*rule, true, asked.rule);
+  if (rule) describe(JsonFields(*rule, true), asked.rule);
   const std::vector<Axis> axes = read_axes(item, 2);
   asked.first = axes[0];
   asked.second = axes[1];
@@ -314,12 +316,11 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
 }
 void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 OrbitsResponse& asked) {
-  if (rule) read_rule(*rule, true, asked.rule);
+  if (rule) describe(JsonFields(*rule, true), asked.rule);
   std::vector<ObjectReader> entries = item.required_objects("vary", 2);
   if (entries.size() != 1 && item.has("vary"))
     item.reject("vary", "must be one number, got " + std::to_string(entries.size()));
-  for (ObjectReader& entry : entries)
-    if (const auto range = read_range(entry)) asked.range = *range;
+  for (ObjectReader& entry : entries) describe(JsonFields(entry), asked.range);
   for (const SceneState& start : starts) asked.starts.push_back({{}, 0, {}, start});
 }
 
@@ -340,7 +341,8 @@ CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catal
   response.asked = kinds[*kind];
   std::optional<ObjectReader> rule = item.optional_object("rule"), engine = item.optional_object("engine");
   std::vector<SceneState> starts;
-  for (const ObjectReader& start : item.optional_objects("start", 100)) starts.push_back(read_state(start));
+  for (ObjectReader& start : item.optional_objects("start", 100))
+    describe(JsonFields(start), starts.emplace_back());
   std::visit(
       [&](auto& asked) {
         if constexpr (!std::is_same_v<decltype(asked), LyapunovResponse&>)

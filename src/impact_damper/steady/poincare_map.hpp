@@ -17,6 +17,7 @@
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
+#include "impact_damper/steady/orbit_impact.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
 namespace impact_damper {
@@ -27,13 +28,6 @@ using StateMatrix = Matrix;
 StateVector vector_of(const SceneState& s);
 // The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
 SceneState state_of(const StateVector& s, const Scene& scene);
-
-struct OrbitImpact {
-  double time = 0;  // since the beginning of the run, where the force's phase is 0
-  Wall wall = Wall::left;
-  double speed = 0;         // |y'| just before
-  std::int32_t damper = 0;  // its number in the scene
-};
 
 struct PoincareImage {
   SceneState state{};    // H^n(s)

@@ -1,6 +1,8 @@
 #include "impact_damper/steady/response_columns.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/math/elementary.hpp"
@@ -16,112 +18,15 @@ constexpr UnitInSi time{"_s", [](const SiUnits& u) { return u.time; }};
 constexpr UnitInSi power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
 constexpr UnitInSi frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
 
-constexpr NumberRange any{}, counts = within(0, 9e15);
+constexpr NumberRange any{}, counts = within(0, 9e15), flag = within(0, 1), periods = within(1, 64);
 
-// A number that every row has.
 template <class Row>
-RowColumn<Row> always(std::string_view name, const UnitInSi& unit, NumberRange range,
-                      std::optional<double> (*get)(const Row&), void (*set)(Row&, double)) {
-  return {name, unit, range, false, false, get, set};
-}
-template <class Row>
-RowColumn<Row> whole(RowColumn<Row> column) {
-  column.is_whole = true;
-  return column;
-}
-template <class Row>
-RowColumn<Row> optional(RowColumn<Row> column) {
-  column.may_be_absent = true;
-  return column;
-}
-
-// The component `member` of the state of a steady state or of an orbit's point.
-template <class Row, auto member>
-RowColumn<Row> of_state(std::string_view name, const UnitInSi& unit) {
-  return always<Row>(
-      name, unit, any, [](const Row& row) { return std::optional(row.state.*member); },
-      [](Row& row, double value) { row.state.*member = value; });
-}
-// A number that is absent where a budget ended the run.
-template <auto member>
-RowColumn<SteadyState> mean(std::string_view name, const UnitInSi& unit, NumberRange range) {
-  return always<SteadyState>(
-      name, unit, range,
-      [](const SteadyState& s) { return s.means ? std::optional((*s.means).*member) : std::nullopt; },
-      [](SteadyState& s, double value) {
-        if (s.means) (*s.means).*member = value;
-      });
-}
-template <auto member>
-RowColumn<SteadyState> measured(std::string_view name, const UnitInSi& unit, NumberRange range) {
-  return always<SteadyState>(
-      name, unit, range,
-      [](const SteadyState& s) { return s.means ? std::optional(double(s.*member)) : std::nullopt; },
-      [](SteadyState& s, double value) { s.*member = std::remove_reference_t<decltype(s.*member)>(value); });
-}
-template <std::size_t wall>
-RowColumn<SteadyState> impacts_on(std::string_view name) {
-  return whole(always<SteadyState>(
-      name, ratio, counts,
-      [](const SteadyState& s) { return s.means ? std::optional(double(s.impacts[wall])) : std::nullopt; },
-      [](SteadyState& s, double value) { s.impacts[wall] = std::int64_t(value); }));
-}
-
-// The impacts of one damper of a list on a wall.
-template <std::size_t wall>
-RowColumn<DamperOfMotion> of_damper_impacts(std::string_view name) {
-  using D = DamperOfMotion;
-  return whole(always<D>(
-      name, ratio, counts,
-      [](const D& d) { return d.is_known ? std::optional(double(d.impacts[wall])) : std::nullopt; },
-      [](D& d, double value) { d.impacts[wall] = std::int64_t(value); }));
-}
-template <auto member>
-RowColumn<DamperOfMotion> of_place(std::string_view name, const UnitInSi& unit) {
-  using D = DamperOfMotion;
-  return always<D>(
-      name, unit, any, [](const D& d) { return std::optional(d.place.*member); },
-      [](D& d, double value) { d.place.*member = value; });
-}
-
-// A number of an orbit's point.
-template <auto member>
-RowColumn<OrbitPoint> of_point(std::string_view name, const UnitInSi& unit, NumberRange range) {
-  return always<OrbitPoint>(
-      name, unit, range, [](const OrbitPoint& p) { return std::optional(double(p.*member)); },
-      [](OrbitPoint& p, double value) { p.*member = std::remove_reference_t<decltype(p.*member)>(value); });
-}
-template <auto member>
-RowColumn<OrbitPoint> distance_of(std::string_view name, const UnitInSi& unit) {
-  return optional(always<OrbitPoint>(
-      name, unit, at_least(0), [](const OrbitPoint& p) { return p.*member; },
-      [](OrbitPoint& p, double value) { p.*member = value; }));
-}
-template <std::size_t wall>
-RowColumn<OrbitPoint> impacts_at(std::string_view name) {
-  return whole(always<OrbitPoint>(
-      name, ratio, counts, [](const OrbitPoint& p) { return std::optional(double(p.impacts[wall])); },
-      [](OrbitPoint& p, double value) { p.impacts[wall] = std::int64_t(value); }));
-}
-template <std::size_t i, auto part>
-RowColumn<OrbitPoint> multiplier(std::string_view name) {
-  return always<OrbitPoint>(
-      name, ratio, any, [](const OrbitPoint& p) { return std::optional(p.multipliers[i].*part); },
-      [](OrbitPoint& p, double value) { p.multipliers[i].*part = value; });
-}
-
-template <class Motion, class IsKnown>
-std::vector<DamperOfMotion> of_damper_in(const std::vector<Motion>& motions, std::size_t number,
-                                         IsKnown&& is_known) {
-  std::vector<DamperOfMotion> rows;
-  rows.reserve(motions.size());
-  for (const Motion& each : motions) {
-    DamperOfMotion& row = rows.emplace_back();
-    row.is_known = is_known(each);
-    if (number < each.impacts_by_damper.size()) row.impacts = each.impacts_by_damper[number];
-    row.place = each.state.dampers[number];
-  }
-  return rows;
+RowColumns<Row> those_of(const RowColumns<Row>& table, std::size_t dampers) {
+  const Scenes others = dampers > 0 ? Scenes::of_one_damper : Scenes::of_list;
+  RowColumns<Row> columns;
+  std::ranges::copy_if(table, std::back_inserter(columns),
+                       [&](const RowColumn<Row>& each) { return each.scenes != others; });
+  return columns;
 }
 
 }  // namespace
@@ -138,90 +43,97 @@ UnitInSi unit_in_si_of(const SceneNumber& number) {
   return ratio;
 }
 
-std::string_view end_of(const SteadyState& steady) {
-  if (steady.stop_reason != StopReason::time) return name_of(steady.stop_reason);
-  return steady.period ? "periodic" : "not_periodic";
+std::optional<double> number_in(const NumberCell& cell) {
+  return std::visit(
+      [](const auto* number) {
+        if constexpr (std::is_same_v<decltype(number), const std::optional<double>*>)
+          return *number;
+        else
+          return number ? std::optional(double(*number)) : std::nullopt;
+      },
+      cell);
 }
 
-std::span<const RowColumn<SteadyState>> steady_columns(bool several) {
+RowColumns<SteadyState> steady_columns(std::size_t dampers) {
   using S = SteadyState;
-  static const std::array table{
-      whole(always<S>(
-          "period", ratio, within(1, 64),
-          [](const S& s) { return s.period ? std::optional(double(*s.period)) : std::nullopt; },
-          [](S& s, double value) { s.period = std::int64_t(value); })),
-      whole(always<S>(
-          "transient_periods", ratio, counts,
-          [](const S& s) { return std::optional(double(s.transient_periods)); },
-          [](S& s, double value) { s.transient_periods = std::int64_t(value); })),
-      optional(always<S>(
-          "contraction", ratio, within(0, 1), [](const S& s) { return s.contraction; },
-          [](S& s, double value) { s.contraction = value; })),
-      whole(measured<&S::measured_periods>("measured_periods", ratio, counts)),
-      impacts_on<0>("impacts_left"),
-      impacts_on<1>("impacts_right"),
-      whole(measured<&S::symmetric>("symmetric", ratio, within(0, 1))),
-      mean<&SteadyMeans::amplitude>("amplitude", length, at_least(0)),
-      measured<&S::amplitude_scatter>("amplitude_scatter", length, at_least(0)),
-      mean<&SteadyMeans::fundamental>("fundamental", length, at_least(0)),
-      mean<&SteadyMeans::lag_deg>("lag_deg", ratio, within(-180, 180)),
-      mean<&SteadyMeans::power>("power", power, any),
-      measured<&S::power_scatter>("power_scatter", power, at_least(0)),
-      mean<&SteadyMeans::viscous_power>("viscous_power", power, any),
-      mean<&SteadyMeans::impact_power>("impact_power", power, any),
-      of_state<S, &State<double>::x>("x", length),
-      of_state<S, &State<double>::v>("v", velocity),
-      of_state<S, &State<double>::y>("y", length),
-      of_state<S, &State<double>::w>("w", velocity),
+  static const RowColumns<S> table{
+      {"period", ratio, periods, [](S& s) -> NumberCell { return s.period ? &*s.period : nullptr; }},
+      {"transient_periods", ratio, counts, [](S& s) -> NumberCell { return &s.transient_periods; }},
+      {"contraction", ratio, flag, [](S& s) -> NumberCell { return &s.contraction; }},
+      {"measured_periods", ratio, counts,
+       [](S& s) -> NumberCell { return s.means ? &s.measured_periods : nullptr; }},
+      {"impacts_left", ratio, counts, [](S& s) -> NumberCell { return s.means ? &s.impacts[0] : nullptr; }},
+      {"impacts_right", ratio, counts, [](S& s) -> NumberCell { return s.means ? &s.impacts[1] : nullptr; }},
+      {"symmetric", ratio, flag, [](S& s) -> NumberCell { return s.means ? &s.symmetric : nullptr; }},
+      {"amplitude", length, at_least(0),
+       [](S& s) -> NumberCell { return s.means ? &s.means->amplitude : nullptr; }},
+      {"amplitude_scatter", length, at_least(0),
+       [](S& s) -> NumberCell { return s.means ? &s.amplitude_scatter : nullptr; }},
+      {"fundamental", length, at_least(0),
+       [](S& s) -> NumberCell { return s.means ? &s.means->fundamental : nullptr; }},
+      {"lag_deg", ratio, within(-180, 180),
+       [](S& s) -> NumberCell { return s.means ? &s.means->lag_deg : nullptr; }},
+      {"power", power, any, [](S& s) -> NumberCell { return s.means ? &s.means->power : nullptr; }},
+      {"power_scatter", power, at_least(0),
+       [](S& s) -> NumberCell { return s.means ? &s.power_scatter : nullptr; }},
+      {"viscous_power", power, any,
+       [](S& s) -> NumberCell { return s.means ? &s.means->viscous_power : nullptr; }},
+      {"impact_power", power, any,
+       [](S& s) -> NumberCell { return s.means ? &s.means->impact_power : nullptr; }},
+      {"x", length, any, [](S& s) -> NumberCell { return &s.state.x; }},
+      {"v", velocity, any, [](S& s) -> NumberCell { return &s.state.v; }},
+      {"y", length, any, [](S& s) -> NumberCell { return &s.state.y; }, Scenes::of_one_damper},
+      {"w", velocity, any, [](S& s) -> NumberCell { return &s.state.w; }, Scenes::of_one_damper},
   };
-  return std::span(table).first(table.size() - (several ? 2 : 0));
+  return those_of(table, dampers);
 }
 
-std::span<const RowColumn<DamperOfMotion>> damper_columns() {
-  static const std::array table{of_damper_impacts<0>("impacts_left"), of_damper_impacts<1>("impacts_right"),
-                                of_place<&PlaceInCavity::y>("y", length),
-                                of_place<&PlaceInCavity::w>("w", velocity)};
-  return table;
-}
-
-std::vector<DamperOfMotion> of_damper(const std::vector<SteadyState>& way, std::size_t number) {
-  return of_damper_in(way, number, [](const SteadyState& steady) { return steady.means.has_value(); });
-}
-std::vector<DamperOfMotion> of_damper(const std::vector<OrbitPoint>& points, std::size_t number) {
-  return of_damper_in(points, number, [](const OrbitPoint&) { return true; });
-}
-
-std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several) {
+RowColumns<OrbitPoint> orbit_columns(std::size_t dampers) {
   using P = OrbitPoint;
-  static const std::array table{
-      whole(of_point<&P::period>("period", ratio, within(1, 64))),
-      whole(of_point<&P::symmetric>("symmetric", ratio, within(0, 1))),
-      whole(of_point<&P::stable>("stable", ratio, within(0, 1))),
-      impacts_at<0>("impacts_left"),
-      impacts_at<1>("impacts_right"),
-      whole(of_point<&P::sticking>("sticking", ratio, counts)),
-      of_point<&P::amplitude>("amplitude", length, at_least(0)),
-      multiplier<0, &Multiplier::re>("multiplier_1_re"),
-      multiplier<0, &Multiplier::im>("multiplier_1_im"),
-      multiplier<1, &Multiplier::re>("multiplier_2_re"),
-      multiplier<1, &Multiplier::im>("multiplier_2_im"),
-      multiplier<2, &Multiplier::re>("multiplier_3_re"),
-      multiplier<2, &Multiplier::im>("multiplier_3_im"),
-      multiplier<3, &Multiplier::re>("multiplier_4_re"),
-      multiplier<3, &Multiplier::im>("multiplier_4_im"),
-      distance_of<&P::slowest_impact>("slowest_impact", velocity),
-      distance_of<&P::nearest_miss>("nearest_miss", length),
-      of_state<P, &State<double>::x>("x", length),
-      of_state<P, &State<double>::v>("v", velocity),
-      of_state<P, &State<double>::y>("y", length),
-      of_state<P, &State<double>::w>("w", velocity),
+  static const RowColumns<P> table{
+      {"period", ratio, periods, [](P& p) -> NumberCell { return &p.period; }},
+      {"symmetric", ratio, flag, [](P& p) -> NumberCell { return &p.symmetric; }},
+      {"stable", ratio, flag, [](P& p) -> NumberCell { return &p.stable; }},
+      {"impacts_left", ratio, counts, [](P& p) -> NumberCell { return &p.impacts[0]; }},
+      {"impacts_right", ratio, counts, [](P& p) -> NumberCell { return &p.impacts[1]; }},
+      {"sticking", ratio, counts, [](P& p) -> NumberCell { return &p.sticking; }},
+      {"amplitude", length, at_least(0), [](P& p) -> NumberCell { return &p.amplitude; }},
+      {"multiplier_1_re", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[0].re; }},
+      {"multiplier_1_im", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[0].im; }},
+      {"multiplier_2_re", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[1].re; }},
+      {"multiplier_2_im", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[1].im; }},
+      {"multiplier_3_re", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[2].re; }},
+      {"multiplier_3_im", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[2].im; }},
+      {"multiplier_4_re", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[3].re; }},
+      {"multiplier_4_im", ratio, any, [](P& p) -> NumberCell { return &p.multipliers[3].im; }},
+      {"slowest_impact", velocity, at_least(0), [](P& p) -> NumberCell { return &p.slowest_impact; }},
+      {"nearest_miss", length, at_least(0), [](P& p) -> NumberCell { return &p.nearest_miss; }},
+      {"least_interval", time, at_least(0), [](P& p) -> NumberCell { return &p.least_interval; },
+       Scenes::of_list},
+      {"x", length, any, [](P& p) -> NumberCell { return &p.state.x; }},
+      {"v", velocity, any, [](P& p) -> NumberCell { return &p.state.v; }},
+      {"y", length, any, [](P& p) -> NumberCell { return &p.state.y; }, Scenes::of_one_damper},
+      {"w", velocity, any, [](P& p) -> NumberCell { return &p.state.w; }, Scenes::of_one_damper},
   };
-  static const std::vector<RowColumn<P>> table_of_several = [] {
-    std::vector<RowColumn<P>> columns(table.begin(), table.end() - 2);
-    columns.insert(columns.end() - 2, distance_of<&P::least_interval>("least_interval", time));
-    return columns;
-  }();
-  if (several) return table_of_several;
+  return those_of(table, dampers);
+}
+
+DamperOfRow damper_of(SteadyState& steady, std::size_t number) {
+  return {steady.means ? &steady.impacts_by_damper[number] : nullptr, &steady.state.dampers[number]};
+}
+DamperOfRow damper_of(OrbitPoint& point, std::size_t number) {
+  return {&point.impacts_by_damper[number], &point.state.dampers[number]};
+}
+const RowColumns<DamperOfRow>& damper_columns() {
+  using D = DamperOfRow;
+  static const RowColumns<D> table{
+      {"impacts_left", ratio, counts,
+       [](D& d) -> NumberCell { return d.impacts ? d.impacts->data() : nullptr; }},
+      {"impacts_right", ratio, counts,
+       [](D& d) -> NumberCell { return d.impacts ? d.impacts->data() + 1 : nullptr; }},
+      {"y", length, any, [](D& d) -> NumberCell { return &d.place->y; }},
+      {"w", velocity, any, [](D& d) -> NumberCell { return &d.place->w; }},
+  };
   return table;
 }
 

@@ -1,14 +1,17 @@
-// The columns of response files: written and read by the same table.
+// The columns of responses: one table for each kind of row, by which files are written and read, and CSV is
+// written.
 #pragma once
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "impact_damper/base/text.hpp"
-#include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/steady/responses.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper {
 
@@ -19,57 +22,51 @@ struct UnitInSi {
 };
 UnitInSi unit_in_si_of(const SceneNumber& number);
 
-// A column over rows of type Row. `get` returns nothing if the number belongs to a part of the row that is
-// absent, such as its period or means.
+// Where a row has a number of a column; null if the number belongs to a part of the row that is absent, such
+// as its period or means. An optional number may itself be absent. Integers and flags are whole numbers in a
+// file.
+using NumberCell = std::variant<double*, std::int64_t*, bool*, std::optional<double>*>;
+std::optional<double> number_in(const NumberCell& cell);
+
+enum class Scenes { all, of_one_damper, of_list };
 template <class Row>
 struct RowColumn {
   std::string_view name;
   UnitInSi unit;
   NumberRange range;  // of what a file may hold
-  bool is_whole;
-  // Whether the number may be absent although the part of the row to which it belongs is there.
-  bool may_be_absent;
-  std::optional<double> (*get)(const Row&);
-  void (*set)(Row&, double);
+  NumberCell (*cell_in)(Row&);
+  Scenes scenes = Scenes::all;  // that have the column
 };
-// The columns of steady states and orbits. several: for a list of dampers, without y and w, which are in
-// damper_columns().
-std::span<const RowColumn<SteadyState>> steady_columns(bool several);
-std::span<const RowColumn<OrbitPoint>> orbit_columns(bool several);
-// One damper of a list in a steady state or an orbit.
-struct DamperOfMotion {
-  bool is_known = false;  // whether the impacts are known: not where a budget ended the run
-  ImpactCounts impacts{};
-  PlaceInCavity place{};
-};
-std::span<const RowColumn<DamperOfMotion>> damper_columns();
-// The rows of one damper, by number, for the states of a way or the points of a branch.
-std::vector<DamperOfMotion> of_damper(const std::vector<SteadyState>& way, std::size_t number);
-std::vector<DamperOfMotion> of_damper(const std::vector<OrbitPoint>& points, std::size_t number);
+template <class Row>
+using RowColumns = std::vector<RowColumn<Row>>;
+// The columns of steady states and orbits. dampers: length of the scene's list.
+RowColumns<SteadyState> steady_columns(std::size_t dampers);
+RowColumns<OrbitPoint> orbit_columns(std::size_t dampers);
 
-// A column of numbers under a name.
+// The part of a row that one damper of a list has.
+struct DamperOfRow {
+  ImpactCounts* impacts = nullptr;  // null where a budget ended the run
+  PlaceInCavity* place = nullptr;
+};
+DamperOfRow damper_of(SteadyState& steady, std::size_t number);
+DamperOfRow damper_of(OrbitPoint& point, std::size_t number);
+template <class Row>
+std::vector<DamperOfRow> dampers_of(std::vector<Row>& rows, std::size_t number) {
+  std::vector<DamperOfRow> parts;
+  parts.reserve(rows.size());
+  for (Row& row : rows) parts.push_back(damper_of(row, number));
+  return parts;
+}
+const RowColumns<DamperOfRow>& damper_columns();
+
+// A column whose numbers follow from the scene and the axis.
 struct Column {
   std::string_view name;
   UnitInSi unit;
   std::vector<std::optional<double>> numbers;
 };
-template <class Row>
-std::vector<Column> columns_of(std::span<const RowColumn<Row>> table, const std::vector<Row>& rows) {
-  std::vector<Column> columns;
-  for (const RowColumn<Row>& each : table) {
-    Column column{each.name, each.unit, {}};
-    column.numbers.reserve(rows.size());
-    for (const Row& row : rows) column.numbers.push_back(each.get(row));
-    columns.push_back(std::move(column));
-  }
-  return columns;
-}
-
 // The amplitude without dampers and with their masses locked in, (M12.6), at each value of the axis. Absent
 // at the resonance of an undamped oscillator, where it is infinite.
 std::vector<Column> linear_columns(const Scene& scene, const Axis& axis);
-
-// How the simulation at a value of a sweep ended: "periodic", "not_periodic" or the budget that ended it.
-std::string_view end_of(const SteadyState& steady);
 
 }  // namespace impact_damper

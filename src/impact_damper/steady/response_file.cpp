@@ -1,155 +1,304 @@
 #include "impact_damper/steady/response_file.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <array>
+#include <functional>
 
+#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "impact_damper/steady/response_columns.hpp"
+#include "impact_damper/steady/response_fields.hpp"
 
 namespace impact_damper {
 namespace {
 
 using Layout = JsonWriter::Layout;
 
-constexpr UnitInSi rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
+constexpr std::size_t most_parts = 10'000;  // of starts, sweeps, branches, events
+constexpr NumberRange counts = within(0, 9e15);
+constexpr std::initializer_list<StopReason> ends_of_run{StopReason::time, StopReason::impact_budget,
+                                                        StopReason::half_cycle_budget,
+                                                        StopReason::time_budget, StopReason::step_budget};
+// The words for the end of a simulation: `words` and the names of the budgets.
+std::vector<std::string_view> ends_of_simulation(std::vector<std::string_view> words) {
+  for (const StopReason reason : ends_of_run)
+    if (reason != StopReason::time) words.push_back(name_of(reason));
+  return words;
+}
 
-OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
-  OrbitPoint point{.value = value,
-                   .period = orbit.periods,
-                   .symmetric = orbit.symmetric,
-                   .stable = orbit.stable(),
-                   .impacts = {},
-                   .sticking = orbit.sticking,
-                   .amplitude = amplitude,
-                   .multipliers = orbit.multipliers,
-                   .slowest_impact = orbit.slowest_impact,
-                   .nearest_miss = orbit.nearest_miss,
-                   .least_interval = orbit.least_interval,
-                   .state = release_of(orbit.scene),
-                   .impacts_by_damper = std::vector<ImpactCounts>(orbit.scene.dampers.size())};
-  point.multipliers.resize(4);
-  for (const OrbitImpact& impact : orbit.impacts) {
-    const auto side = std::size_t(impact.wall);
-    ++point.impacts[side];
-    if (!orbit.scene.dampers.empty()) ++point.impacts_by_damper[std::size_t(impact.damper)][side];
-  }
-  return point;
+void describe_criteria(JsonFields fields, SteadyRule& rule) {
+  fields.field("tolerance", rule.tolerance);
+  fields.field("longest_period", rule.longest_period, longest_periods);
+  fields.field("max_periods", rule.max_periods, most_periods);
 }
-std::vector<OrbitPoint> points_of(const FollowedBranch& followed, double Scene::*number) {
-  std::vector<OrbitPoint> points;
-  for (std::size_t i = 0; i < followed.branch.orbits.size(); ++i) {
-    const Orbit& orbit = followed.branch.orbits[i];
-    points.push_back(point_of(orbit, orbit.scene.*number, followed.amplitudes[i]));
+}  // namespace
+
+void describe(JsonFields fields, SceneState& state) {
+  fields.field("x", state.x);
+  fields.field("v", state.v);
+  if (state.dampers.empty()) {
+    fields.field("y", state.y);
+    fields.field("w", state.w);
   }
-  return points;
+  fields.dampers(state.dampers.size(), Layout::one_line, [&](JsonFields its, std::size_t number) {
+    its.field("y", state.dampers[number].y);
+    its.field("w", state.dampers[number].w);
+  });
 }
-// All points and events, in their order along the branch, and the names of the events among them.
-struct PointsAndEvents {
-  std::vector<OrbitPoint> points;
-  std::vector<std::string_view> events;
-};
-PointsAndEvents points_and_events_of(const FollowedBranch& followed, double Scene::*number) {
-  const std::vector<OrbitPoint> points = points_of(followed, number);
-  PointsAndEvents all;
-  const auto add = [&](const OrbitPoint& point, std::string_view event) {
-    all.points.push_back(point);
-    all.events.push_back(event);
-  };
-  for (std::size_t i = 0; i <= points.size(); ++i) {
-    for (std::size_t n = 0; n < followed.branch.events.size(); ++n) {
-      const BranchEvent& event = followed.branch.events[n];
-      if (event.orbits_before == std::int64_t(i))
-        add(point_of(event.orbit, event.parameter, followed.event_amplitudes[n]), name_of(event.kind));
+bool describe(JsonFields fields, Axis& axis, const Scene& scene) {
+  const std::vector<NamedSceneNumber> numbers = numbers_of(scene);
+  std::vector<std::string_view> names(numbers.size());
+  std::ranges::transform(numbers, names.begin(), &NamedSceneNumber::name);
+  const auto number = fields.word("number", axis.number.name(), names);
+  if (number) axis.number = numbers[*number].number;
+  bool is_valid = number || !fields.reads();
+  is_valid = fields.field("from", axis.from) && is_valid;
+  is_valid = fields.field("to", axis.to) && is_valid;
+  is_valid = fields.field("count", axis.count, within(2, double(most_values))) && is_valid;
+  if (!is_valid || axis.from < axis.to) return is_valid;
+  fields.reject("to", "must be above \"from\", " + number_text(axis.from) + ", got " + number_text(axis.to));
+  return false;
+}
+
+bool describe(JsonFields fields, ParameterRange& range) {
+  bool is_valid = fields.field("number", range.parameter);
+  is_valid = fields.field("from", range.from, above(0)) && is_valid;
+  is_valid = fields.field("to", range.to, above(0)) && is_valid;
+  if (!is_valid || range.from != range.to) return is_valid;
+  fields.reject("to", "must differ from \"from\", " + number_text(range.from));
+  return false;
+}
+
+void describe(JsonFields fields, SteadyRule& rule) {
+  describe_criteria(fields, rule);
+  fields.field("mean_periods", rule.mean_periods, mean_periods);
+  fields.reject(problems_of(rule));
+}
+void describe(JsonFields fields, BasinRule& rule) {
+  describe_criteria(fields, rule.steady);
+  fields.field("capture_radius", rule.capture_radius);
+  fields.reject(problems_of(rule));
+}
+void describe(JsonFields fields, BranchRule& rule) {
+  describe_criteria(fields, rule.steady);
+  fields.field("largest_step", rule.largest_step);
+  fields.field("max_multiplier", rule.max_multiplier);
+  fields.field("max_points", rule.max_points, most_branch_points);
+  fields.field("max_branches", rule.max_branches, most_branches);
+  fields.reject(problems_of(rule));
+}
+
+namespace {
+
+void describe_state(JsonFields fields, std::string_view name, SceneState& state, const Scene& scene) {
+  if (fields.reads()) state.dampers.resize(scene.dampers.size());
+  fields.object(name, Layout::one_line, [&](JsonFields its) { describe(its, state); });
+}
+
+template <class Kind>
+void describe_rule(JsonFields fields, Kind& response) {
+  describe(fields, response.rule);
+}
+void describe_rule(JsonFields fields, LyapunovResponse& response) {
+  fields.field("periods", response.periods, within(10, 1e9));
+  fields.field("discard", response.discard, within(0, 1e9));
+}
+
+void describe(JsonFields fields, ImpactCounts& impacts) {
+  fields.field("impacts_left", impacts[0], counts);
+  fields.field("impacts_right", impacts[1], counts);
+}
+
+void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& scene) {
+  const std::size_t dampers = scene.dampers.size();
+  std::vector<std::string_view> ends;
+  for (const SteadyState& each : way) ends.push_back(end_of(each));
+  if (!fields.words("end", ends, ends_of_simulation({"periodic", "not_periodic"}))) return;
+  way.resize(ends.size());
+  for (std::size_t i = 0; fields.reads() && i < ends.size(); ++i) {
+    SteadyState& steady = way[i];
+    for (const StopReason reason : ends_of_run)
+      if (ends[i] == name_of(reason)) steady.stop_reason = reason;
+    if (ends[i] == "periodic") steady.period = 1;
+    steady.state.dampers.resize(dampers);
+    if (steady.stop_reason != StopReason::time) continue;
+    steady.means.emplace();
+    steady.impacts_by_damper.resize(dampers);
+  }
+  fields.columns(steady_columns(dampers), way);
+  fields.columns_of_dampers(dampers, way);
+}
+
+// Whether the scene is valid at both ends of the axis; reports a problem if it is not.
+bool is_valid_along(JsonFields fields, const Scene& scene, const Engine& engine, const Axis& axis) {
+  for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
+    for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {
+      fields.reject("scene", "with " + axis.number.name() + " = " + number_text(axis.value(i)) + ": " +
+                                 problem.field + " " + problem.message);
+      return false;
     }
-    if (i < points.size()) add(points[i], "");
   }
-  return all;
+  return true;
 }
 
-void write_steady_rule(JsonWriter& out, const SteadyRule& rule) {
-  out.fields("tolerance", rule.tolerance, "longest_period", rule.longest_period, "max_periods",
-             rule.max_periods);
+void describe(JsonFields fields, SweepResponse& response) {
+  const Scene& scene = response.scene;
+  Axis& axis = response.axis;
+  bool has_axis = false;
+  fields.objects({{"rule", [&](JsonFields its) { describe_rule(its, response); }},
+                  {"axis", [&](JsonFields its) { has_axis = describe(its, axis, scene); }}});
+  const bool is_valid = has_axis && is_valid_along(fields, scene, response.engine, axis);
+  const std::vector<double> values = axis.values();
+  fields.derived("values", {values.begin(), values.end()}, is_valid);
+  for (const Column& column : linear_columns(scene, axis))
+    fields.derived(column.name, column.numbers, is_valid);
+  fields.array("sweeps", response.sweeps, most_parts, Layout::lines, [&](JsonFields its, Sweep& sweep) {
+    describe_state(its, "start", sweep.start, scene);
+    if (its.has("nudge", sweep.start.nudge != 0)) its.field("nudge", sweep.start.nudge, above(0));
+    its.object("up", Layout::lines, [&](JsonFields way) { describe(way, sweep.up, scene); });
+    its.object("down", Layout::lines, [&](JsonFields way) { describe(way, sweep.down, scene); });
+    const auto require_length = [&](std::string_view name, const std::vector<SteadyState>& way) {
+      if (has_axis && std::int64_t(way.size()) != axis.count)
+        its.reject(name, "must hold " + std::to_string(axis.count) + " motions, one for each value, got " +
+                             std::to_string(way.size()));
+    };
+    require_length("up", sweep.up);
+    require_length("down", sweep.down);
+  });
 }
 
-void write_axis(JsonWriter& out, const Axis& axis) {
-  out.fields("number", axis.number.name(), "from", axis.from, "to", axis.to, "count", axis.count);
-}
-
-void write_range(JsonWriter& out, const ParameterRange& range) {
-  out.object("range", Layout::one_line, "number", name_of(range.parameter), "from", range.from, "to",
-             range.to);
-}
-
-std::optional<double> index_of(const std::optional<std::int64_t>& index) {
-  return index ? std::optional(double(*index)) : std::nullopt;
-}
-
-void write_state(JsonWriter& out, std::string_view name, const State<double>& s) {
-  out.object(name, Layout::one_line, "x", s.x, "v", s.v, "y", s.y, "w", s.w);
-}
-
-void write_state(JsonWriter& out, std::string_view name, const SceneState& s) {
-  if (s.dampers.empty()) return write_state(out, name, static_cast<const State<double>&>(s));
-  out.open_object(name, Layout::one_line);
-  out.fields("x", s.x, "v", s.v);
-  out.open_array("dampers", Layout::one_line);
-  for (const PlaceInCavity& each : s.dampers) {
-    out.open_object(Layout::one_line);
-    out.fields("y", each.y, "w", each.w);
-    out.close();
+void describe(JsonFields fields, Attractor& attractor, const Scene& scene) {
+  fields.field("idle", attractor.idle);
+  fields.field("period", attractor.period, within(1, 64));
+  describe(fields, attractor.impacts);
+  fields.field("symmetric", attractor.symmetric);
+  fields.field("points", attractor.points, counts);
+  std::vector<ImpactCounts>& by_damper = attractor.impacts_by_damper;
+  const auto describe_dampers = [&] {
+    return fields.dampers(by_damper.size(), Layout::one_line,
+                          [&](JsonFields its, std::size_t number) { describe(its, by_damper[number]); });
+  };
+  if (fields.reads()) {  // the dampers before the state, so their problems come first
+    by_damper.resize(attractor.idle ? 0 : scene.dampers.size());
+    ImpactCounts all{};
+    const bool is_complete = describe_dampers() && !by_damper.empty();
+    for (const auto& [left, right] : by_damper) all = {all[0] + left, all[1] + right};
+    if (is_complete && all != attractor.impacts)
+      fields.reject("dampers", "must be hit as often as all, " + number_text(double(attractor.impacts[0])) +
+                                   " and " + number_text(double(attractor.impacts[1])) + " times, got " +
+                                   number_text(double(all[0])) + " and " + number_text(double(all[1])));
   }
-  out.close();
-  out.close();
-}
-
-template <class Motion>
-void write_dampers(JsonWriter& out, const std::vector<Motion>& motions, std::size_t dampers) {
-  if (dampers == 0) return;
-  out.open_array("dampers", Layout::lines);
-  for (std::size_t n = 0; n < dampers; ++n) {
-    out.open_object(Layout::lines);
-    for (const Column& column : columns_of(damper_columns(), of_damper(motions, n)))
-      out.field(column.name, column.numbers);
-    out.close();
+  if (fields.has("state", !attractor.states.empty())) {
+    if (fields.reads()) attractor.states.resize(1);
+    describe_state(fields, "state", attractor.states.front(), scene);
   }
-  out.close();
+  if (!fields.reads()) describe_dampers();
 }
 
-void write_way(JsonWriter& out, std::string_view name, const std::vector<SteadyState>& way,
-               std::size_t dampers) {
-  out.open_object(name, Layout::lines);
-  std::vector<std::string> ends;
-  ends.reserve(way.size());
-  for (const SteadyState& each : way) ends.emplace_back(end_of(each));
-  out.field("end", ends);
-  for (const Column& column : columns_of(steady_columns(dampers > 0), way))
-    out.field(column.name, column.numbers);
-  write_dampers(out, way, dampers);
-  out.close();
-}
-
-void write_branch(JsonWriter& out, const OrbitBranch& branch, std::size_t dampers) {
-  out.open_object(Layout::lines);
-  out.fields("origin", name_of(branch.origin), "from", branch.from, "event", index_of(branch.event), "end",
-             name_of(branch.end));
-  std::vector<double> values;
-  values.reserve(branch.points.size());
-  for (const OrbitPoint& each : branch.points) values.push_back(each.value);
-  out.field("values", values);
-  for (const Column& column : columns_of(orbit_columns(dampers > 0), branch.points))
-    out.field(column.name, column.numbers);
-  write_dampers(out, branch.points, dampers);
-  out.open_array("events", Layout::lines);
-  for (const OrbitEvent& event : branch.events) {
-    out.open_object(Layout::one_line);
-    out.fields("kind", name_of(event.kind), "value", event.value, "points_before", event.points_before);
-    write_state(out, "state", event.state);
-    out.close();
+void describe(JsonFields fields, BasinResponse& response) {
+  const Scene& scene = response.scene;
+  Basin& basin = response.basin;
+  fields.object("rule", Layout::one_line, [&](JsonFields its) { describe_rule(its, response); });
+  std::vector<Axis> axes;
+  if (!fields.reads()) axes = {response.first, response.second};
+  std::size_t valid = 0;
+  fields.array("axes", axes, 2, Layout::one_line,
+               [&](JsonFields its, Axis& axis) { valid += std::size_t(describe(its, axis, scene)); });
+  if (axes.size() != 2) fields.reject("axes", "must be two axes, got " + std::to_string(axes.size()));
+  const bool both = valid == 2;
+  bool with_states = false;
+  if (both && fields.reads()) {
+    response.first = axes[0];
+    response.second = axes[1];
+    with_states = is_initial_value(axes[0].number) && is_initial_value(axes[1].number);
+    if (is_valid_along(fields, axes[1].at(scene, 0), response.engine, axes[0]))
+      is_valid_along(fields, axes[0].at(scene, 0), response.engine, axes[1]);
+    if (axes[0].number == axes[1].number) fields.reject("axes", "must be of two different numbers");
   }
-  out.close();
-  out.close();
+  fields.array("attractors", basin.attractors, std::size_t(most_rows), Layout::one_line,
+               [&](JsonFields its, Attractor& attractor) {
+                 describe(its, attractor, scene);
+                 if (both && !with_states && !attractor.states.empty())
+                   its.reject("state", "must not be given where the scene's parameters are varied");
+               });
+  std::int64_t open = std::ranges::count(basin.attractor, undecided);
+  const bool open_is_read = fields.field("undecided", open, counts);
+  std::vector<std::int64_t> attractor(basin.attractor.begin(), basin.attractor.end());
+  const NumberRange indices = within(undecided, double(basin.attractors.size()) - 1);
+  if (!fields.field("attractor", attractor, indices) || !fields.reads()) return;
+  basin.attractor.assign(attractor.begin(), attractor.end());
+  if (both && std::int64_t(attractor.size()) != axes[0].count * axes[1].count)
+    fields.reject("attractor", "must hold " + std::to_string(axes[0].count * axes[1].count) +
+                                   " points, one for each pair of values, got " +
+                                   std::to_string(attractor.size()));
+  std::vector<std::int64_t> points(basin.attractors.size());
+  std::int64_t points_undecided = 0;
+  for (const std::int64_t index : attractor)
+    ++(index == undecided ? points_undecided : points[std::size_t(index)]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (basin.attractors[i].points != points[i])
+      fields.reject("attractors[" + std::to_string(i) + "].points",
+                    "must be " + std::to_string(points[i]) + ", as many as end in it, got " +
+                        std::to_string(basin.attractors[i].points));
+  }
+  if (open_is_read && open != points_undecided)
+    fields.reject("undecided", "must be " + std::to_string(points_undecided) +
+                                   ", as many as the points that are -1, got " + std::to_string(open));
+}
+
+void describe(JsonFields fields, OrbitBranch& branch, const Scene& scene) {
+  const std::size_t dampers = scene.dampers.size();
+  fields.field("origin", branch.origin);
+  fields.field("from", branch.from, counts);
+  fields.index("event", branch.event);
+  fields.field("end", branch.end);
+  std::vector<double> values(branch.points.size());
+  std::ranges::transform(branch.points, values.begin(), &OrbitPoint::value);
+  fields.field("values", values);
+  branch.points.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    OrbitPoint& point = branch.points[i];
+    point.value = values[i];
+    point.impacts_by_damper.resize(dampers);
+    point.state.dampers.resize(dampers);
+  }
+  fields.columns(orbit_columns(dampers), branch.points);
+  fields.columns_of_dampers(dampers, branch.points);
+  fields.array("events", branch.events, most_parts, Layout::one_line, [&](JsonFields its, OrbitEvent& event) {
+    its.field("kind", event.kind);
+    its.field("value", event.value);
+    its.field("points_before", event.points_before, within(0, double(values.size())));
+    describe_state(its, "state", event.state, scene);
+  });
+}
+
+void describe(JsonFields fields, OrbitsResponse& response) {
+  const Scene& scene = response.scene;
+  fields.objects({{"rule", [&](JsonFields its) { describe_rule(its, response); }},
+                  {"range", [&](JsonFields its) { describe(its, response.range); }}});
+  const std::vector<std::string_view> ends =
+      ends_of_simulation({"periodic", "not_periodic", name_of(OrbitEnd::no_convergence),
+                          name_of(OrbitEnd::no_derivative), name_of(OrbitEnd::run_stopped)});
+  fields.array("starts", response.starts, most_parts, Layout::one_line,
+               [&](JsonFields its, OrbitStart& start) {
+                 if (const auto end = its.word("end", start.end, ends)) start.end = ends[*end];
+                 its.field("transient_periods", start.transient_periods, counts);
+                 its.index("branch", start.branch);
+                 describe_state(its, "state", start.state, scene);
+               });
+  fields.field("complete", response.complete);
+  fields.array("branches", response.branches, most_parts, Layout::lines,
+               [&](JsonFields its, OrbitBranch& branch) { describe(its, branch, scene); });
+}
+
+void describe(JsonFields fields, LyapunovResponse& response) {
+  fields.object("rule", Layout::one_line, [&](JsonFields its) { describe_rule(its, response); });
+  LyapunovExponents& found = response.found;
+  found.periods = response.periods;
+  fields.field("stop_reason", found.stop_reason, ends_of_run);
+  fields.field("exponents", found.exponents);
+  fields.field("standard_errors", found.standard_errors, at_least(0));
 }
 
 // The stops of a scene do not count, and are not written.
@@ -158,235 +307,103 @@ void write_scene(JsonWriter& out, const Scene& scene) {
   write_scene_numbers(out, scene);
   out.close();
 }
-
-void write_rule(JsonWriter& out, const SweepResponse& response) {
-  out.open_object("rule", Layout::one_line);
-  write_steady_rule(out, response.rule);
-  out.field("mean_periods", response.rule.mean_periods);
-  out.close();
-}
-void write_rule(JsonWriter& out, const BasinResponse& response) {
-  out.open_object("rule", Layout::one_line);
-  write_steady_rule(out, response.rule.steady);
-  out.field("capture_radius", response.rule.capture_radius);
-  out.close();
-}
-void write_rule(JsonWriter& out, const OrbitsResponse& response) {
-  const BranchRule& rule = response.rule;
-  out.open_object("rule", Layout::one_line);
-  write_steady_rule(out, rule.steady);
-  out.fields("largest_step", rule.largest_step, "max_multiplier", rule.max_multiplier, "max_points",
-             rule.max_points, "max_branches", rule.max_branches);
-  out.close();
-}
-void write_rule(JsonWriter& out, const LyapunovResponse& response) {
-  out.object("rule", Layout::one_line, "periods", response.periods, "discard", response.discard);
+// Reads the numbers of a scene. All must be there, except the stops, which a response does not have.
+Scene read_forced_scene(ObjectReader object) {
+  Scene scene;
+  const bool several = object.has("dampers");
+  for (const SceneField& field : scene_fields) {
+    if (!several || !is_of_one_damper(field))
+      object.required(field.name, scene.*field.member, within(field.least, field.most));
+    else if (object.has(field.name))
+      object.reject(field.name, beside_dampers);
+  }
+  if (!several) return scene;
+  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
+    SceneDamper& its = scene.dampers.emplace_back();
+    for (const SceneDamperField& field : scene_damper_fields)
+      damper.required(field.name, its.*field.member, within(field.least, field.most));
+  }
+  return scene;
 }
 
-// Writes the parts of the response that come after its rule.
-void write_rest(JsonWriter& out, const SweepResponse& response) {
-  out.open_object("axis", Layout::one_line);
-  write_axis(out, response.axis);
-  out.close();
-  out.field("values", response.axis.values());
-  for (const Column& column : linear_columns(response.scene, response.axis))
-    out.field(column.name, column.numbers);
-  out.open_array("sweeps", Layout::lines);
-  for (const Sweep& sweep : response.sweeps) {
-    out.open_object(Layout::lines);
-    write_state(out, "start", sweep.start);
-    if (sweep.start.nudge != 0) out.field("nudge", sweep.start.nudge);
-    write_way(out, "up", sweep.up, response.scene.dampers.size());
-    write_way(out, "down", sweep.down, response.scene.dampers.size());
-    out.close();
+Response read_whole(JsonDocument document, bool sealed) {
+  ObjectReader root = document.root();
+  if (root.require("schema")) root.word("schema", {response_schema});
+  const std::array<Response, 4> kinds{SweepResponse{}, BasinResponse{}, OrbitsResponse{}, LyapunovResponse{}};
+  std::vector<std::string_view> names(kinds.size());
+  std::ranges::transform(kinds, names.begin(), kind_of);
+  const auto kind = root.require("kind") ? root.word("kind", names) : std::nullopt;
+  if (!kind) {
+    root.keys();  // which of them are known depends on the kind
+    document.finish();
   }
-  out.close();
-}
-void write_rest(JsonWriter& out, const BasinResponse& response) {
-  const Basin& basin = response.basin;
-  out.open_array("axes", Layout::lines);
-  for (const Axis* axis : {&response.first, &response.second}) {
-    out.open_object(Layout::one_line);
-    write_axis(out, *axis);
-    out.close();
-  }
-  out.close();
-  out.open_array("attractors", Layout::lines);
-  for (const Attractor& each : basin.attractors) {
-    out.open_object(Layout::one_line);
-    out.fields("idle", each.idle, "period", each.period, "impacts_left", each.impacts[0], "impacts_right",
-               each.impacts[1], "symmetric", each.symmetric, "points", each.points);
-    if (!each.states.empty()) write_state(out, "state", each.states.front());
-    if (!each.impacts_by_damper.empty()) {
-      out.open_array("dampers", Layout::one_line);
-      for (const auto& [left, right] : each.impacts_by_damper) {
-        out.open_object(Layout::one_line);
-        out.fields("impacts_left", left, "impacts_right", right);
-        out.close();
-      }
-      out.close();
-    }
-    out.close();
-  }
-  out.close();
-  out.field("undecided", std::int64_t(std::ranges::count(basin.attractor, undecided)));
-  out.field("attractor", std::vector<std::int64_t>(basin.attractor.begin(), basin.attractor.end()));
-}
-void write_rest(JsonWriter& out, const OrbitsResponse& response) {
-  write_range(out, response.range);
-  out.open_array("starts", Layout::lines);
-  for (const OrbitStart& start : response.starts) {
-    out.open_object(Layout::one_line);
-    out.fields("end", start.end, "transient_periods", start.transient_periods, "branch",
-               index_of(start.branch));
-    write_state(out, "state", start.state);
-    out.close();
-  }
-  out.close();
-  out.field("complete", response.complete);
-  out.open_array("branches", Layout::lines);
-  for (const OrbitBranch& each : response.branches) write_branch(out, each, response.scene.dampers.size());
-  out.close();
-}
-void write_rest(JsonWriter& out, const LyapunovResponse& response) {
-  const LyapunovExponents& found = response.found;
-  out.fields("stop_reason", name_of(found.stop_reason), "exponents", found.exponents, "standard_errors",
-             found.standard_errors);
-}
-
-class CsvRow {
- public:
-  CsvRow(std::string& text, const std::optional<SiUnits>& units) : text_(text), units_(units) {}
-  ~CsvRow() { text_ += '\n'; }
-  CsvRow(const CsvRow&) = delete;
-  CsvRow& operator=(const CsvRow&) = delete;
-
-  void word(std::string_view word) {
-    if (!first_) text_ += ',';
-    first_ = false;
-    text_ += word;
-  }
-  void heading(std::string_view name, const UnitInSi& unit) {
-    word(std::string(name) + std::string(units_ ? unit.suffix : ""));
-  }
-  void number(const std::optional<double>& value, const UnitInSi& unit) {
-    word("");
-    if (value) append_number(text_, units_ ? *value * unit.size(*units_) : *value);
-  }
-
- private:
-  std::string& text_;
-  const std::optional<SiUnits>& units_;
-  bool first_ = true;
-};
-
-void add_headings_of_dampers(CsvRow& row, std::size_t dampers) {
-  for (std::size_t d = 0; d < dampers; ++d)
-    for (const Column& column : columns_of(damper_columns(), std::vector<DamperOfMotion>{}))
-      row.heading(std::string(column.name) + "_" + std::to_string(d + 1), column.unit);
-}
-template <class Motion>
-void add_columns_of_dampers(std::vector<Column>& columns, const std::vector<Motion>& motions,
-                            std::size_t dampers) {
-  for (std::size_t d = 0; d < dampers; ++d)
-    std::ranges::move(columns_of(damper_columns(), of_damper(motions, d)), std::back_inserter(columns));
+  Response read = kinds[kind.value_or(0)];
+  std::visit(
+      [&](auto& response) {
+        ObjectReader engine = root.required_object("engine");
+        response.scene = read_forced_scene(root.required_object("scene"));
+        if (const auto its = read_engine_of_response(engine)) response.engine = *its;
+        if (std::holds_alternative<Cem>(response.engine))
+          engine.reject("name", "must be exact or restitution, got cem");
+        check_units(root);
+        describe(JsonFields(root), response);
+      },
+      read);
+  finish_sealed(document, root, sealed);
+  return read;
 }
 
 }  // namespace
 
-OrbitsResponse orbits_response(const Scene& scene, const Engine& engine, const BranchRule& rule,
-                               const ParameterRange& range, const Branches& branches) {
-  OrbitsResponse response{.scene = scene,
-                          .engine = engine,
-                          .rule = rule,
-                          .range = range,
-                          .starts = {},
-                          .complete = branches.complete,
-                          .branches = {}};
-  for (const BranchStart& start : branches.starts)
-    response.starts.push_back(
-        {std::string(end_of(start)), start.steady.transient_periods, start.branch, start.state});
-  for (const FollowedBranch& each : branches.branches) {
-    OrbitBranch branch{.origin = each.origin,
-                       .from = each.from,
-                       .event = each.event,
-                       .end = each.branch.end,
-                       .points = points_of(each, member_of(range.parameter)),
-                       .events = {}};
-    for (const BranchEvent& event : each.branch.events)
-      branch.events.push_back(
-          {event.kind, event.parameter, event.orbits_before, release_of(event.orbit.scene)});
-    response.branches.push_back(std::move(branch));
-  }
-  return response;
+Response read_response(const std::filesystem::path& file) {
+  std::string text = read_text(file, response_kind);
+  const bool sealed = is_sealed(text);
+  JsonDocument document = JsonDocument::parse(file.string(), text);
+  std::string().swap(text);
+  return read_whole(std::move(document), sealed);
 }
 
-std::string_view kind_of(const Response& response) {
-  return std::visit([](const auto& each) { return each.kind; }, response);
-}
-
-Response found_for(Response asked, const Threads& threads) {
-  const auto ignored = [](std::int64_t) {};
-  if (auto* const sweeps = std::get_if<SweepResponse>(&asked)) {
-    std::vector<SweepStart> starts;
-    for (const Sweep& each : sweeps->sweeps) starts.push_back(each.start);
-    sweeps->sweeps =
-        sweep(sweeps->scene, sweeps->engine, sweeps->axis, sweeps->rule, starts, threads, ignored);
-  } else if (auto* const map = std::get_if<BasinResponse>(&asked)) {
-    map->basin = basin(map->scene, map->engine, map->first, map->second, map->rule, threads, ignored);
-  } else if (auto* const orbits = std::get_if<OrbitsResponse>(&asked)) {
-    std::vector<SceneState> starts;
-    for (const OrbitStart& each : orbits->starts) starts.push_back(each.state);
-    return orbits_response(
-        orbits->scene, orbits->engine, orbits->rule, orbits->range,
-        find_branches(orbits->scene, orbits->engine, orbits->range, orbits->rule, starts, threads, ignored));
-  } else if (auto* const lyapunov = std::get_if<LyapunovResponse>(&asked)) {
-    lyapunov->found =
-        lyapunov_exponents(lyapunov->scene, lyapunov->engine, lyapunov->periods, lyapunov->discard);
-  }
-  return asked;
+Response parse_response(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
 }
 
 std::string response_text(const Response& response, const std::optional<Scales>& scales) {
+  Response described = response;  // as JsonFields takes what may be read
   return std::visit(
-      [&](const auto& each) {
+      [&](auto& each) {
         JsonWriter out("response");
         out.open_object(Layout::lines);
         out.fields("schema", response_schema, "kind", each.kind);
         write_scene(out, each.scene);
         write_engine(out, each.engine);
         if (scales) write_units(out, si_units_of(*scales));
-        write_rule(out, each);
-        write_rest(out, each);
+        describe(JsonFields(out), each);
         write_provenance(out);
         return sealed(out.finish());
       },
-      response);
+      described);
 }
 
 std::vector<std::pair<std::string, std::string>> asked_of(const Response& response) {
   std::vector<std::pair<std::string, std::string>> parts{{"/kind", std::string(kind_of(response))}};
-  const auto add = [&](const std::string& pointer, auto&& write) {
+  const auto add = [&](const std::string& pointer, const std::function<void(JsonWriter&)>& write) {
     JsonWriter out("response");
     out.open_object(Layout::one_line);
     write(out);
     out.close();
-    std::string text = out.finish();  // {"name": PART}
+    const std::string text = out.finish();  // {"name": PART}
     const std::size_t begin = text.find(": ") + 2;
     parts.emplace_back(pointer, text.substr(begin, text.size() - begin - 1));
   };
-  const auto add_axis = [&](const std::string& pointer, const Axis& axis) {
-    add(pointer, [&](JsonWriter& out) {
-      out.open_object("axis", Layout::one_line);
-      write_axis(out, axis);
-      out.close();
-    });
+  const auto add_object = [&](const std::string& pointer, const JsonFields::Describe& describe_its) {
+    add(pointer, [&](JsonWriter& out) { JsonFields(out).object("part", Layout::one_line, describe_its); });
   };
-  const auto add_start = [&](const std::string& pointer, const SceneState& start) {
-    add(pointer, [&](JsonWriter& out) { write_state(out, "start", start); });
+  const auto add_state = [&](const std::string& pointer, SceneState& state) {
+    add_object(pointer, [&](JsonFields its) { describe(its, state); });
   };
+  Response asked = response;
   std::visit(
-      [&](const auto& each) {
+      [&](auto& each) {
         const bool several = !each.scene.dampers.empty();
         for (const SceneField& field : scene_fields)
           if (!several || !is_of_one_damper(field))
@@ -394,135 +411,28 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
                 [&](JsonWriter& out) { out.field(field.name, each.scene.*field.member); });
         Scene dampers_alone;
         dampers_alone.dampers = each.scene.dampers;
-        if (several)
-          add("/scene/dampers", [&](JsonWriter& out) {
-            out.open_object("scene", Layout::one_line);
-            write_scene_numbers(out, dampers_alone);
-            out.close();
-          });
+        if (several) add("/scene/dampers", [&](JsonWriter& out) { write_scene(out, dampers_alone); });
         add("/engine", [&](JsonWriter& out) { write_engine(out, each.engine); });
-        add("/rule", [&](JsonWriter& out) { write_rule(out, each); });
+        add_object("/rule", [&](JsonFields its) { describe_rule(its, each); });
       },
-      response);
-  if (const auto* const sweeps = std::get_if<SweepResponse>(&response)) {
-    add_axis("/axis", sweeps->axis);
+      asked);
+  if (auto* const sweeps = std::get_if<SweepResponse>(&asked)) {
+    add_object("/axis", [&](JsonFields its) { describe(its, sweeps->axis, sweeps->scene); });
     for (std::size_t i = 0; i < sweeps->sweeps.size(); ++i) {
       const std::string sweep = "/sweeps/" + std::to_string(i);
-      const double nudge = sweeps->sweeps[i].start.nudge;
-      add_start(sweep + "/start", sweeps->sweeps[i].start);
-      if (nudge != 0) add(sweep + "/nudge", [&](JsonWriter& out) { out.field("nudge", nudge); });
+      SweepStart& start = sweeps->sweeps[i].start;
+      add_state(sweep + "/start", start);
+      if (start.nudge != 0) add(sweep + "/nudge", [&](JsonWriter& out) { out.field("nudge", start.nudge); });
     }
-  } else if (const auto* const basin = std::get_if<BasinResponse>(&response)) {
-    add_axis("/axes/0", basin->first);
-    add_axis("/axes/1", basin->second);
-  } else if (const auto* const orbits = std::get_if<OrbitsResponse>(&response)) {
-    add("/range", [&](JsonWriter& out) { write_range(out, orbits->range); });
+  } else if (auto* const basin = std::get_if<BasinResponse>(&asked)) {
+    add_object("/axes/0", [&](JsonFields its) { describe(its, basin->first, basin->scene); });
+    add_object("/axes/1", [&](JsonFields its) { describe(its, basin->second, basin->scene); });
+  } else if (auto* const orbits = std::get_if<OrbitsResponse>(&asked)) {
+    add_object("/range", [&](JsonFields its) { describe(its, orbits->range); });
     for (std::size_t i = 0; i < orbits->starts.size(); ++i)
-      add_start("/starts/" + std::to_string(i) + "/state", orbits->starts[i].state);
+      add_state("/starts/" + std::to_string(i) + "/state", orbits->starts[i].state);
   }
   return parts;
-}
-
-std::string sweep_csv(const Scene& scene, const Axis& axis, const std::vector<Sweep>& sweeps,
-                      const std::optional<SiUnits>& units) {
-  std::string text;
-  const std::size_t dampers = scene.dampers.size();
-  const std::vector<Column> linear = linear_columns(scene, axis);
-  const UnitInSi given = unit_in_si_of(axis.number);
-  {
-    CsvRow row(text, units);
-    row.word("sweep");
-    row.word("way");
-    row.heading(axis.number.name(), given);
-    row.word("end");
-    for (const Column& column : columns_of(steady_columns(dampers > 0), std::vector<SteadyState>{}))
-      row.heading(column.name, column.unit);
-    add_headings_of_dampers(row, dampers);
-    for (const Column& column : linear) row.heading(column.name, column.unit);
-  }
-  for (std::size_t n = 0; n < sweeps.size(); ++n) {
-    const auto add_way = [&](std::string_view name, const std::vector<SteadyState>& way) {
-      std::vector<Column> columns = columns_of(steady_columns(dampers > 0), way);
-      add_columns_of_dampers(columns, way, dampers);
-      for (std::size_t i = 0; i < way.size(); ++i) {
-        CsvRow row(text, units);
-        row.word(std::to_string(n));
-        row.word(name);
-        row.number(axis.value(std::int64_t(i)), given);
-        row.word(end_of(way[i]));
-        for (const Column& column : columns) row.number(column.numbers[i], column.unit);
-        for (const Column& column : linear) row.number(column.numbers[i], column.unit);
-      }
-    };
-    add_way("up", sweeps[n].up);
-    add_way("down", sweeps[n].down);
-  }
-  return text;
-}
-
-std::string basin_csv(const Axis& first, const Axis& second, const Basin& basin,
-                      const std::optional<SiUnits>& units) {
-  std::string text;
-  const UnitInSi of_first = unit_in_si_of(first.number), of_second = unit_in_si_of(second.number);
-  {
-    CsvRow row(text, units);
-    row.heading(first.number.name(), of_first);
-    row.heading(second.number.name(), of_second);
-    row.word("attractor");
-  }
-  for (std::size_t n = 0; n < basin.attractor.size(); ++n) {
-    CsvRow row(text, units);
-    row.number(first.value(std::int64_t(n) % first.count), of_first);
-    row.number(second.value(std::int64_t(n) / first.count), of_second);
-    row.word(std::to_string(basin.attractor[n]));
-  }
-  return text;
-}
-
-std::string orbits_csv(const Scene& scene, const ParameterRange& range, const Branches& branches,
-                       const std::optional<SiUnits>& units) {
-  std::string text;
-  const std::size_t dampers = scene.dampers.size();
-  double Scene::*const number = member_of(range.parameter);
-  const UnitInSi varied = unit_in_si_of(number);
-  {
-    CsvRow row(text, units);
-    row.word("branch");
-    row.word("event");
-    row.heading(name_of(range.parameter), varied);
-    for (const Column& column : columns_of(orbit_columns(dampers > 0), std::vector<OrbitPoint>{}))
-      row.heading(column.name, column.unit);
-    add_headings_of_dampers(row, dampers);
-  }
-  for (std::size_t n = 0; n < branches.branches.size(); ++n) {
-    const auto& [points, events] = points_and_events_of(branches.branches[n], number);
-    std::vector<Column> columns = columns_of(orbit_columns(dampers > 0), points);
-    add_columns_of_dampers(columns, points, dampers);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      CsvRow row(text, units);
-      row.word(std::to_string(n));
-      row.word(events[i]);
-      row.number(points[i].value, varied);
-      for (const Column& column : columns) row.number(column.numbers[i], column.unit);
-    }
-  }
-  return text;
-}
-
-std::string lyapunov_csv(const LyapunovExponents& found, const std::optional<SiUnits>& units) {
-  std::string text;
-  {
-    CsvRow row(text, units);
-    row.heading("exponent", rate);
-    row.heading("standard_error", rate);
-  }
-  for (std::size_t i = 0; i < found.exponents.size(); ++i) {
-    CsvRow row(text, units);
-    row.number(found.exponents[i], rate);
-    row.number(i < found.standard_errors.size() ? std::optional(found.standard_errors[i]) : std::nullopt,
-               rate);
-  }
-  return text;
 }
 
 }  // namespace impact_damper

@@ -8,7 +8,7 @@
 
 #include "impact_damper/base/expected.hpp"
 #include "impact_damper/engine.hpp"
-#include "impact_damper/steady/poincare_map.hpp"
+#include "impact_damper/steady/orbit_impact.hpp"
 #include "impact_damper/steady/saltation.hpp"
 
 namespace impact_damper {

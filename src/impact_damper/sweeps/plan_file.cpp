@@ -8,7 +8,7 @@
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/steady/lyapunov.hpp"
-#include "impact_damper/steady/response_parts.hpp"
+#include "impact_damper/steady/response_fields.hpp"
 
 namespace impact_damper {
 namespace {
@@ -98,7 +98,7 @@ void read_quantities(ObjectReader& object, Plan& plan) {
 }
 
 void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
-  if (auto steady = object.optional_object("steady")) read_rule(*steady, true, rules.steady);
+  if (auto steady = object.optional_object("steady")) describe(JsonFields(*steady, true), rules.steady);
   if (auto frequencies = object.optional_object("frequencies")) {
     FrequencyRange range;
     const bool has_from = frequencies->required("from", range.from, above(0));
