@@ -75,7 +75,7 @@ double delivered_restitution(const Scene& start, Cem options, double steps_per_c
   const Run run =
       simulated(scene, options, {.impacts = true, .history = {{*scene.until_time, *scene.until_time, 1}}});
   REQUIRE(run.impacts->time.size() == 1);
-  const double v = run.history->v[0], w = run.history->w[0];
+  const double v = run.history->v[0], w = run.history->dampers[0].w[0];
   // Momentum is conserved by the scheme itself: the spring's impulse, 1e-12, and rounding are left.
   CHECK((1 + scene.mass_ratio) * v + scene.mass_ratio * w ==
         doctest::Approx(-scene.mass_ratio).epsilon(1e-8));
@@ -190,7 +190,7 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
         double largest = 0;
         for (std::size_t i = 0; i < run.history->x.size(); ++i) {
           const double pressed = compliance * run.history->x[i];
-          largest = std::max(largest, std::abs(run.history->y[i] / pressed - 1));
+          largest = std::max(largest, std::abs(run.history->dampers[0].y[i] / pressed - 1));
         }
         return largest;
       };
@@ -364,9 +364,9 @@ TEST_CASE("not located, a step from one wall through to beyond the other is an i
       {.impacts = true, .contacts = true, .history = {{0, *scene.until_time, periods * period + 1}}});
   const std::array<double, period> y{0.5, -3.5, -4, -0.5, 3.5, 5, 2.5, -1.5, -4, -2.5, 1.5, 5, 4.5};
   // An impact gives the primary mass 2 nu w = 8 h, which in 130 steps could take it 1e-9 away.
-  REQUIRE(run.history->y.size() == periods * period + 1);
+  REQUIRE(run.history->dampers[0].y.size() == periods * period + 1);
   for (int n = 0; n <= periods * period; ++n) {
-    CHECK(run.history->y[n] == doctest::Approx(y[n % period]).epsilon(1e-9));
+    CHECK(run.history->dampers[0].y[n] == doctest::Approx(y[n % period]).epsilon(1e-9));
   }
   REQUIRE(run.impacts->time.size() == 4 * periods);
   REQUIRE(run.contacts->begin.size() == 4 * periods);
@@ -436,9 +436,9 @@ TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme
     const History& h = *run.history;
     double before = INFINITY, largest_rise = 0;
     for (std::size_t i = 0; i < h.time.size(); ++i) {
-      const double nu = scene.mass_ratio, q = std::min(h.y[i], std::max(h.y[i] - 1, 0.0));
-      const double energy = (h.v[i] * h.v[i] + nu * std::pow(h.v[i] + h.w[i], 2) + h.x[i] * h.x[i] +
-                             scene.wall_stiffness * q * q) /
+      const double nu = scene.mass_ratio, y = h.dampers[0].y[i], q = std::min(y, std::max(y - 1, 0.0));
+      const double energy = (h.v[i] * h.v[i] + nu * std::pow(h.v[i] + h.dampers[0].w[i], 2) +
+                             h.x[i] * h.x[i] + scene.wall_stiffness * q * q) /
                             2;
       largest_rise = std::max(largest_rise, energy - before);
       before = energy;
@@ -473,7 +473,7 @@ TEST_CASE("history samples come at the times asked for and change nothing else")
     REQUIRE(time.size() == 11 + 5 + 2);  // 19 and 20; the run ends before the others
     CHECK(time[0] == 0);
     CHECK(b.history->x[0] == 6);
-    CHECK(b.history->y[0] == 0);
+    CHECK(b.history->dampers[0].y[0] == 0);
     CHECK(time[10] == 1);
     CHECK(time[11] == 5.05);
     CHECK(time[15] == 5.15);
@@ -484,7 +484,7 @@ TEST_CASE("history samples come at the times asked for and change nothing else")
       if (time[i] > 0.5) continue;
       CHECK(b.history->x[i] == doctest::Approx(6 * std::cos(time[i])).epsilon(1e-8));
       CHECK(b.history->v[i] == doctest::Approx(-6 * std::sin(time[i])).epsilon(1e-8));
-      CHECK(b.history->y[i] == doctest::Approx(6 - b.history->x[i]).epsilon(1e-9));
+      CHECK(b.history->dampers[0].y[i] == doctest::Approx(6 - b.history->x[i]).epsilon(1e-9));
     }
   }
 }
@@ -607,7 +607,8 @@ TEST_CASE("samples are continuous through the step in which a wall is met") {
     const History& h = *run.history;
     REQUIRE(h.time.size() == 401);
     // Within 1e-4 of contact the damper, c = 2 omega_m zeta_m = 227, bends y by less than 227 w (1e-4)^2 / 2.
-    for (std::size_t i = 0; i < h.time.size(); ++i) CHECK(std::abs(h.y[i] - (0.25 + 0.5 * h.time[i])) < 3e-6);
+    for (std::size_t i = 0; i < h.time.size(); ++i)
+      CHECK(std::abs(h.dampers[0].y[i] - (0.25 + 0.5 * h.time[i])) < 3e-6);
   }
 }
 

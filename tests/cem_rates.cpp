@@ -61,7 +61,7 @@ Record looked_at(const Scene& scene) { return {.energy = true, .history = {{0, *
 Distance distance(const Scene& scene, const Cem& options, const Run& exact) {
   const Run run = simulate(scene, options, looked_at(scene));
   return {largest_difference(run.history->x, exact.history->x),
-          largest_difference(run.history->y, exact.history->y),
+          largest_difference(run.history->dampers[0].y, exact.history->dampers[0].y),
           largest_difference(run.half_cycles->amplitude, exact.half_cycles->amplitude),
           std::abs(run.energy->final.total() - exact.energy->final.total())};
 }
@@ -335,7 +335,7 @@ TEST_CASE("amplitudes, zero crossings and samples in large steps are those of th
       CHECK(std::abs(run.history->x[i] - amplitude * std::cos(t - phase)) < amplitude * clock);
       CHECK(std::abs(run.history->v[i] + amplitude * std::sin(t - phase)) <
             amplitude * (clock + h_2 * large / 3));
-      CHECK(std::abs(run.history->y[i] - (0.5 + 0.2 - run.history->x[i])) < 1e-9);
+      CHECK(std::abs(run.history->dampers[0].y[i] - (0.5 + 0.2 - run.history->x[i])) < 1e-9);
     }
   }
 }

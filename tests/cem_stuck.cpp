@@ -95,8 +95,8 @@ TEST_CASE("both masses move by equation (9) and part where x'' changes its sign,
         const double late = std::abs(run.contacts->end[0] - double(joined.t));
         CHECK(late < h * h);
         time[i] += late;
-        CHECK(run.history->y[0] == 0);
-        CHECK(run.history->w[0] == 0);
+        CHECK(run.history->dampers[0].y[0] == 0);
+        CHECK(run.history->dampers[0].w[0] == 0);
         CHECK(run.impacts->time.empty());
       }
     }
@@ -223,7 +223,7 @@ TEST_CASE("with a speed that no impact falls below, the run is the one without t
     const Run with =
         simulate(scene, Cem{.locate = locate, .stuck_speed = std::numeric_limits<double>::min()}, record);
     CHECK(with.history->x == without.history->x);
-    CHECK(with.history->w == without.history->w);
+    CHECK(with.history->dampers[0].w == without.history->dampers[0].w);
     CHECK(with.contacts->end == without.contacts->end);
     CHECK(with.energy->impact_loss == without.energy->impact_loss);
     // One speed farther up and it is another one.

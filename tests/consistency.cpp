@@ -144,6 +144,7 @@ const std::vector<Alteration> of_any_engine{
        contacts.begin.push_back(contacts.begin.back());
        contacts.end.push_back(contacts.end.back());
        contacts.wall.push_back(contacts.wall.back());
+       contacts.damper.push_back(0);
      }},
     {"/contacts/end/", "a contact that ends after the end", [](Run& run) { run.contacts->end.back() = 41; }},
     {"/history/time/1000", "a sample after the end", [](Run& run) { run.history->time.back() = 41; }},
@@ -226,13 +227,13 @@ std::size_t impact_of_one(const Run& run) {
 
 const std::vector<Alteration> of_several_dampers{
     {"/half_cycles/impacts/2", "a count that is not the sum over all dampers",
-     [](Run& run) { ++run.half_cycles->impacts_by_damper[1][2]; }},
+     [](Run& run) { ++run.half_cycles->dampers[1].impacts[2]; }},
     {"/half_cycles/dampers/0/impacts/2", "impacts of one damper counted for another",
      [](Run& run) {
-       --run.half_cycles->impacts_by_damper[0][2];
-       ++run.half_cycles->impacts_by_damper[1][2];
-       ++run.half_cycles->impacts_by_damper[0][3];
-       --run.half_cycles->impacts_by_damper[1][3];
+       --run.half_cycles->dampers[0].impacts[2];
+       ++run.half_cycles->dampers[1].impacts[2];
+       ++run.half_cycles->dampers[0].impacts[3];
+       --run.half_cycles->dampers[1].impacts[3];
      }},
     {"/half_cycles/dampers/", "an impact that another damper is said to make",
      [](Run& run) {

@@ -90,7 +90,7 @@ TEST_CASE("without contact the primary mass is the damped oscillator of the text
       CHECK(t == doctest::Approx(0.5 * double(i)).epsilon(1e-15));
       CHECK(std::abs(run.history->x[i] - x) < 1e-14);
       CHECK(std::abs(run.history->v[i] + decay / omega * std::sin(omega * t)) < 1e-14);
-      CHECK(std::abs(run.history->y[i] + run.history->x[i] - 0.5) < 1e-14);
+      CHECK(std::abs(run.history->dampers[0].y[i] + run.history->x[i] - 0.5) < 1e-14);
     }
     // Row n ends at the n-th zero of cos(omega t) + (zeta/omega) sin(omega t); peaks are where sin vanishes.
     const double first = (pi_d - std::atan2(omega, zeta)) / omega;
@@ -302,7 +302,7 @@ TEST_CASE("the mirrored scene runs mirrored") {
   for (std::size_t i = 0; i < 401; ++i) {
     CHECK(std::abs(a.history->x[i] + b.history->x[i]) < 1e-12);
     CHECK(std::abs(a.history->v[i] + b.history->v[i]) < 1e-12);
-    CHECK(std::abs(a.history->y[i] + b.history->y[i] - 1) < 1e-11);
+    CHECK(std::abs(a.history->dampers[0].y[i] + b.history->dampers[0].y[i] - 1) < 1e-11);
   }
 }
 
@@ -336,8 +336,8 @@ TEST_CASE("energy never rises unforced and the energy balance closes, over many 
     double before = run.energy->initial.total();
     for (std::size_t i = 0; i < run.history->time.size(); ++i) {
       const History& h = *run.history;
-      const double depth = h.y[i] < 0 ? -h.y[i] : h.y[i] > 1 ? h.y[i] - 1 : 0;
-      const double now = energy_of<double>(system, {h.x[i], h.v[i], h.y[i], h.w[i]}, depth).total();
+      const double y = h.dampers[0].y[i], w = h.dampers[0].w[i], depth = y < 0 ? -y : y > 1 ? y - 1 : 0;
+      const double now = energy_of<double>(system, {h.x[i], h.v[i], y, w}, depth).total();
       CHECK(now <= before * (1 + 1e-13));
       before = now;
     }

@@ -484,7 +484,7 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   Run set = simulate(scene, Restitution{}, Record{});
   set.half_cycles = decay(300, [](int i) { return 6 * std::exp(-0.03 * i * pi / 2); }).half_cycles;
   set.end_time = *(set.scene.until_time = 300 * pi);
-  set.half_cycles->impacts_by_damper = {set.half_cycles->impacts, set.half_cycles->impacts};
+  set.half_cycles->dampers = {{set.half_cycles->impacts}, {set.half_cycles->impacts}};
   Run alone = decay(800, [](int i) { return 7 * std::exp(-0.01 * i * pi / 2); });
   alone.scene.mass_ratio = 0.02;
   alone.scene.until_amplitude = 0.01;

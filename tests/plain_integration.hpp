@@ -196,8 +196,8 @@ class PlainIntegration {
     history.time.push_back(time_);
     history.x.push_back(now_[0]);
     history.v.push_back(now_[1]);
-    history.y.push_back(now_[2]);
-    history.w.push_back(now_[3]);
+    history.dampers[0].y.push_back(now_[2]);
+    history.dampers[0].w.push_back(now_[3]);
   }
   void finish() {
     if (regime_ != Regime::flight) end_contact();

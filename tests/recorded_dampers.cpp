@@ -71,20 +71,20 @@ void same_of_dampers(const Run& run, const Run& expected, double allowed) {
   same("impacts.damper", run.impacts->damper, expected.impacts->damper, 0);
   same("contacts.damper", run.contacts->damper, expected.contacts->damper, 0);
   const std::size_t count = run.scene.dampers.size();
-  REQUIRE(run.half_cycles->impacts_by_damper.size() == count);
+  REQUIRE(run.half_cycles->dampers.size() == count);
   REQUIRE(run.history->dampers.size() == count);
   REQUIRE(run.energy->dampers.size() == count);
   for (std::size_t i = 0; i < count; ++i) {
     CAPTURE(i);
-    same("half_cycles.dampers.impacts", run.half_cycles->impacts_by_damper[i],
-         expected.half_cycles->impacts_by_damper[i], 0);
+    same("half_cycles.dampers.impacts", run.half_cycles->dampers[i].impacts,
+         expected.half_cycles->dampers[i].impacts, 0);
     same("history.dampers.y", run.history->dampers[i].y, expected.history->dampers[i].y, allowed);
     same("history.dampers.w", run.history->dampers[i].w, expected.history->dampers[i].w, allowed);
     const DamperEnergy &energy = run.energy->dampers[i], &its = expected.energy->dampers[i];
-    for (const DamperEnergyField& field : damper_energy_fields) {
-      CAPTURE(field.name);
-      CHECK(std::abs(energy.*field.member - its.*field.member) < allowed);
-    }
+    for (const auto part :
+         {&DamperEnergy::initial_kinetic, &DamperEnergy::final_kinetic, &DamperEnergy::impact_loss,
+          &DamperEnergy::contact_loss, &DamperEnergy::bounce_down_loss})
+      CHECK(std::abs(energy.*part - its.*part) < allowed);
     CHECK(energy.bounce_downs == its.bounce_downs);
   }
 }
@@ -138,8 +138,7 @@ TEST_CASE("a damper's bounce-downs lose what was left after its last impact that
     CAPTURE(i);
     const DamperEnergy& its = run.energy->dampers[i];
     CHECK(its.bounce_downs == sums[i].bounce_downs);
-    CHECK(std::abs(its.bounce_down_loss - sums[i].bounce_down_loss) <=
-          1e-12 * sums[i].bounce_down_loss);
+    CHECK(std::abs(its.bounce_down_loss - sums[i].bounce_down_loss) <= 1e-12 * sums[i].bounce_down_loss);
     count += its.bounce_downs;
     loss += its.bounce_down_loss;
   }

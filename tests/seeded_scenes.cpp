@@ -38,8 +38,8 @@ void check(const Scene& scene, const Engine& engine) {
   CHECK(finite(run.energy->impact_loss));
   CHECK(finite(run.history->x));
   CHECK(finite(run.history->v));
-  CHECK(finite(run.history->y));
-  CHECK(finite(run.history->w));
+  CHECK(finite(run.history->dampers[0].y));
+  CHECK(finite(run.history->dampers[0].w));
   for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
     const double before = i > 0 ? run.impacts->time[i - 1] : 0;
     CHECK(run.impacts->time[i] >= before);

@@ -53,8 +53,8 @@ Run triangle_motion() {
     run.history->time.push_back(t);
     run.history->x.push_back(std::sin(t));
     run.history->v.push_back(std::cos(t));
-    run.history->y.push_back(part < 1 ? part : 2 - part);
-    run.history->w.push_back(0);
+    run.history->dampers[0].y.push_back(part < 1 ? part : 2 - part);
+    run.history->dampers[0].w.push_back(0);
   }
   run.impacts = Impacts{};
   for (int i = 0; i < 4; ++i) {
@@ -411,7 +411,7 @@ TEST_CASE("a run that lacks what a figure draws is rejected with the figure's an
   expect(motion, run, "has no window beginning at");
   motion.window = 7;
   run = triangle_motion();
-  run.history->y[30] = std::numeric_limits<double>::infinity();
+  run.history->dampers[0].y[30] = std::numeric_limits<double>::infinity();
   expect(motion, run, "must be finite");
   run = triangle_motion();
   run.impacts.reset();

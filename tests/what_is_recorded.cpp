@@ -13,6 +13,7 @@
 
 #include "engines/observed.hpp"
 #include "impact_damper/engines/cem_scheme.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/simulate.hpp"
 #include "random_scenes.hpp"
 #include "round_scenes.hpp"
@@ -26,54 +27,29 @@ constexpr double absent = std::numeric_limits<double>::infinity();  // no record
 // All that a run records, by name, each as a column of numbers.
 using Columns = std::map<std::string, std::vector<double>>;
 
-template <class Value>
-std::vector<double> numbers(const std::vector<Value>& values) {
-  std::vector<double> result;
-  for (const Value& value : values) {
-    if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      result.push_back(value.value_or(absent));
-    } else {
-      result.push_back(double(value));
-    }
-  }
-  return result;
+double as_double(double value) { return value; }
+double as_double(const std::optional<double>& value) { return value.value_or(absent); }
+
+template <class Owner>
+void add_columns(Columns& all, const std::string& above, const Owner& owner) {
+  for_each_column(owner, false, [&](const RunColumnInfo& info, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const std::string name = above + std::string(info.name);
+    if constexpr (HasRunColumns<Value>)
+      add_columns(all, name + '.', value);
+    else if constexpr (std::is_arithmetic_v<Value>)
+      all[name] = {double(value)};
+    else if constexpr (!PartsOfDampers<Value>)
+      for (std::vector<double>& column = all[name]; const auto& each : value)
+        column.push_back(as_double(in_file(each)));
+  });
 }
 
 Columns columns_of(const Run& run) {
   Columns all;
-  if (const auto& rows = run.half_cycles) {
-    all["half_cycles.zero_crossing"] = rows->zero_crossing;
-    all["half_cycles.peak_time"] = rows->peak_time;
-    all["half_cycles.amplitude"] = rows->amplitude;
-    all["half_cycles.impacts"] = numbers(rows->impacts);
-  }
-  if (const auto& impacts = run.impacts) {
-    all["impacts.time"] = impacts->time;
-    all["impacts.wall"] = numbers(impacts->wall);
-    all["impacts.relative_velocity"] = impacts->relative_velocity;
-    all["impacts.phase_deg"] = numbers(impacts->phase_deg);
-    all["impacts.amplitude"] = numbers(impacts->amplitude);
-  }
-  if (const auto& contacts = run.contacts) {
-    all["contacts.begin"] = contacts->begin;
-    all["contacts.end"] = contacts->end;
-    all["contacts.wall"] = numbers(contacts->wall);
-  }
-  if (const auto& history = run.history) {
-    all["history.time"] = history->time;
-    all["history.x"] = history->x;
-    all["history.v"] = history->v;
-    all["history.y"] = history->y;
-    all["history.w"] = history->w;
-  }
-  if (const auto& balance = run.energy) {
-    const auto energy = [](const Energy& e) { return std::vector{e.kinetic, e.spring, e.wall, e.paper}; };
-    all["energy.initial"] = energy(balance->initial);
-    all["energy.final"] = energy(balance->final);
-    all["energy.impact_loss"] = balance->impact_loss;
-    all["energy.sums"] = {balance->contact_loss, double(balance->bounce_downs), balance->bounce_down_loss,
-                          balance->viscous_work, balance->forcing_work,         balance->residual};
-  }
+  for_each_column(run, false, [&](const RunColumnInfo& info, const auto& section) {
+    if (section) add_columns(all, std::string(info.name) + '.', *section);
+  });
   return all;
 }
 
@@ -206,7 +182,8 @@ std::string no_beginning(const Run& cut, const Run& whole) {
   // A contact that the end cuts, and its loss, are not yet what they are in the longer run.
   const bool in_contact = !cut.contacts->end.empty() && cut.contacts->end.back() == end;
   for (const auto& [name, column] : begun) {
-    if (name == "energy.final" || name == "energy.sums") continue;
+    if (name.starts_with("energy.") && !name.starts_with("energy.initial") && name != "energy.impact_loss")
+      continue;
     const std::vector<double>& other = all.at(name);
     if (column.size() > other.size())
       return row_text(name + ".size()", 0, double(column.size()), double(other.size()));
@@ -286,9 +263,11 @@ Scene mirrored(Scene scene) {
 Run mirrored_back(Run run) {
   for (Wall& wall : run.impacts->wall) wall = wall == Wall::left ? Wall::right : Wall::left;
   for (Wall& wall : run.contacts->wall) wall = wall == Wall::left ? Wall::right : Wall::left;
-  for (auto* column : {&run.impacts->relative_velocity, &run.history->x, &run.history->v, &run.history->w})
+  History::Damper& its = run.history->dampers[0];
+  for (auto* column : {&run.impacts->relative_velocity, &run.impacts->displacement, &run.history->x,
+                       &run.history->v, &its.w})
     for (double& value : *column) value = 0 - value;  // without a negative zero
-  for (double& y : run.history->y) y = 1 - y;
+  for (double& y : its.y) y = 1 - y;
   return run;
 }
 
@@ -301,14 +280,15 @@ std::string mirrors(Trial& trial) {
   const Record record = everything(trial.scene);
   Run run = simulate(trial.scene, trial.engine, record);
   Run back = mirrored_back(simulate(mirrored(trial.scene), trial.engine, record));
-  for (std::size_t i = 0; i < std::min(run.history->y.size(), back.history->y.size()); ++i) {
-    const double y = run.history->y[i];
-    if (!(std::fabs(y - back.history->y[i]) <= 0x1p-52 * std::max(1.0, std::fabs(y))))
-      return row_text("history.y", i, y, back.history->y[i]);
-    back.history->y[i] = y;
+  for (std::size_t i = 0; i < std::min(run.history->dampers[0].y.size(), back.history->dampers[0].y.size());
+       ++i) {
+    const double y = run.history->dampers[0].y[i];
+    if (!(std::fabs(y - back.history->dampers[0].y[i]) <= 0x1p-52 * std::max(1.0, std::fabs(y))))
+      return row_text("history.y", i, y, back.history->dampers[0].y[i]);
+    back.history->dampers[0].y[i] = y;
   }
   run = mirrored_back(mirrored_back(run));
-  run.history->y = back.history->y;
+  run.history->dampers[0].y = back.history->dampers[0].y;
   return difference(back, run);
 }
 

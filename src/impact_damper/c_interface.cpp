@@ -6,7 +6,6 @@
 #include <list>
 #include <memory>
 #include <new>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +16,7 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
@@ -32,8 +32,6 @@ struct Column {
 };
 
 double as_double(std::int64_t value) { return static_cast<double>(value); }
-double as_double(std::int32_t damper) { return damper + 1; }  // numbered from 1
-double as_double(Wall wall) { return wall == Wall::left ? 0 : 1; }
 double as_double(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
@@ -52,114 +50,48 @@ struct impact_damper_run {
 namespace impact_damper {
 namespace {
 
-// Lists the columns in `all`, which must not be moved afterwards.
+// Lists the columns of `all.run` in `all`, which must not be moved afterwards.
 class Columns {
  public:
   explicit Columns(impact_damper_run& all) : all_(all) {}
 
   void add_all() {
-    const Run& run = all_.run;
-    add("end_time", run.end_time);
-    if (all_.scales) add(si_units_of(*all_.scales));
-    if (run.half_cycles) add(*run.half_cycles);
-    if (run.impacts) add(*run.impacts);
-    if (run.contacts) add(*run.contacts);
-    if (run.energy) add(*run.energy);
-    if (run.history) add(*run.history);
+    add("end_time", all_.run.end_time);
+    if (all_.scales) {
+      const SiUnits units = si_units_of(*all_.scales);
+      for (const SiUnit& unit : si_units) add("units/" + std::string(unit.name), units.*unit.member);
+    }
+    add("", all_.run);
   }
 
  private:
-  void add(std::string name, const std::vector<double>& values, bool stands_alone = false) {
+  template <HasRunColumns Owner>
+  void add(const std::string& above, const Owner& owner) {
+    for_each_column(owner, has_list(all_.run), [&](const RunColumnInfo& info, const auto& value) {
+      add((above.empty() ? "" : above + '/').append(info.name), value);
+    });
+  }
+  template <HasRunColumns Section>
+  void add(const std::string& name, const std::optional<Section>& section) {
+    if (section) add(name, *section);
+  }
+  template <HasRunColumns Part>
+  void add(const std::string& name, const std::vector<Part>& parts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) add(name + '/' + std::to_string(i + 1), parts[i]);
+  }
+  void add(const std::string& name, const std::vector<double>& values, bool stands_alone = false) {
     static constexpr double none = 0;  // so that an empty column, too, has an address
-    all_.columns.push_back(
-        {std::move(name), values.empty() ? &none : values.data(), values.size(), stands_alone});
+    all_.columns.push_back({name, values.empty() ? &none : values.data(), values.size(), stands_alone});
   }
   template <class Element>
-  void add(std::string name, const std::vector<Element>& values) {
+  void add(const std::string& name, const std::vector<Element>& values) {
     std::vector<double>& column = all_.converted.emplace_back();
     column.reserve(values.size());
-    for (const Element& value : values) column.push_back(as_double(value));
-    add(std::move(name), column);
+    for (const Element& value : values) column.push_back(as_double(in_file(value)));
+    add(name, column);
   }
-  void add(std::string name, double value) {
-    add(std::move(name), all_.converted.emplace_back(1, value), true);
-  }
-
-  void add(const SiUnits& units) {
-    for (const SiUnit& unit : si_units) add("units/" + std::string(unit.name), units.*unit.member);
-  }
-  void add(const HalfCycles& half_cycles) {
-    add("half_cycles/zero_crossing", half_cycles.zero_crossing);
-    add("half_cycles/peak_time", half_cycles.peak_time);
-    add("half_cycles/amplitude", half_cycles.amplitude);
-    add("half_cycles/impacts", half_cycles.impacts);
-    for_each_damper("half_cycles", half_cycles.impacts_by_damper,
-                    [&](const std::string& name, const std::vector<std::int64_t>& impacts) {
-                      add(name + "/impacts", impacts);
-                    });
-  }
-  void add(const Impacts& impacts) {
-    add("impacts/time", impacts.time);
-    add("impacts/wall", impacts.wall);
-    add("impacts/relative_velocity", impacts.relative_velocity);
-    add("impacts/phase_deg", impacts.phase_deg);
-    add("impacts/amplitude", impacts.amplitude);
-    add("impacts/displacement", impacts.displacement);
-    if (several()) add("impacts/damper", impacts.damper);
-  }
-  void add(const Contacts& contacts) {
-    add("contacts/begin", contacts.begin);
-    add("contacts/end", contacts.end);
-    add("contacts/wall", contacts.wall);
-    if (several()) add("contacts/damper", contacts.damper);
-  }
-  void add(const std::string& name, const Energy& energy) {
-    add(name + "/kinetic", energy.kinetic);
-    add(name + "/spring", energy.spring);
-    add(name + "/wall", energy.wall);
-    add(name + "/total", energy.total());
-    add(name + "/paper", energy.paper);
-  }
-  void add(const EnergyBalance& energy) {
-    add("energy/initial", energy.initial);
-    add("energy/final", energy.final);
-    add("energy/impact_loss", energy.impact_loss);
-    add("energy/impact_loss_total",
-        std::accumulate(energy.impact_loss.begin(), energy.impact_loss.end(), 0.0));
-    add("energy/contact_loss", energy.contact_loss);
-    add("energy/bounce_downs", as_double(energy.bounce_downs));
-    add("energy/bounce_down_loss", energy.bounce_down_loss);
-    add("energy/viscous_work", energy.viscous_work);
-    add("energy/forcing_work", energy.forcing_work);
-    add("energy/residual", energy.residual);
-    for_each_damper("energy", energy.dampers, [&](const std::string& name, const DamperEnergy& its) {
-      for (const DamperEnergyField& field : damper_energy_fields)
-        add(name + '/' + std::string(field.name), its.*field.member);
-      add(name + "/bounce_downs", as_double(its.bounce_downs));
-    });
-  }
-  void add(const History& history) {
-    add("history/time", history.time);
-    add("history/x", history.x);
-    add("history/v", history.v);
-    if (!several()) {
-      add("history/y", history.y);
-      add("history/w", history.w);
-    }
-    for_each_damper("history", history.dampers, [&](const std::string& name, const History::Damper& its) {
-      add(name + "/y", its.y);
-      add(name + "/w", its.w);
-    });
-  }
-
-  bool several() const { return !all_.run.scene.dampers.empty(); }
-  // Calls add_columns(prefix of the names, damper) for each damper.
-  template <class Of, class Add>
-  static void for_each_damper(const std::string& section, const std::vector<Of>& dampers,
-                              const Add& add_columns) {
-    for (std::size_t i = 0; i < dampers.size(); ++i)
-      add_columns(section + "/dampers/" + std::to_string(i + 1), dampers[i]);
-  }
+  void add(const std::string& name, double value) { add(name, all_.converted.emplace_back(1, value), true); }
+  void add(const std::string& name, std::int64_t value) { add(name, as_double(value)); }
 
   impact_damper_run& all_;
 };

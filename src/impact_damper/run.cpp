@@ -1,6 +1,12 @@
 #include "impact_damper/run.hpp"
 
+#include <numeric>
+
 namespace impact_damper {
+
+double EnergyBalance::impact_loss_total() const {
+  return std::accumulate(impact_loss.begin(), impact_loss.end(), 0.0);
+}
 
 Budget budget_for(const Scene& scene, Budget budget) {
   if (!budget.max_time) {

@@ -4,10 +4,8 @@
 // from its left wall, w = y' its velocity relative to the cavity.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "impact_damper/base/enumeration.hpp"
@@ -34,8 +32,10 @@ struct HalfCycles {
   std::vector<double> peak_time;      // when the amplitude is reached
   std::vector<double> amplitude;      // largest |x| in the row, divided by epsilon
   std::vector<std::int64_t> impacts;  // impacts in the row; a sustained contact counts as one
-  // The same for each damper of a list, by its number in the scene; empty where the scene has one.
-  std::vector<std::vector<std::int64_t>> impacts_by_damper;
+  struct Damper {
+    std::vector<std::int64_t> impacts;  // its own
+  };
+  std::vector<Damper> dampers{Damper{}};  // by number in the scene
 };
 
 struct Impacts {
@@ -47,8 +47,8 @@ struct Impacts {
   std::vector<std::optional<double>> phase_deg;
   std::vector<std::optional<double>> amplitude;  // of that half cycle; absent only in the unfinished one
   std::vector<double> displacement;              // x at the impact, divided by epsilon
-  // The damper of a list, by its number in the scene, from 0; empty where the scene has one. Impacts that
-  // coincide are in this order; those that follow from them at the same time come after them.
+  // The damper, by its number in the scene, from 0. Impacts that coincide are in this order; those that
+  // follow from them at the same time come after them.
   std::vector<std::int32_t> damper;
 };
 
@@ -64,11 +64,10 @@ struct Contacts {
 // The motion at the sample times of a Record.
 struct History {
   std::vector<double> time, x, v;
-  std::vector<double> y, w;  // of a scene's one damper
   struct Damper {
     std::vector<double> y, w;
   };
-  std::vector<Damper> dampers;  // of a list; then the two above are empty
+  std::vector<Damper> dampers{Damper{}};  // by number in the scene
 };
 
 // Energies divided by K epsilon^2, at one instant.
@@ -89,18 +88,6 @@ struct DamperEnergy {
   double bounce_down_loss = 0;                    // in the impacts jumped over
 };
 
-// The members of DamperEnergy that are energies, with their names in a run file.
-struct DamperEnergyField {
-  std::string_view name;
-  double DamperEnergy::*member;
-};
-inline constexpr std::array<DamperEnergyField, 5> damper_energy_fields{
-    {{"initial_kinetic", &DamperEnergy::initial_kinetic},
-     {"final_kinetic", &DamperEnergy::final_kinetic},
-     {"impact_loss", &DamperEnergy::impact_loss},
-     {"contact_loss", &DamperEnergy::contact_loss},
-     {"bounce_down_loss", &DamperEnergy::bounce_down_loss}}};
-
 // initial.total() + forcing_work
 //     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work
 struct EnergyBalance {
@@ -119,6 +106,7 @@ struct EnergyBalance {
   // the fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
   double reactive_work = 0;
   std::vector<DamperEnergy> dampers;  // of a list, by number in the scene; empty where the scene has one
+  double impact_loss_total() const;   // sum of impact_loss
 };
 
 // Largest allowed number of rows that budgets may give a recorded section, and of samples of a history in

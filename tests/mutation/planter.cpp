@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "impact_damper/engine_options.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/reproduction/measures.hpp"
 #include "impact_damper/reproduction/series.hpp"
@@ -59,7 +60,7 @@ struct Change {
   template <class Value>
   static constexpr bool of_damper =
       std::is_same_v<Value, SceneDamper> || std::is_same_v<Value, DamperEnergy> ||
-      std::is_same_v<Value, History::Damper> || std::is_same_v<Value, std::vector<std::int64_t>>;
+      std::is_same_v<Value, History::Damper> || std::is_same_v<Value, HalfCycles::Damper>;
   void operator()(nlohmann::json& value) const {
     if (value.is_array()) {
       if (is("shifted") && !value.empty()) std::rotate(value.begin(), value.begin() + 1, value.end());
@@ -91,6 +92,24 @@ void each_damper(std::vector<Value>& dampers, Visit all, Entries entries) {
           [&](std::string_view name, auto& member) { all("dampers.1." + std::string(name), member); });
 }
 
+// What the table of columns has of `owner`, `above` before each name, but for sums, which a run does not
+// keep.
+template <class Owner, class Visit>
+void each_column(Owner& owner, const std::string& above, bool of_list, const Visit& all) {
+  for_each_column(owner, of_list, [&](const RunColumnInfo& info, auto&& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    const std::string name = above + std::string(info.name);
+    if constexpr (HasRunColumns<Value>) {
+      each_column(value, name + '.', of_list, all);
+    } else if constexpr (PartsOfDampers<Value>) {
+      all(name, value);
+      if (!value.empty()) each_column(value.front(), name + ".1.", of_list, all);
+    } else if constexpr (std::is_lvalue_reference_v<decltype(value)>) {
+      all(name, value);
+    }
+  });
+}
+
 // Every entry of a run, under its key in the run file: outputs.cpp holds this list against the file's own
 // keys.
 template <class Visit>
@@ -110,64 +129,9 @@ void each_entry(Run& run, Visit all) {
   scene("until_time", run.scene.until_time);
   scene("until_amplitude", run.scene.until_amplitude);
   for_each_option(run.engine, [&](const OptionInfo& option, auto& value) { engine(option.name, value); });
-  if (run.half_cycles) {
-    const auto visit = under("half_cycles");
-    visit("zero_crossing", run.half_cycles->zero_crossing);
-    visit("peak_time", run.half_cycles->peak_time);
-    visit("amplitude", run.half_cycles->amplitude);
-    visit("impacts", run.half_cycles->impacts);
-    each_damper(run.half_cycles->impacts_by_damper, visit,
-                [](auto& impacts, auto its) { its("impacts", impacts); });
-  }
-  if (run.impacts) {
-    const auto visit = under("impacts");
-    visit("time", run.impacts->time);
-    visit("wall", run.impacts->wall);
-    visit("relative_velocity", run.impacts->relative_velocity);
-    visit("phase_deg", run.impacts->phase_deg);
-    visit("amplitude", run.impacts->amplitude);
-    visit("displacement", run.impacts->displacement);
-    if (!run.impacts->damper.empty()) visit("damper", run.impacts->damper);
-  }
-  if (run.contacts) {
-    const auto visit = under("contacts");
-    visit("begin", run.contacts->begin);
-    visit("end", run.contacts->end);
-    visit("wall", run.contacts->wall);
-    if (!run.contacts->damper.empty()) visit("damper", run.contacts->damper);
-  }
-  if (run.energy) {
-    EnergyBalance& balance = *run.energy;
-    for (auto [name, energy] :
-         {std::pair{"energy.initial", &balance.initial}, {"energy.final", &balance.final}}) {
-      const auto visit = under(name);
-      visit("kinetic", energy->kinetic);
-      visit("spring", energy->spring);
-      visit("wall", energy->wall);
-      visit("paper", energy->paper);
-    }
-    const auto visit = under("energy");
-    visit("impact_loss", balance.impact_loss);
-    visit("contact_loss", balance.contact_loss);
-    visit("bounce_downs", balance.bounce_downs);
-    visit("bounce_down_loss", balance.bounce_down_loss);
-    visit("viscous_work", balance.viscous_work);
-    visit("forcing_work", balance.forcing_work);
-    visit("residual", balance.residual);
-    each_damper(balance.dampers, visit, [](DamperEnergy& damper, auto its) {
-      for (const DamperEnergyField& field : damper_energy_fields) its(field.name, damper.*field.member);
-      its("bounce_downs", damper.bounce_downs);
-    });
-  }
-  if (run.history) {
-    const auto visit = under("history");
-    visit("time", run.history->time);
-    visit("x", run.history->x);
-    visit("v", run.history->v);
-    if (run.history->dampers.empty()) visit("y", run.history->y), visit("w", run.history->w);
-    each_damper(run.history->dampers, visit,
-                [](History::Damper& damper, auto its) { its("y", damper.y), its("w", damper.w); });
-  }
+  for_each_column(run, has_list(run), [&](const RunColumnInfo& info, auto& section) {
+    if (section) each_column(*section, std::string(info.name) + '.', has_list(run), all);
+  });
 }
 
 }  // namespace

@@ -631,10 +631,10 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     for (const auto& each : mine.impacts)
       coincides = coincides || magnitude(each.time - t) <= below.duration(t);
     judge.number("x" + where, run.history->x[i], truth.x, grown(0) + predicted(x_, t));
-    judge.number("y" + where, run.history->y[i], truth.y, grown(2) + predicted(y_, t));
+    judge.number("y" + where, run.history->dampers[0].y[i], truth.y, grown(2) + predicted(y_, t));
     if (coincides) continue;
     judge.number("v" + where, run.history->v[i], truth.v, grown(1) + predicted(v_, t));
-    judge.number("w" + where, run.history->w[i], truth.w, grown(3) + predicted(w_, t));
+    judge.number("w" + where, run.history->dampers[0].w[i], truth.w, grown(3) + predicted(w_, t));
   }
   if (run.history->time != sample_times(end)) judge.differ("other samples than were asked for");
 

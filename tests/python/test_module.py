@@ -12,6 +12,7 @@ import ctypes.util
 import json
 import math
 import pickle
+import re
 import signal
 import struct
 import subprocess
@@ -251,8 +252,11 @@ class Module(unittest.TestCase):
         self.assertGreater(len(fields), 25)
         for field in fields:
             self.assertRegex(impact_damper.run.__doc__, rf"(?m)^{field} +\S")
-        for name in vars(impact_damper.run(history=(0, 1, 2), **IN_UNITS)):
-            self.assertRegex(impact_damper.Run.__doc__, rf"(?m)^{name} +\S")
+        for name, section in vars(impact_damper.run(history=(0, 1, 2), **IN_UNITS)).items():
+            paragraph = re.search(rf"(?m)^{name} +\S.*(?:\n .*)*", impact_damper.Run.__doc__)
+            self.assertIsNotNone(paragraph, name)
+            for column in section if isinstance(section, dict) and name != "units" else ():
+                self.assertRegex(paragraph.group(), rf"\b{column}\b", name)
 
     def keys_of(self, schema):
         if isinstance(schema, dict):

@@ -195,11 +195,11 @@ TEST_CASE("the exact engine moves two halves of each damper as the whole") {
       contacts.damper.push_back(run.contacts->damper[i] / 2);
     }
     folded.history->dampers.clear(), folded.energy->dampers.clear();
-    folded.half_cycles->impacts_by_damper.clear();
+    folded.half_cycles->dampers.clear();
     for (auto& each : folded.half_cycles->impacts) each /= 2;
     for (std::size_t n = 0; n < halves.dampers.size(); n += 2) {
       folded.history->dampers.push_back(run.history->dampers[n]);
-      folded.half_cycles->impacts_by_damper.push_back(run.half_cycles->impacts_by_damper[n]);
+      folded.half_cycles->dampers.push_back(run.half_cycles->dampers[n]);
       const DamperEnergy &p = run.energy->dampers[n], &q = run.energy->dampers[n + 1];
       folded.energy->dampers.push_back({p.initial_kinetic + q.initial_kinetic,
                                         p.final_kinetic + q.final_kinetic, p.impact_loss + q.impact_loss,
@@ -219,10 +219,6 @@ TEST_CASE("a list of one damper is the scene without a list") {
   const auto alone = [](const Scene& scene) {
     Run run = simulated(without_list(scene), Walls::compliant);
     run.scene = scene;
-    run.impacts->damper.assign(run.impacts->time.size(), 0);
-    run.contacts->damper.assign(run.contacts->begin.size(), 0);
-    run.half_cycles->impacts_by_damper = {run.half_cycles->impacts};
-    run.history->dampers = {{run.history->y, run.history->w}};
     run.energy->dampers = simulated(scene, Walls::compliant).energy->dampers;  // has none of its own
     return run;
   };

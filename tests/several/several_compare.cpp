@@ -406,17 +406,16 @@ void judge_order(const Run& run, const Answer& answer, Walls walls, std::vector<
   }
   // Counts of the rows.
   const HalfCycles& rows = *run.half_cycles;
-  if (rows.impacts_by_damper.size() != count) {
-    differences.push_back("impacts_by_damper has " + std::to_string(rows.impacts_by_damper.size()) +
-                          " columns");
+  if (rows.dampers.size() != count) {
+    differences.push_back("half cycles have impacts of " + std::to_string(rows.dampers.size()) + " dampers");
     return;
   }
   std::vector<std::int64_t> before(count, 0);
   for (std::size_t row = 0; row < rows.zero_crossing.size(); ++row) {
     std::int64_t all = 0;
     for (std::size_t damper = 0; damper < count; ++damper) {
-      all += rows.impacts_by_damper[damper].at(row);
-      before[damper] += rows.impacts_by_damper[damper][row];
+      all += rows.dampers[damper].impacts.at(row);
+      before[damper] += rows.dampers[damper].impacts[row];
       std::int64_t sure = 0, possible = 0;
       for (std::size_t n = 0; n < impacts.time.size(); ++n) {
         if (impacts.damper[n] != std::int32_t(damper)) continue;
@@ -550,17 +549,17 @@ Run run_of_oracle(const Scene& scene, Fault fault, Walls walls) {
     run.contacts->wall.push_back(each.wall);
   }
   HalfCycles& rows = *run.half_cycles;
-  rows.impacts_by_damper.resize(count);
+  rows.dampers.resize(count);
   Quad last = -1;
   for (const HalfCycle& each : answer.half_cycles) {
     rows.zero_crossing.push_back(double(each.zero_crossing));
     rows.peak_time.push_back(double(each.peak_time));
     rows.amplitude.push_back(double(each.amplitude));
     rows.impacts.push_back(0);
-    for (auto& column : rows.impacts_by_damper) column.push_back(0);
+    for (HalfCycles::Damper& its : rows.dampers) its.impacts.push_back(0);
     for (const Impact& impact : answer.impacts)
       if (impact.time > last && impact.time <= each.zero_crossing)
-        ++rows.impacts.back(), ++rows.impacts_by_damper[impact.damper].back();
+        ++rows.impacts.back(), ++rows.dampers[impact.damper].impacts.back();
     last = each.zero_crossing;
   }
   // A fault may end the answer before the last of them.

@@ -311,8 +311,8 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
         kind.engine);
     REQUIRE(run.stop_reason == StopReason::time);
     const std::size_t last = run.history->time.size() - 1;
-    const State<double> then{run.history->x[last], run.history->v[last], run.history->y[last],
-                             run.history->w[last]};
+    const State<double> then{run.history->x[last], run.history->v[last], run.history->dampers[0].y[last],
+                             run.history->dampers[0].w[last]};
     // The force's phase is known to 2^-52 omega_f t, by which all else is late; 1/(1 - |multiplier|) periods
     // of such errors add up.
     const double rate =

@@ -256,7 +256,7 @@ TEST_CASE("the nearest miss is that of densely sampled runs") {
     const std::int64_t count = 200'000;
     const Run run = simulate(begun_at(map.scene(), c.start), c.engine,
                              {.half_cycles = false, .history = {{0, map.duration(), count}}});
-    const std::vector<double>& y = run.history->y;
+    const std::vector<double>& y = run.history->dampers[0].y;
     double least = 1e9;
     for (std::size_t i = 1; i + 1 < y.size(); ++i) {
       if (y[i - 1] < 0 || y[i] < 0 || y[i + 1] < 0 || y[i - 1] > 1 || y[i] > 1 || y[i + 1] > 1) continue;

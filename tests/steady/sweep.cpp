@@ -37,7 +37,7 @@ History followed(Scene scene, const Engine& engine, const State<double>& state, 
 }
 
 State<double> state_at(const History& history, std::size_t i) {
-  return {history.x[i], history.v[i], history.y[i], history.w[i]};
+  return {history.x[i], history.v[i], history.dampers[0].y[i], history.dampers[0].w[i]};
 }
 
 // The release makes the mass strike at once.

@@ -217,7 +217,7 @@ double delivered_restitution(Scene scene, Cem cem, double part_of_step) {
   scene.y0 = (3 + part_of_step) * *cem.time_step;
   scene.until_time = scene.y0 + 3 * tau;
   const Run run = simulate(scene, cem, {.half_cycles = false, .history = {{0, *scene.until_time, 2}}});
-  return run.history->w.back();
+  return run.history->dampers[0].w.back();
 }
 
 std::vector<Check> restitution_checks(const Options& options) {

@@ -33,8 +33,6 @@ void check_finite(const Run& run, std::string& broken) {
   column("impact_loss", run.energy->impact_loss);
   column("history x", run.history->x);
   column("history v", run.history->v);
-  column("history y", run.history->y);
-  column("history w", run.history->w);
   for (const auto& damper : run.history->dampers) {
     column("history y of a damper", damper.y);
     column("history w of a damper", damper.w);
@@ -106,15 +104,15 @@ void take_outside(const Run& run, std::size_t damper, double clearance, const st
 double outside(const Run& run) {
   Worst worst;
   const History& history = *run.history;
-  if (run.scene.dampers.empty()) take_outside(run, 0, 1, history.y, history.w, worst);
+  if (run.scene.dampers.empty()) take_outside(run, 0, 1, history.dampers[0].y, history.dampers[0].w, worst);
   for (std::size_t n = 0; n < run.scene.dampers.size(); ++n)
     take_outside(run, n, run.scene.dampers[n].clearance, history.dampers[n].y, history.dampers[n].w, worst);
   return worst;
 }
 
 void check_end(const Run& run, std::string& broken) {
-  if (!run.scene.dampers.empty()) return;  // which contact is whose inconsistencies_of() knows
-  const double y = run.history->y.back();  // at the end, if the run came so far
+  if (!run.scene.dampers.empty()) return;             // which contact is whose inconsistencies_of() knows
+  const double y = run.history->dampers[0].y.back();  // at the end, if the run came so far
   const bool cut = run.stop_reason == StopReason::time && (y < 0 || y > 1);
   if (cut && std::holds_alternative<Exact>(run.engine) && !run.contacts->end.empty() &&
       run.contacts->end.back() != run.end_time)

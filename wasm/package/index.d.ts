@@ -48,7 +48,8 @@ export interface Run {
   impacts?: Columns &
     Record<"time" | "wall" | "relative_velocity" | "phase_deg" | "amplitude" | "displacement", Float64Array>;
   contacts?: Columns & Record<"begin" | "end" | "wall", Float64Array>;
-  energy?: Columns & { impact_loss: Float64Array; residual: number };
+  energy?: Columns & Record<"impact_loss", Float64Array> &
+    Record<"impact_loss_total" | "contact_loss" | "bounce_downs" | "bounce_down_loss" | "viscous_work" | "forcing_work" | "residual", number>;
   history?: Columns & Record<"time" | "x" | "v", Float64Array>;
   /** The averaged loss factor per radian, from the peaks, as in the paper's Figures 8 to 14. */
   loss?: Record<"amplitude" | "time" | "eta", Float64Array>;

@@ -72,16 +72,6 @@ class Examination {
   std::string of_damper(const std::string& section, std::size_t damper) const {
     return several_ ? section + "dampers/" + std::to_string(damper) + '/' : section;
   }
-  // The damper of a row, 0 where a scene has one.
-  static std::size_t damper_of(const std::vector<std::int32_t>& column, std::size_t row) {
-    return column.empty() ? 0 : static_cast<std::size_t>(column[row]);
-  }
-  static const std::vector<double>& y_of(const History& history, std::size_t damper) {
-    return history.dampers.empty() ? history.y : history.dampers[damper].y;
-  }
-  static const std::vector<double>& w_of(const History& history, std::size_t damper) {
-    return history.dampers.empty() ? history.w : history.dampers[damper].w;
-  }
   // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0.
   double fastest() const {
     double twice_energy = scene_.x0 * scene_.x0 + scene_.v0 * scene_.v0;
@@ -218,7 +208,7 @@ class Examination {
   void examine_counts(const HalfCycles& rows) {
     for (std::size_t row = 0; row < rows.impacts.size(); ++row) {
       std::int64_t sum = 0;
-      for (const std::vector<std::int64_t>& impacts : rows.impacts_by_damper) sum += impacts[row];
+      for (const HalfCycles::Damper& its : rows.dampers) sum += its.impacts[row];
       if (!require(sum == rows.impacts[row], "/half_cycles/impacts", row,
                    "must be the sum over all dampers, " + std::to_string(sum) + ", got " +
                        std::to_string(rows.impacts[row])))
@@ -270,7 +260,7 @@ class Examination {
       std::vector<std::int64_t> by_damper(dampers_.size());
       for (std::int64_t n = 0; n < rows.impacts[row]; ++n, ++i) {
         const double time = impacts.time[i];
-        ++by_damper[damper_of(impacts.damper, i)];
+        ++by_damper[impacts.damper[i]];
         if (!require(
                 begin - instant(begin) <= time && time <= end + instant(end), section + "time", i,
                 got("in row " + std::to_string(row) + ", " + number_text(begin) + " to " + number_text(end),
@@ -294,8 +284,8 @@ class Examination {
                 got("at most the amplitude of its row, " + number_text(amplitude), impacts.displacement[i])))
           return;
       }
-      for (std::size_t damper = 0; damper < rows.impacts_by_damper.size(); ++damper) {
-        const std::int64_t given = rows.impacts_by_damper[damper][row];
+      for (std::size_t damper = 0; several_ && damper < rows.dampers.size(); ++damper) {
+        const std::int64_t given = rows.dampers[damper].impacts[row];
         if (!require(given == by_damper[damper], of_damper("/half_cycles/", damper) + "impacts", row,
                      "must be the number of its impacts in the row, " + std::to_string(by_damper[damper]) +
                          ", got " + std::to_string(given)))
@@ -318,7 +308,7 @@ class Examination {
     const std::string section = "/contacts/";
     std::vector<std::vector<std::size_t>> of(dampers_.size());  // each damper
     for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
-      std::vector<std::size_t>& before = of[damper_of(contacts.damper, i)];
+      std::vector<std::size_t>& before = of[contacts.damper[i]];
       const double free_from = before.empty() ? 0 : contacts.end[before.back()];
       if (!before.empty() &&
           !require(contacts.begin[i] >= free_from, section + "begin", i,
@@ -336,8 +326,8 @@ class Examination {
       std::vector<std::size_t> next(dampers_.size());
       for (std::size_t i = 0; i < impacts.time.size(); ++i) {
         const double time = impacts.time[i];
-        const std::vector<std::size_t>& its = of[damper_of(impacts.damper, i)];
-        std::size_t& n = next[damper_of(impacts.damper, i)];
+        const std::vector<std::size_t>& its = of[impacts.damper[i]];
+        std::size_t& n = next[impacts.damper[i]];
         while (n < its.size() && contacts.end[its[n]] <= time) ++n;
         if (!require(n == its.size() || time <= contacts.begin[its[n]], "/impacts/time", i,
                      got("in no stuck interval, such as from " +
@@ -348,8 +338,7 @@ class Examination {
       return;
     }
     std::vector<std::vector<std::size_t>> impacts_of(dampers_.size());
-    for (std::size_t i = 0; i < impacts.time.size(); ++i)
-      impacts_of[damper_of(impacts.damper, i)].push_back(i);
+    for (std::size_t i = 0; i < impacts.time.size(); ++i) impacts_of[impacts.damper[i]].push_back(i);
     for (std::size_t damper = 0; damper < dampers_.size(); ++damper) {
       const std::vector<std::size_t>&its = of[damper], &begun_by = impacts_of[damper];
       const std::size_t without = its.size() > begun_by.size() ? 1 : 0;
@@ -382,7 +371,7 @@ class Examination {
     if (!equal("/history/x/0", scene_.x0, history.x[0], rounding * size, ", x0")) return;
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
       const double y0 = dampers_[i].y0;
-      if (!equal(of_damper("/history/", i) + "y/0", y0, y_of(history, i)[0],
+      if (!equal(of_damper("/history/", i) + "y/0", y0, history.dampers[i].y[0],
                  rounding * (1 + size + std::abs(y0) + std::abs(dampers_[i].w0)), ", y0"))
         return;
     }
@@ -391,7 +380,7 @@ class Examination {
   // Checks that a mass lies between its rigid walls, to within the rounding of its flight.
   void examine_place(const History& history, std::size_t damper) {
     const double clearance = dampers_[damper].clearance, near = rounding * (clearance + 2 * fastest());
-    const std::vector<double>& y = y_of(history, damper);
+    const std::vector<double>& y = history.dampers[damper].y;
     for (std::size_t i = 0; i < y.size(); ++i) {
       if (!require(-near <= y[i] && y[i] <= clearance + near, of_damper("/history/", damper) + "y", i,
                    got("between the walls, 0 to " + number_text(clearance), y[i])))
@@ -464,7 +453,7 @@ class Examination {
       const History& history = *run_.history;
       // Near resonance or in an overdamped motion the final state carries rounding errors of larger numbers
       // before it; velocities of central differences are of second order.
-      for (std::size_t i = 0; i < w.size(); ++i) w[i] = w_of(history, i).back();
+      for (std::size_t i = 0; i < w.size(); ++i) w[i] = history.dampers[i].w.back();
       const double part = 1e-9 + step_ * step_;
       examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), w,
                         balance.final.wall, part);
@@ -524,7 +513,7 @@ class Examination {
     double all = 1;
     for (const SceneDamper& damper : dampers_) all += damper.mass_ratio;
     for (std::size_t i = 0; i < losses.size(); ++i) {
-      const SceneDamper& damper = dampers_[damper_of(impacts.damper, i)];
+      const SceneDamper& damper = dampers_[impacts.damper[i]];
       const double nu = damper.mass_ratio, e = damper.restitution, w = impacts.relative_velocity[i];
       const double least = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
       const std::string field = "/energy/impact_loss/" + std::to_string(i);
@@ -551,7 +540,7 @@ class Examination {
     double loss = 0;
     for (std::size_t i = 0; i < balance.impact_loss.size(); ++i) {
       loss += balance.impact_loss[i];
-      if (run_.impacts) losses[damper_of(run_.impacts->damper, i)] += balance.impact_loss[i];
+      if (run_.impacts) losses[run_.impacts->damper[i]] += balance.impact_loss[i];
     }
     const double rounded = rounding * (1 + static_cast<double>(balance.impact_loss.size()) / 64);
     double impact_loss = 0, contact_loss = 0, bounce_down_loss = 0;
@@ -586,8 +575,8 @@ class Examination {
   void examine_residual(const EnergyBalance& balance) {
     const std::vector<double>& losses = balance.impact_loss;
     const double begin = balance.initial.total(), end = balance.final.total(), put_in = balance.forcing_work;
-    const double lost = std::accumulate(losses.begin(), losses.end(), 0.0) + balance.contact_loss +
-                        balance.bounce_down_loss + balance.viscous_work;
+    const double lost =
+        balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss + balance.viscous_work;
     const double open = (begin + put_in) - (end + lost);
     const double push = std::abs(scene_.force_amplitude) * run_.end_time / std::sqrt(2.0);
     const double root = push + std::sqrt(push * push + begin);

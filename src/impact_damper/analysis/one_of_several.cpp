@@ -34,8 +34,9 @@ Run run_of_damper(const Run& run, std::size_t number) {
   one.end_time = run.end_time;
   if (run.half_cycles) {
     const HalfCycles& rows = *run.half_cycles;
+    const HalfCycles::Damper& counted = rows.dampers[number];
     one.half_cycles = {
-        rows.zero_crossing, rows.peak_time, divided(rows.amplitude, c), rows.impacts_by_damper[number], {}};
+        rows.zero_crossing, rows.peak_time, divided(rows.amplitude, c), counted.impacts, {counted}};
   }
   if (run.impacts) {
     const Impacts& all = *run.impacts;
@@ -48,6 +49,7 @@ Run run_of_damper(const Run& run, std::size_t number) {
       kept.phase_deg.push_back(all.phase_deg[i]);
       kept.amplitude.push_back(all.amplitude[i] ? std::optional(*all.amplitude[i] / c) : std::nullopt);
       kept.displacement.push_back(all.displacement[i] / c);
+      kept.damper.push_back(0);
     }
   }
   if (run.contacts) {
@@ -58,6 +60,7 @@ Run run_of_damper(const Run& run, std::size_t number) {
       kept.begin.push_back(all.begin[i]);
       kept.end.push_back(all.end[i]);
       kept.wall.push_back(all.wall[i]);
+      kept.damper.push_back(0);
     }
   }
   if (run.history) {
@@ -65,9 +68,7 @@ Run run_of_damper(const Run& run, std::size_t number) {
     one.history = {all.time,
                    divided(all.x, c),
                    divided(all.v, c),
-                   divided(all.dampers[number].y, c),
-                   divided(all.dampers[number].w, c),
-                   {}};
+                   {{divided(all.dampers[number].y, c), divided(all.dampers[number].w, c)}}};
   }
   return one;
 }

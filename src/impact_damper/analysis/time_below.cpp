@@ -21,7 +21,8 @@ double bound_of_square(const Run& run, std::size_t row) {
     const double depth = rigid ? 0 : std::max({0.0, -y, y - clearance});
     twice_energy += mass_ratio * (v + w) * (v + w) + stiffness * depth * depth;
   };
-  if (scene.dampers.empty()) add(scene.mass_ratio, scene.wall_stiffness, 1, history.y[row], history.w[row]);
+  if (scene.dampers.empty())
+    add(scene.mass_ratio, scene.wall_stiffness, 1, history.dampers[0].y[row], history.dampers[0].w[row]);
   for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
     const SceneDamper& damper = scene.dampers[n];
     add(damper.mass_ratio, damper.wall_stiffness, damper.clearance, history.dampers[n].y[row],

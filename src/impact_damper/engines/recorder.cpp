@@ -1,6 +1,7 @@
 #include "impact_damper/engines/recorder.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace impact_damper {
@@ -9,17 +10,16 @@ Recorder::Recorder(Record record, std::size_t dampers)
     : wants_(std::move(record)),
       wants_half_cycles_(wants_.half_cycles || wants_.impacts || !wants_.history_below.empty()),
       wants_history_(!wants_.history.empty() || !wants_.history_below.empty()),
-      impacts_in_row_of_(dampers),
+      impacts_in_row_(std::max<std::size_t>(dampers, 1)),
       windows_(std::move(wants_.history)) {
-  half_cycles_.impacts_by_damper.resize(dampers);
-  history_.dampers.resize(dampers);
+  half_cycles_.dampers.resize(impacts_in_row_.size());
+  history_.dampers.resize(impacts_in_row_.size());
   std::int64_t samples = 0;
   for (const HistoryWindow& window : windows_) samples += window.count;
   const auto make_room = [samples](auto&... columns) {
     (columns.reserve(static_cast<std::size_t>(samples)), ...);
   };
   make_room(history_.time, history_.x, history_.v);
-  if (dampers == 0) make_room(history_.y, history_.w);
   for (History::Damper& each : history_.dampers) make_room(each.y, each.w);
   advance_window();
 }
@@ -29,16 +29,16 @@ void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, 
     half_cycles_.zero_crossing.push_back(zero_crossing);
     half_cycles_.peak_time.push_back(peak_time);
     half_cycles_.amplitude.push_back(amplitude);
-    half_cycles_.impacts.push_back(impacts_in_row_);
-    for (std::size_t i = 0; i < impacts_in_row_of_.size(); ++i)
-      half_cycles_.impacts_by_damper[i].push_back(std::exchange(impacts_in_row_of_[i], 0));
+    half_cycles_.impacts.push_back(
+        std::accumulate(impacts_in_row_.begin(), impacts_in_row_.end(), std::int64_t{0}));
+    for (std::size_t i = 0; i < impacts_in_row_.size(); ++i)
+      half_cycles_.dampers[i].impacts.push_back(std::exchange(impacts_in_row_[i], 0));
   }
   for (std::size_t i = first_impact_in_row_; i < impacts_.time.size(); ++i) {
     if (row_ > 0) impacts_.phase_deg[i] = 180 * ((impacts_.time[i] - begin) / (zero_crossing - begin));
     impacts_.amplitude[i] = amplitude;
   }
   first_impact_in_row_ = impacts_.time.size();
-  impacts_in_row_ = 0;
   ++row_;
 
   while (next_below_ < wants_.history_below.size() &&
@@ -51,8 +51,9 @@ void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, 
   }
 }
 
-void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement) {
-  ++impacts_in_row_;
+void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement,
+                      std::int32_t damper) {
+  ++impacts_in_row_[static_cast<std::size_t>(damper)];
   if (!wants_.impacts) return;
   impacts_.time.push_back(time);
   impacts_.wall.push_back(wall);
@@ -60,44 +61,29 @@ void Recorder::impact(double time, Wall wall, double relative_velocity, double d
   impacts_.phase_deg.emplace_back();
   impacts_.amplitude.emplace_back();
   impacts_.displacement.push_back(displacement);
-}
-
-void Recorder::contact(double begin, double end, Wall wall) {
-  contacts_.begin.push_back(begin);
-  contacts_.end.push_back(end);
-  contacts_.wall.push_back(wall);
-}
-
-void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement,
-                      std::int32_t damper) {
-  impact(time, wall, relative_velocity, displacement);
-  ++impacts_in_row_of_[damper];
-  if (wants_.impacts) impacts_.damper.push_back(damper);
+  impacts_.damper.push_back(damper);
 }
 
 void Recorder::contact(double begin, double end, Wall wall, std::int32_t damper) {
-  contact(begin, end, wall);
+  contacts_.begin.push_back(begin);
+  contacts_.end.push_back(end);
+  contacts_.wall.push_back(wall);
   contacts_.damper.push_back(damper);
 }
 
 void Recorder::sample(double time, double x, double v, double y, double w) {
-  history_.y.push_back(y);
-  history_.w.push_back(w);
-  sample(time, x, v);
+  const PlaceInCavity place{y, w};
+  sample(time, x, v, {&place, 1});
 }
 
 void Recorder::sample(double time, double x, double v, std::span<const PlaceInCavity> places) {
+  history_.time.push_back(time);
+  history_.x.push_back(x);
+  history_.v.push_back(v);
   for (std::size_t i = 0; i < places.size(); ++i) {
     history_.dampers[i].y.push_back(places[i].y);
     history_.dampers[i].w.push_back(places[i].w);
   }
-  sample(time, x, v);
-}
-
-void Recorder::sample(double time, double x, double v) {
-  history_.time.push_back(time);
-  history_.x.push_back(x);
-  history_.v.push_back(v);
   ++sample_in_window_;
   advance_window();
 }

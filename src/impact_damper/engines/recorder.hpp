@@ -15,7 +15,7 @@ namespace impact_damper {
 
 class Recorder {
  public:
-  // dampers: the length of the scene's list of dampers, 0 if it has none.
+  // dampers: the length of the scene's list of dampers, 0 if it has none, which means one damper.
   explicit Recorder(Record record, std::size_t dampers = 0);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
@@ -25,10 +25,8 @@ class Recorder {
   // Ends a row at `zero_crossing`. Impacts reported since the last row belong to this one.
   void half_cycle(double begin, double zero_crossing, double peak_time, double amplitude);
   // An impact on `wall` with y' = relative_velocity just before, while x = displacement.
-  void impact(double time, Wall wall, double relative_velocity, double displacement);
-  void contact(double begin, double end, Wall wall);
-  void impact(double time, Wall wall, double relative_velocity, double displacement, std::int32_t damper);
-  void contact(double begin, double end, Wall wall, std::int32_t damper);
+  void impact(double time, Wall wall, double relative_velocity, double displacement, std::int32_t damper = 0);
+  void contact(double begin, double end, Wall wall, std::int32_t damper = 0);
 
   // The time of the next history sample; infinity while none is known. A half cycle may open a window that
   // begins at its own zero crossing, so ask again after each.
@@ -42,7 +40,6 @@ class Recorder {
   void finish(Run& run);
 
  private:
-  void sample(double time, double x, double v);
   void advance_window();
 
   Record wants_;
@@ -53,8 +50,7 @@ class Recorder {
   History history_;
   EnergyBalance energy_balance_;
   std::int64_t row_ = 0;
-  std::int64_t impacts_in_row_ = 0;
-  std::vector<std::int64_t> impacts_in_row_of_;  // for each of several dampers
+  std::vector<std::int64_t> impacts_in_row_;  // of each damper
   std::size_t first_impact_in_row_ = 0;
   std::vector<HistoryWindow> windows_;  // those known and not yet sampled to the end, ascending
   std::size_t window_ = 0;

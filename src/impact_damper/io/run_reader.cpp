@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <initializer_list>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
@@ -10,59 +11,107 @@
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 
 namespace impact_damper {
 namespace {
 
-// Reads the columns of one section, and compares the length of each with that of the first.
-class Columns {
+// Reads what the table of columns has of one section: one overload for each kind of value. Each returns
+// whether the value is valid; the problems have been reported.
+class SectionReader {
  public:
-  explicit Columns(ObjectReader& object) : object_(object) {}
-  // For an object in the section, whose columns are as long as those of `section`.
-  Columns(ObjectReader& object, const Columns& section) : object_(object), length_(section.length_) {}
+  // dampers: the length of the scene's list, 0 without one. length: of the columns, if it is known.
+  SectionReader(ObjectReader object, std::size_t dampers, std::optional<std::size_t> length = {})
+      : object_(std::move(object)), dampers_(dampers), length_(length) {}
 
-  template <typename Element>
-  bool read(std::string_view name, std::vector<Element>& column, NumberRange range = {}) {
-    if (!object_.required(name, column, range)) return false;
-    if (!length_) length_ = column.size();
-    if (column.size() == *length_) return true;
-    object_.reject(name, "must be as long as the section's first column, " + std::to_string(*length_) +
-                             ", got a length of " + std::to_string(column.size()));
-    return false;
+  template <class Section>
+  void read(Section& section) {
+    for_each_column(section, dampers_ > 0, [&](const RunColumnInfo& info, auto&& value) {
+      if (!read_value(info, std::forward<decltype(value)>(value))) invalid_.push_back(info.name);
+    });
   }
-
-  bool read(std::string_view name, std::vector<Wall>& column) {
-    std::vector<std::int64_t> numbers;
-    const bool is_read = read(name, numbers, within(0, 1));
-    for (const std::int64_t number : numbers) column.push_back(number == 0 ? Wall::left : Wall::right);
-    return is_read;
-  }
-
-  // Reads the numbers of dampers, from 1 to `dampers`.
-  bool read_damper(std::vector<std::int32_t>& column, std::size_t dampers) {
-    if (dampers == 0) return true;
-    std::vector<std::int64_t> numbers;
-    const bool is_read = read("damper", numbers, within(1, static_cast<double>(dampers)));
-    for (const std::int64_t number : numbers) column.push_back(static_cast<std::int32_t>(number - 1));
-    return is_read;
-  }
-
-  bool read_times(std::string_view name, std::vector<double>& column, bool ascending = true) {
-    if (!read(name, column, at_least(0))) return false;
-    if (!ascending) return true;
-    const auto drop = std::is_sorted_until(column.begin(), column.end());
-    if (drop == column.end()) return true;
-    object_.reject(
-        name, static_cast<std::size_t>(drop - column.begin()),
-        "must not be below the one before it, " + number_text(*(drop - 1)) + ", got " + number_text(*drop));
-    return false;
+  // Checks that no contact ends before it begins.
+  void check_ends(const Contacts& contacts) {
+    const auto is_invalid = [&](std::string_view name) { return std::ranges::count(invalid_, name) > 0; };
+    if (is_invalid("begin") || is_invalid("end")) return;
+    for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
+      if (contacts.begin[i] <= contacts.end[i]) continue;
+      object_.reject("end", i,
+                     "must not be before its begin, " + number_text(contacts.begin[i]) + ", got " +
+                         number_text(contacts.end[i]));
+      break;
+    }
   }
 
  private:
-  ObjectReader& object_;
+  template <class Number>
+  bool read_value(const RunColumnInfo& info, Number& number) {
+    return object_.required(info.name, number, info.range);
+  }
+  // Compares a sum of what was read with the one in the file.
+  bool read_value(const RunColumnInfo& info, double&& sum) {
+    double given = 0;
+    if (!invalid_.empty() && object_.has(info.name)) return false;
+    if (!object_.required(info.name, given)) return false;
+    if (given == sum) return true;
+    object_.reject(info.name,
+                   "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
+    return false;
+  }
+  template <HasRunColumns Part>
+  bool read_value(const RunColumnInfo& info, Part& part) {
+    SectionReader(object_.required_object(info.name), dampers_).read(part);
+    return true;
+  }
+  template <HasRunColumns Part>
+  bool read_value(const RunColumnInfo& info, std::vector<Part>& parts) {
+    std::vector<ObjectReader> objects = object_.required_objects(info.name, most_dampers);
+    if (object_.has(info.name) && objects.size() != dampers_)
+      object_.reject(info.name, "must be as many as in the scene, " + std::to_string(dampers_) + ", got " +
+                                    std::to_string(objects.size()));
+    parts.resize(objects.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      SectionReader(objects[i], dampers_, length_).read(parts[i]);
+    return true;
+  }
+  template <class Element>
+  bool read_value(const RunColumnInfo& info, std::vector<Element>& column) {
+    if (!object_.required(info.name, column, info.range)) return false;
+    if (!length_) length_ = column.size();
+    if (column.size() != *length_) {
+      object_.reject(info.name, "must be as long as the section's first column, " + std::to_string(*length_) +
+                                    ", got a length of " + std::to_string(column.size()));
+      return false;
+    }
+    if constexpr (std::same_as<Element, double>) {
+      const bool ascends =
+          info.order == Order::ascending || (info.order == Order::ascending_for_each_damper && dampers_ == 0);
+      const auto drop = ascends ? std::is_sorted_until(column.begin(), column.end()) : column.end();
+      if (drop == column.end()) return true;
+      object_.reject(
+          info.name, static_cast<std::size_t>(drop - column.begin()),
+          "must not be below the one before it, " + number_text(*(drop - 1)) + ", got " + number_text(*drop));
+      return false;
+    }
+    return true;
+  }
+  template <NumberedInFiles Element>
+  bool read_value(const RunColumnInfo& info, std::vector<Element>& column) {
+    RunColumnInfo of_scene = info;
+    if (std::same_as<Element, std::int32_t>) of_scene.range.most = static_cast<double>(dampers_);
+    std::vector<std::int64_t> numbers;
+    const bool is_valid = read_value(of_scene, numbers);
+    for (const std::int64_t number : numbers)
+      column.push_back(static_cast<Element>(number - in_file(Element{})));
+    return is_valid;
+  }
+
+  ObjectReader object_;
+  std::size_t dampers_;
   std::optional<std::size_t> length_;
+  std::vector<std::string_view> invalid_;
 };
 
 // Whether an engine may lack an option, which then keeps its default. A run file must have all of them. A
@@ -114,116 +163,23 @@ std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
   return engine;
 }
 
-// Returns the objects of a section for each damper of a scene with several.
-std::vector<ObjectReader> read_dampers(ObjectReader& object, std::size_t dampers) {
-  if (dampers == 0) return {};
-  std::vector<ObjectReader> objects = object.required_objects("dampers", most_dampers);
-  if (object.has("dampers") && objects.size() != dampers)
-    object.reject("dampers", "must be as many as in the scene, " + std::to_string(dampers) + ", got " +
-                                 std::to_string(objects.size()));
-  return objects;
-}
-
-HalfCycles read_half_cycles(ObjectReader object, std::size_t dampers) {
-  HalfCycles half_cycles;
-  Columns columns(object);
-  columns.read_times("zero_crossing", half_cycles.zero_crossing);
-  columns.read_times("peak_time", half_cycles.peak_time);
-  columns.read("amplitude", half_cycles.amplitude, at_least(0));
-  columns.read("impacts", half_cycles.impacts, at_least(0));
-  for (ObjectReader& damper : read_dampers(object, dampers))
-    Columns(damper, columns).read("impacts", half_cycles.impacts_by_damper.emplace_back(), at_least(0));
-  return half_cycles;
-}
-
-Impacts read_impacts(ObjectReader object, std::size_t dampers) {
-  Impacts impacts;
-  Columns columns(object);
-  columns.read_times("time", impacts.time);
-  columns.read("wall", impacts.wall);
-  columns.read("relative_velocity", impacts.relative_velocity);
-  columns.read("phase_deg", impacts.phase_deg, within(0, 180));
-  columns.read("amplitude", impacts.amplitude, at_least(0));
-  columns.read("displacement", impacts.displacement);
-  columns.read_damper(impacts.damper, dampers);
-  return impacts;
-}
-
-Contacts read_contacts(ObjectReader object, std::size_t dampers) {
-  Contacts contacts;
-  Columns columns(object);
-  const bool ascending = dampers == 0;  // of several only those of each, which analysis/consistency checks
-  const bool begun = columns.read_times("begin", contacts.begin, ascending);
-  const bool ended = columns.read_times("end", contacts.end, ascending);
-  columns.read("wall", contacts.wall);
-  columns.read_damper(contacts.damper, dampers);
-  for (std::size_t i = 0; begun && ended && i < contacts.begin.size(); ++i) {
-    if (contacts.begin[i] <= contacts.end[i]) continue;
-    object.reject("end", i,
-                  "must not be before its begin, " + number_text(contacts.begin[i]) + ", got " +
-                      number_text(contacts.end[i]));
-    break;
+// Reads a section, if it is there.
+template <class Section>
+void read_section(ObjectReader& object, std::string_view name, std::size_t dampers,
+                  std::optional<Section>& section) {
+  const std::optional<ObjectReader> part = object.optional_object(name);
+  if (!part) return;
+  SectionReader reader(*part, dampers);
+  Section& its = section.emplace();
+  reader.read(its);
+  if constexpr (std::same_as<Section, HalfCycles>)
+    if (dampers == 0) its.dampers = {{its.impacts}};
+  if constexpr (std::same_as<Section, Impacts>)
+    if (dampers == 0) its.damper.assign(its.time.size(), 0);
+  if constexpr (std::same_as<Section, Contacts>) {
+    if (dampers == 0) its.damper.assign(its.begin.size(), 0);
+    reader.check_ends(its);
   }
-  return contacts;
-}
-
-// Checks a sum that the file states beside its parts.
-void check_sum(ObjectReader& object, std::string_view name, double sum) {
-  double given = 0;
-  if (object.required(name, given) && given != sum) {
-    object.reject(name, "must be the sum of its parts, " + number_text(sum) + ", got " + number_text(given));
-  }
-}
-
-Energy read_energy(ObjectReader object) {
-  Energy energy;
-  bool all_read = object.required("kinetic", energy.kinetic);
-  all_read = object.required("spring", energy.spring) && all_read;
-  all_read = object.required("wall", energy.wall) && all_read;
-  object.required("paper", energy.paper);
-  if (all_read || !object.has("total")) check_sum(object, "total", energy.total());
-  return energy;
-}
-
-EnergyBalance read_energy_balance(ObjectReader object, std::size_t dampers) {
-  EnergyBalance balance;
-  balance.initial = read_energy(object.required_object("initial"));
-  balance.final = read_energy(object.required_object("final"));
-  if (object.required("impact_loss", balance.impact_loss) || !object.has("impact_loss_total")) {
-    check_sum(object, "impact_loss_total",
-              std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), 0.0));
-  }
-  object.required("contact_loss", balance.contact_loss);
-  object.required("bounce_downs", balance.bounce_downs, at_least(0));
-  object.required("bounce_down_loss", balance.bounce_down_loss);
-  object.required("viscous_work", balance.viscous_work);
-  object.required("forcing_work", balance.forcing_work);
-  object.required("residual", balance.residual);
-  for (ObjectReader& damper : read_dampers(object, dampers)) {
-    DamperEnergy& its = balance.dampers.emplace_back();
-    for (const DamperEnergyField& field : damper_energy_fields)
-      damper.required(field.name, its.*field.member);
-    damper.required("bounce_downs", its.bounce_downs, at_least(0));
-  }
-  return balance;
-}
-
-History read_history(ObjectReader object, std::size_t dampers) {
-  History history;
-  Columns columns(object);
-  columns.read_times("time", history.time);
-  columns.read("x", history.x);
-  columns.read("v", history.v);
-  const auto read_motion = [](Columns of, std::vector<double>& y, std::vector<double>& w) {
-    of.read("y", y);
-    of.read("w", w);
-  };
-  if (dampers == 0) read_motion(columns, history.y, history.w);
-  for (ObjectReader& damper : read_dampers(object, dampers)) {
-    History::Damper& its = history.dampers.emplace_back();
-    read_motion({damper, columns}, its.y, its.w);
-  }
-  return history;
 }
 
 // Reports what the engine would reject of the scene: no run of it can exist.
@@ -255,14 +211,9 @@ Run read_whole(JsonDocument document, bool sealed, DamperList list) {
   object.required("stop_reason", run.stop_reason);
   object.required("end_time", run.end_time, at_least(0));
   check_units(object);
-  if (const auto section = object.optional_object("half_cycles"))
-    run.half_cycles = read_half_cycles(*section, dampers);
-  if (const auto section = object.optional_object("impacts")) run.impacts = read_impacts(*section, dampers);
-  if (const auto section = object.optional_object("contacts"))
-    run.contacts = read_contacts(*section, dampers);
-  if (const auto section = object.optional_object("energy"))
-    run.energy = read_energy_balance(*section, dampers);
-  if (const auto section = object.optional_object("history")) run.history = read_history(*section, dampers);
+  for_each_column(run, dampers > 0, [&](const RunColumnInfo& info, auto& section) {
+    read_section(object, info.name, dampers, section);
+  });
   if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
     object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
                                 " impacts, got " + std::to_string(run.energy->impact_loss.size()));

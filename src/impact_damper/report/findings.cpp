@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <numeric>
 
 #include "impact_damper/analysis/one_of_several.hpp"
 #include "impact_damper/analysis/time_below.hpp"
@@ -201,8 +200,7 @@ Run Findings::run_of(std::size_t damper) const { return several() ? run_of_dampe
 
 double Findings::energy_to_impacts() const {
   const EnergyBalance& balance = *run.energy;
-  return std::accumulate(balance.impact_loss.begin(), balance.impact_loss.end(), 0.0) + balance.contact_loss +
-         balance.bounce_down_loss;
+  return balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss;
 }
 
 Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress) {

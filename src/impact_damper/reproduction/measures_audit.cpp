@@ -147,11 +147,12 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
 Spread stuck_drift(Runs& runs, const MeasureCall& call) {
   const Run run = stuck_run(runs, call);
   const History& h = *run.history;
+  const std::vector<double>& y = h.dampers[0].y;
   double moved = 0, predicted = 0;
   std::size_t contact = run.contacts->begin.size(), begin = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t c) {
     if (c != contact) contact = c, begin = i;
-    moved = std::max(moved, std::abs(h.y[i] - h.y[begin]));
+    moved = std::max(moved, std::abs(y[i] - y[begin]));
     predicted = std::max(predicted, std::abs(h.x[i] - h.x[begin] - h.v[begin] * (h.time[i] - h.time[begin])));
   });
   return once(moved / predicted);

@@ -97,7 +97,7 @@ Spread wall_restitution(Runs& runs, const MeasureCall& call) {
   if (contact.contacts->end.empty()) return once(std::nan(""));
   const double end = contact.contacts->end.front();
   record.history = {{end, end + 1e-9, 2}};
-  return once(runs.simulated(scene, Exact{}, record).history->w.back());
+  return once(runs.simulated(scene, Exact{}, record).history->dampers[0].w.back());
 }
 
 Spread contact_frequency(Runs& runs, const MeasureCall& call) {
@@ -127,7 +127,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
     record.history = {{begin, *scene.until_time, 201}};
     const Run again = runs.simulated(scene, run.engine, record);
     double overlap = 0;
-    for (const double y : again.history->y) overlap = std::max({overlap, -y, y - 1});
+    for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
     return overlap;
   });
 }

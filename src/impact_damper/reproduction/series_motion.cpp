@@ -72,7 +72,7 @@ void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table
       for (std::size_t c = 0; c < 3; ++c) impacts.columns[c].values.push_back(row[c]);
       if (time < history.time[i]) add_motion(time, x, wall);
     }
-    add_motion(history.time[i], history.x[i], history.y[i]);
+    add_motion(history.time[i], history.x[i], history.dampers[0].y[i]);
   }
   table.blocks.push_back(std::move(motion));
   if (!impacts.columns[0].values.empty()) table.blocks.push_back(std::move(impacts));

@@ -149,7 +149,7 @@ Expected<PoincareMap::End, StopReason> PoincareMap::of_several(const SceneState&
   const Run run = several_->record(s, duration());
   if (run.stop_reason != StopReason::time) return run.stop_reason;
   PoincareImage image;
-  image.state = state_in(*run.history, 1);
+  image.state = state_in(run.scene, *run.history, 1);
   const std::size_t n = dimensions_of(scene_);
   std::vector<ChangeOfState> columns(n, ChangeOfState(n));
   for (std::size_t j = 0; j < n; ++j) columns[j][j] = 1;

@@ -85,11 +85,12 @@ Scene released_from(Scene scene, const SceneState& state) {
   return scene;
 }
 
-SceneState state_in(const History& history, std::size_t row) {
+SceneState state_in(const Scene& scene, const History& history, std::size_t row) {
   SceneState state = State<double>{history.x[row], history.v[row], 0, 0};
-  if (history.dampers.empty()) {
-    state.y = history.y[row];
-    state.w = history.w[row];
+  if (scene.dampers.empty()) {
+    state.y = history.dampers[0].y[row];
+    state.w = history.dampers[0].w[row];
+    return state;
   }
   for (const History::Damper& damper : history.dampers)
     state.dampers.push_back({damper.y[row], damper.w[row]});
@@ -258,7 +259,7 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
 
   Watched kept;
   for (std::size_t row = 1; row < run.history->time.size(); ++row)
-    kept.states[row - 1] = state_in(*run.history, row);
+    kept.states[row - 1] = state_in(scene_, *run.history, row);
   if (!measures) return kept;
   for (const double amplitude : run.half_cycles->amplitude)
     kept.amplitude = std::max(kept.amplitude, amplitude);

@@ -154,8 +154,8 @@ class ForcedScene {
   std::function<Outcome(const Scene&, Recorder&)> run_;
 };
 
-// The state in a row of a history.
-SceneState state_in(const History& history, std::size_t row);
+// The state in a row of a scene's history.
+SceneState state_in(const Scene& scene, const History& history, std::size_t row);
 // A scene's initial state, and the scene with another one, in which numbers with is_too_small() become 0.
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);

@@ -187,8 +187,7 @@ Number largest_wall_force(RunFindings& found, const Scene& damper, std::size_t i
   const Impacts& impacts = *found.run().impacts;
   double speed = 0;
   for (std::size_t n = 0; n < impacts.time.size(); ++n)
-    if (impacts.damper.empty() || impacts.damper[n] == std::int32_t(i))
-      speed = std::max(speed, std::abs(impacts.relative_velocity[n]));
+    if (impacts.damper[n] == std::int32_t(i)) speed = std::max(speed, std::abs(impacts.relative_velocity[n]));
   return std::max(short_contact(damper, calibration, speed).force, initial_wall_force(damper, calibration));
 }
 Number largest_wall_force(RunFindings& found, double) {

@@ -1,0 +1,190 @@
+// The columns of a run as one table, in the order of a run file: run files, CSV and the interface for C
+// follow from it, and with that the Python module and the package for browsers. The schema and the package's
+// types are compared with it (tests/run_columns.cpp).
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "impact_damper/base/text.hpp"
+#include "impact_damper/run.hpp"
+#include "impact_damper/units.hpp"
+
+namespace impact_damper {
+
+// What becomes of a column in a run of a scene without a list of dampers: the same as with one, nothing, or
+// the columns of the one damper stand in the section itself.
+enum class WithoutList { same, absent, in_section };
+// How the numbers of a column are ordered.
+enum class Order { any, ascending, ascending_for_each_damper };
+
+// The description of a column, of a number that stands alone or of an object of such, except for the member
+// that holds its value.
+struct RunColumnInfo {
+  std::string_view name{};
+  double SiUnits::*unit = nullptr;  // null: a count, an angle, or what stands for a wall or a damper
+  NumberRange range{};              // of its numbers; those of dampers end with the last of the scene
+  Order order = Order::any;
+  WithoutList without_list = WithoutList::same;
+};
+
+template <class Owner, class Value>
+struct RunColumn {
+  Value Owner::*member;  // a function if the value is a sum of others, which a run file has for its readers
+  RunColumnInfo info;
+};
+template <class Owner, class Value>
+RunColumn(Value Owner::*, RunColumnInfo) -> RunColumn<Owner, Value>;
+
+namespace detail {
+
+constexpr RunColumnInfo instant(std::string_view name, Order order = Order::ascending) {
+  return {.name = name, .unit = &SiUnits::time, .range = at_least(0), .order = order};
+}
+constexpr RunColumnInfo length(std::string_view name, NumberRange range = {}) {
+  return {.name = name, .unit = &SiUnits::length, .range = range};
+}
+constexpr RunColumnInfo velocity(std::string_view name) { return {.name = name, .unit = &SiUnits::velocity}; }
+constexpr RunColumnInfo energy(std::string_view name) { return {.name = name, .unit = &SiUnits::energy}; }
+constexpr RunColumnInfo count(std::string_view name) { return {.name = name, .range = at_least(0)}; }
+inline constexpr RunColumnInfo wall{.name = "wall", .range = within(0, 1)};
+inline constexpr RunColumnInfo damper{
+    .name = "damper", .range = within(1, most_dampers), .without_list = WithoutList::absent};
+constexpr RunColumnInfo dampers(WithoutList without_list) {
+  return {.name = "dampers", .without_list = without_list};
+}
+
+}  // namespace detail
+
+// The columns of a section, or of a part of it. No other type has any.
+template <class Owner>
+inline constexpr std::tuple<> run_columns{};
+
+template <>
+inline constexpr auto run_columns<HalfCycles::Damper> =
+    std::tuple{RunColumn{&HalfCycles::Damper::impacts, detail::count("impacts")}};
+
+template <>
+inline constexpr auto run_columns<HalfCycles> =
+    std::tuple{RunColumn{&HalfCycles::zero_crossing, detail::instant("zero_crossing")},
+               RunColumn{&HalfCycles::peak_time, detail::instant("peak_time")},
+               RunColumn{&HalfCycles::amplitude, detail::length("amplitude", at_least(0))},
+               RunColumn{&HalfCycles::impacts, detail::count("impacts")},
+               RunColumn{&HalfCycles::dampers, detail::dampers(WithoutList::absent)}};
+
+template <>
+inline constexpr auto run_columns<Impacts> =
+    std::tuple{RunColumn{&Impacts::time, detail::instant("time")},
+               RunColumn{&Impacts::wall, detail::wall},
+               RunColumn{&Impacts::relative_velocity, detail::velocity("relative_velocity")},
+               RunColumn{&Impacts::phase_deg, {.name = "phase_deg", .range = within(0, 180)}},
+               RunColumn{&Impacts::amplitude, detail::length("amplitude", at_least(0))},
+               RunColumn{&Impacts::displacement, detail::length("displacement")},
+               RunColumn{&Impacts::damper, detail::damper}};
+
+template <>
+inline constexpr auto run_columns<Contacts> =
+    std::tuple{RunColumn{&Contacts::begin, detail::instant("begin", Order::ascending_for_each_damper)},
+               RunColumn{&Contacts::end, detail::instant("end", Order::ascending_for_each_damper)},
+               RunColumn{&Contacts::wall, detail::wall}, RunColumn{&Contacts::damper, detail::damper}};
+
+template <>
+inline constexpr auto run_columns<Energy> = std::tuple{
+    RunColumn{&Energy::kinetic, detail::energy("kinetic")},
+    RunColumn{&Energy::spring, detail::energy("spring")}, RunColumn{&Energy::wall, detail::energy("wall")},
+    RunColumn{&Energy::total, detail::energy("total")}, RunColumn{&Energy::paper, detail::energy("paper")}};
+
+template <>
+inline constexpr auto run_columns<DamperEnergy> =
+    std::tuple{RunColumn{&DamperEnergy::initial_kinetic, detail::energy("initial_kinetic")},
+               RunColumn{&DamperEnergy::final_kinetic, detail::energy("final_kinetic")},
+               RunColumn{&DamperEnergy::impact_loss, detail::energy("impact_loss")},
+               RunColumn{&DamperEnergy::contact_loss, detail::energy("contact_loss")},
+               RunColumn{&DamperEnergy::bounce_down_loss, detail::energy("bounce_down_loss")},
+               RunColumn{&DamperEnergy::bounce_downs, detail::count("bounce_downs")}};
+
+template <>
+inline constexpr auto run_columns<EnergyBalance> =
+    std::tuple{RunColumn{&EnergyBalance::initial, {.name = "initial"}},
+               RunColumn{&EnergyBalance::final, {.name = "final"}},
+               RunColumn{&EnergyBalance::impact_loss, detail::energy("impact_loss")},
+               RunColumn{&EnergyBalance::impact_loss_total, detail::energy("impact_loss_total")},
+               RunColumn{&EnergyBalance::contact_loss, detail::energy("contact_loss")},
+               RunColumn{&EnergyBalance::bounce_downs, detail::count("bounce_downs")},
+               RunColumn{&EnergyBalance::bounce_down_loss, detail::energy("bounce_down_loss")},
+               RunColumn{&EnergyBalance::viscous_work, detail::energy("viscous_work")},
+               RunColumn{&EnergyBalance::forcing_work, detail::energy("forcing_work")},
+               RunColumn{&EnergyBalance::residual, {.name = "residual"}},
+               RunColumn{&EnergyBalance::dampers, detail::dampers(WithoutList::absent)}};
+
+template <>
+inline constexpr auto run_columns<History::Damper> =
+    std::tuple{RunColumn{&History::Damper::y, detail::length("y")},
+               RunColumn{&History::Damper::w, detail::velocity("w")}};
+
+template <>
+inline constexpr auto run_columns<History> =
+    std::tuple{RunColumn{&History::time, detail::instant("time")},
+               RunColumn{&History::x, detail::length("x")}, RunColumn{&History::v, detail::velocity("v")},
+               RunColumn{&History::dampers, detail::dampers(WithoutList::in_section)}};
+
+// The sections, each absent unless it was recorded.
+template <>
+inline constexpr auto run_columns<Run> =
+    std::tuple{RunColumn{&Run::half_cycles, {.name = "half_cycles"}},
+               RunColumn{&Run::impacts, {.name = "impacts"}}, RunColumn{&Run::contacts, {.name = "contacts"}},
+               RunColumn{&Run::energy, {.name = "energy"}}, RunColumn{&Run::history, {.name = "history"}}};
+
+template <class Type>
+concept HasRunColumns = !std::same_as<decltype(run_columns<Type>), const std::tuple<>>;
+template <class Type>
+concept PartsOfDampers =
+    HasRunColumns<typename Type::value_type> && std::same_as<Type, std::vector<typename Type::value_type>>;
+
+// Whether a run has the columns of a list of dampers.
+inline bool has_list(const Run& run) { return !run.scene.dampers.empty(); }
+
+// Calls visit(info, value) for each entry of the table of `owner`; a sum is a value without an address.
+// of_list: whether the run is one of a scene with a list of dampers.
+template <class Owner, class Visit>
+void for_each_column(Owner& owner, bool of_list, Visit&& visit) {
+  const auto visit_one = [&]<class Of, class Value>(const RunColumn<Of, Value>& column) {
+    if (of_list || column.info.without_list == WithoutList::same) {
+      visit(column.info, std::invoke(column.member, owner));
+    } else if constexpr (PartsOfDampers<Value>) {
+      if (column.info.without_list == WithoutList::in_section)
+        for (auto& damper : owner.*column.member) for_each_column(damper, of_list, visit);
+    }
+  };
+  std::apply([&](const auto&... columns) { (visit_one(columns), ...); },
+             run_columns<std::remove_const_t<Owner>>);
+}
+
+// What files have as numbers: a wall, 0 for the left one, and a damper, from 1.
+template <class Type>
+concept NumberedInFiles = std::same_as<Type, Wall> || std::same_as<Type, std::int32_t>;
+
+// Returns a value as files have it.
+template <NumberedInFiles Numbered>
+std::int64_t in_file(const Numbered& value) {
+  constexpr std::int64_t first = std::same_as<Numbered, std::int32_t> ? 1 : 0;
+  return first + static_cast<std::int64_t>(value);
+}
+template <NumberedInFiles Numbered>
+std::vector<std::int64_t> in_file(const std::vector<Numbered>& values) {
+  std::vector<std::int64_t> numbers;
+  for (const Numbered value : values) numbers.push_back(in_file(value));
+  return numbers;
+}
+template <class Value>
+const Value& in_file(const Value& value) {
+  return value;
+}
+
+}  // namespace impact_damper
