@@ -33,7 +33,7 @@ Contender closed_form(const std::string& name, Walls walls, const Engine& engine
 
 // From 2 steps in a contact of nominal length, near the limit of stability, to 4096, and the default of 100.
 std::vector<double> time_steps(const Scene& scene) {
-  std::vector<double> steps = geometric(nominal_contact_time(scene) / 2, 0.5, 12);
+  std::vector<double> steps = geometric(nominal_contact_time(scene.damper()) / 2, 0.5, 12);
   steps.push_back(*resolved(scene, Cem{}).time_step);
   std::ranges::sort(steps, std::greater());
   return steps;
@@ -42,7 +42,7 @@ std::vector<double> time_steps(const Scene& scene) {
 // Between impacts four times as many steps in a radian as in contact: a flight lasts longer, and its errors
 // are those of the amplitude.
 double large_step(const Scene& scene, double step) {
-  return step * std::numbers::pi / nominal_contact_time(scene) / 4;
+  return step * std::numbers::pi / nominal_contact_time(scene.damper()) / 4;
 }
 
 Contender stepping(const std::string& name, Cem options, bool two_rates, const std::string& about) {

@@ -15,7 +15,7 @@ namespace {
 
 const Scene tiny{.x0 = 4.5, .until_time = 20};
 // Half a free oscillation, the secondary mass far from both walls.
-const Scene free_flight{.x0 = 0.1, .y0 = 0.5, .until_time = 4};
+const Scene free_flight{.x0 = 0.1, .until_time = 4, .dampers = {{.y0 = 0.5}}};
 
 std::vector<double> amplitudes(const Scene& scene, const Engine& engine) {
   return simulate(scene, engine, {.half_cycles = true}).half_cycles->amplitude;

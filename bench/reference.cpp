@@ -41,7 +41,7 @@ std::vector<double> amplitudes_of(Recorder& recorder) {
 template <class Real>
 std::vector<double> amplitudes(const Scene& scene, const Exact& options) {
   Recorder recorder({.half_cycles = true}, scene.dampers.size());
-  if (scene.dampers.empty()) {
+  if (has_one_damper(scene)) {
     run_exact<Real>(scene, options, recorder);
   } else {
     run_exact_dampers<Real>(scene, options, recorder);
@@ -53,7 +53,7 @@ template <class Real>
 std::vector<double> amplitudes(const Scene& scene, Restitution options) {
   options.accumulation_tolerance = 1e-12;
   Recorder recorder({.half_cycles = true}, scene.dampers.size());
-  if (scene.dampers.empty()) {
+  if (has_one_damper(scene)) {
     run_restitution<Real>(scene, options, recorder);
   } else {
     run_restitution_dampers<Real>(scene, options, recorder);

@@ -195,7 +195,7 @@ std::vector<DamperCost> damper_costs(const Findings& found, const std::string& e
     const Point& point = curve->finest();
     const double cost = point.timing.reference_operations.median / double(point.impacts) *
                         found.reference_operation.median * 1e9;
-    const bool list = !scene.scene.dampers.empty();
+    const bool list = !has_one_damper(scene.scene);
     if (list && all.empty()) break;
     all.push_back({scene.dampers, list, curve, cost, list ? all[0].cost + 20 * (scene.dampers - 1) : cost});
   }

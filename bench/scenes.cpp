@@ -13,18 +13,19 @@ void add_several_dampers(std::vector<BenchScene>& scenes) {
     added.walls = Walls::rigid;
     scenes.push_back(added);
   };
-  const Scene one{.restitution = 0.8, .wall_stiffness = 1e8, .x0 = 3, .until_time = 101};
+  const Scene one{.x0 = 3, .until_time = 101, .dampers = {{.restitution = 0.8, .wall_stiffness = 1e8}}};
   add("S9 one", 1, one);
   for (const int count : {1, 2, 5, 20, 100}) {
     Scene several = one;
+    several.dampers.clear();
     for (int i = 0; i < count; ++i) {
       const double clearance = 1 + 0.7 * i / count;
       // The golden section spreads any number of them evenly and out of order.
       const double place = std::fmod(0.381966 * i, 1.0) / 2;
-      several.dampers.push_back({.mass_ratio = one.mass_ratio / count,
-                                 .restitution = one.restitution,
+      several.dampers.push_back({.mass_ratio = one.damper().mass_ratio / count,
+                                 .restitution = one.damper().restitution,
                                  .clearance = clearance,
-                                 .wall_stiffness = one.wall_stiffness / count,
+                                 .wall_stiffness = one.damper().wall_stiffness / count,
                                  .y0 = clearance * place});
     }
     add("S9 " + std::to_string(count), count, several);
@@ -58,27 +59,31 @@ std::vector<BenchScene> bench_scenes() {
        .compared_until = 60},
       {.name = "S8 slow",
        .what = "a force of frequency 0.2 to t = 400",
-       .scene = {.x0 = 0.1, .y0 = 0.5, .force_amplitude = 1, .force_frequency = 0.2, .until_time = 400},
+       .scene = {.x0 = 0.1,
+                 .force_amplitude = 1,
+                 .force_frequency = 0.2,
+                 .until_time = 400,
+                 .dampers = {{.y0 = 0.5}}},
        .compared_until = 100},
       {.name = "S8 fast",
        .what = "a force of frequency 5 to t = 100",
        .scene = {.damping_ratio = 0.01,
                  .x0 = 0.1,
                  .v0 = -5,
-                 .y0 = 0.5,
                  .force_amplitude = 24,
                  .force_frequency = 5,
-                 .until_time = 100},
+                 .until_time = 100,
+                 .dampers = {{.y0 = 0.5}}},
        .compared_until = 12},
       {.name = "S8 very fast",
        .what = "a force of frequency 50 to t = 20",
        .scene = {.damping_ratio = 0.01,
                  .x0 = 0.1,
                  .v0 = -50,
-                 .y0 = 0.5,
                  .force_amplitude = 2499,
                  .force_frequency = 50,
-                 .until_time = 20},
+                 .until_time = 20,
+                 .dampers = {{.y0 = 0.5}}},
        .compared_until = 1},
   };
   add_several_dampers(scenes);
@@ -92,7 +97,7 @@ Scene compared_part(const BenchScene& scene) {
 }
 
 bool takes_part(const Contender& contender, bool ours, const BenchScene& scene) {
-  if (scene.dampers > 0 && !(contender.several && (ours || !scene.scene.dampers.empty()))) return false;
+  if (scene.dampers > 0 && !(contender.several && (ours || !has_one_damper(scene.scene)))) return false;
   return contender.walls == scene.walls || (ours && scene.with_others);
 }
 

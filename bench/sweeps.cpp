@@ -48,14 +48,14 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   for (double n = 100; n <= most_impacts; n *= 10) {
     Options options;
     options.budget.max_impacts = std::int64_t(n);
-    add(impacts, n, {.restitution = 1, .x0 = 6}, options);
+    add(impacts, n, {.x0 = 6, .dampers = {{.restitution = 1}}}, options);
   }
   all.push_back(impacts);
 
   if constexpr (std::same_as<Options, Exact>) {
     Sweep stiffness{name, "stiffness", "wall stiffness k, e = 0.6, decay from 6 to 0.5", {}};
     for (double k = 1e2; k < 2e10; k *= 10) {
-      add(stiffness, k, {.wall_stiffness = k, .x0 = 6, .until_amplitude = 0.5}, {});
+      add(stiffness, k, {.x0 = 6, .until_amplitude = 0.5, .dampers = {{.wall_stiffness = k}}}, {});
     }
     all.push_back(stiffness);
   }
@@ -64,7 +64,7 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   for (const double e : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99}) {
     Options options;
     options.budget.max_impacts = 20'000;
-    add(restitution, e, {.restitution = e, .x0 = 6, .until_amplitude = 0.5}, options);
+    add(restitution, e, {.x0 = 6, .until_amplitude = 0.5, .dampers = {{.restitution = e}}}, options);
   }
   all.push_back(restitution);
 }

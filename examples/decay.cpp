@@ -7,9 +7,9 @@ int main() {
   // Everything is dimensionless: lengths in units of the clearance, times in units of
   // 1/Omega_n. What is not set here keeps the default that scene.hpp gives.
   impact_damper::Scene scene;
-  scene.mass_ratio = 0.05;  // the secondary mass divided by the primary mass
-  scene.restitution = 0.5;  // of an impact
-  scene.x0 = 3;             // the primary mass is pulled aside by three times the clearance
+  scene.damper().mass_ratio = 0.05;  // the secondary mass divided by the primary mass
+  scene.damper().restitution = 0.5;  // of an impact
+  scene.x0 = 3;                      // the primary mass is pulled aside by three times the clearance
   scene.until_time = 100;
 
   // The last argument is a Record; by default only half cycles are recorded (forced.cpp asks for energies).

@@ -172,13 +172,13 @@ epsilon Omega_n, forces by K epsilon.
   };
   const impact_damper::Scene defaults;
   for (const impact_damper::SceneField& field : impact_damper::scene_fields)
-    add(field.name, std::string(field.meaning) + "; default " + number_text(defaults.*field.member));
+    add(field.name, std::string(field.meaning) + "; default " + number_text(field.number.in(defaults)));
   add("until_time", "stop at this time");
   add("until_amplitude",
       "stop at the end of the first half cycle below it; one of the two must be given, or both");
-  add("dampers",
-      "several: a list of dicts of the numbers of one, and clearance; what a\n" +
-          std::string(24, ' ') + "run has of each is history[\"dampers\"][\"1\"][\"y\"] and so on, from 1");
+  add("dampers", "several: a list of dicts of the numbers of one, and clearance; what a\n" +
+                     std::string(24, ' ') +
+                     "run has of each is history[\"dampers\"][\"1\"][\"y\"] and so on, from 1");
   text +=
       "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
       "exciting_frequency that of\n"

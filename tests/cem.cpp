@@ -60,11 +60,11 @@ struct OneImpact {
   double step = 0;
 };
 OneImpact one_impact(Scene scene, double steps_per_contact, double phase) {
-  scene.wall_stiffness = 1e10;
+  scene.damper().wall_stiffness = 1e10;
   scene.x0 = 0;
-  scene.w0 = -1;
-  const double contact = nominal_contact_time(scene), h = contact / steps_per_contact;
-  scene.y0 = 0.3 * contact + phase * h;
+  scene.damper().w0 = -1;
+  const double contact = nominal_contact_time(scene.damper()), h = contact / steps_per_contact;
+  scene.damper().y0 = 0.3 * contact + phase * h;
   scene.until_time = 3.5 * contact;
   return {scene, h};
 }
@@ -77,8 +77,8 @@ double delivered_restitution(const Scene& start, Cem options, double steps_per_c
   REQUIRE(run.impacts->time.size() == 1);
   const double v = run.history->v[0], w = run.history->dampers[0].w[0];
   // Momentum is conserved by the scheme itself: the spring's impulse, 1e-12, and rounding are left.
-  CHECK((1 + scene.mass_ratio) * v + scene.mass_ratio * w ==
-        doctest::Approx(-scene.mass_ratio).epsilon(1e-8));
+  CHECK((1 + scene.damper().mass_ratio) * v + scene.damper().mass_ratio * w ==
+        doctest::Approx(-scene.damper().mass_ratio).epsilon(1e-8));
   return w;
 }
 
@@ -99,7 +99,7 @@ double mean_restitution_error(const Scene& scene, const Cem& options, int steps_
 
 // log of the growth per step of a regime's fastest growing mode: power iteration on the step as it is.
 double growth(const Scene& scene, Damper damper, Regime regime, double h) {
-  const auto equations = regime_equations<double>(scene, Calibration::fixed_wall, regime);
+  const auto equations = regime_equations<double>(scene, scene.damper(), Calibration::fixed_wall, regime);
   const CemStep<double> a = cem_step(equations, damper, h);
   Eigen::Vector4d u(0.3, 0.1, 0.2, -0.4);         // x, q, dx, dq
   if (regime == Regime::flight) u[1] = u[3] = 0;  // q only drifts along
@@ -123,7 +123,7 @@ TEST_CASE("the fastest contact frequency is the largest eigenvalue of the undamp
     for (double k : {1e-3, 1.0, 1e4, 1e9}) {
       Eigen::Matrix2d mass{{1, 0}, {0, nu}}, stiffness{{1 + k, -k}, {-k, k}};
       const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness, mass);
-      CHECK(fastest_contact_frequency({.mass_ratio = nu, .wall_stiffness = k}) ==
+      CHECK(fastest_contact_frequency({.dampers = {{.mass_ratio = nu, .wall_stiffness = k}}}) ==
             doctest::Approx(std::sqrt(solver.eigenvalues()[1])).epsilon(1e-12));
     }
   }
@@ -132,8 +132,9 @@ TEST_CASE("the fastest contact frequency is the largest eigenvalue of the undamp
 TEST_CASE("the lagged limit is that of the contact between free masses when the wall is stiff") {
   for (double e : {1.0, 0.8, 0.6, 0.2, 0.0}) {
     for (double nu : {0.02, 1.0}) {
-      const Scene scene{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e10};
-      const double omega = omega_m(scene) * std::sqrt(1 + nu), z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
+      const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e10}}};
+      const double omega = omega_m(scene.damper()) * std::sqrt(1 + nu),
+                   z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
       CHECK(stability_limit(scene, Damper::lagged, Calibration::fixed_wall) ==
             doctest::Approx(2 * (std::sqrt(1 + z * z) - z) / omega).epsilon(1e-9));  // of order nu/k
     }
@@ -142,13 +143,14 @@ TEST_CASE("the lagged limit is that of the contact between free masses when the 
 
 TEST_CASE(
     "modes keep still just below the stability limit and grow just above it, in flight and in contact") {
-  for (const Scene& scene : {Scene{}, Scene{.restitution = 1}, Scene{.restitution = 0},
-                             Scene{.mass_ratio = 1.5, .damping_ratio = 0.3, .wall_stiffness = 3},
-                             Scene{.restitution = 0.2, .damping_ratio = 2, .wall_stiffness = 50}}) {
+  for (const Scene& scene :
+       {Scene{}, Scene{.dampers = {{.restitution = 1}}}, Scene{.dampers = {{.restitution = 0}}},
+        Scene{.damping_ratio = 0.3, .dampers = {{.mass_ratio = 1.5, .wall_stiffness = 3}}},
+        Scene{.damping_ratio = 2, .dampers = {{.restitution = 0.2, .wall_stiffness = 50}}}}) {
     for (Damper damper : {Damper::centred, Damper::lagged}) {
       CAPTURE(name_of(damper));
-      CAPTURE(scene.wall_stiffness);
-      CAPTURE(scene.restitution);
+      CAPTURE(scene.damper().wall_stiffness);
+      CAPTURE(scene.damper().restitution);
       const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
       // What is left below is the beat of a bounded mode over the 2e4 steps; growth above is 1e-3 or, damped,
       // nearly.
@@ -163,7 +165,7 @@ TEST_CASE(
 
 TEST_CASE("beyond the limit an undamped mode grows as fast as the difference equation says") {
   // lambda + 1/lambda = 2 - (omega h)^2
-  const Scene scene{.restitution = 1};
+  const Scene scene{.dampers = {{.restitution = 1}}};
   const double omega = fastest_contact_frequency(scene);
   for (double excess : {1e-3, 1e-2, 0.3}) {
     const double by_theory = std::acosh(2 * (1 + excess) * (1 + excess) - 1);
@@ -180,9 +182,10 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
   for (double e : {0.6, 0.95}) {
     for (Damper damper : {Damper::centred, Damper::lagged}) {
       // x < 0 presses the mass to the left wall by about nu x / (k (1 + nu)); begun 2 % off that.
-      Scene scene{.restitution = e, .x0 = -1000, .until_time = 0.8};
-      const double compliance = scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio));
-      scene.y0 = 1.02 * compliance * scene.x0;
+      Scene scene{.x0 = -1000, .until_time = 0.8, .dampers = {{.restitution = e}}};
+      const double compliance =
+          scene.damper().mass_ratio / (scene.damper().wall_stiffness * (1 + scene.damper().mass_ratio));
+      scene.damper().y0 = 1.02 * compliance * scene.x0;
       const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
       const auto ringing = [&](double h) {
         const Run run = simulated(scene, {.time_step = h, .damper = damper, .unstable = true},
@@ -233,14 +236,14 @@ TEST_CASE("an unstable run that overflows ends in a numerical failure") {
 }
 
 TEST_CASE("the default step is a hundredth of the fastest of contact, primary mass and forcing") {
-  CHECK(*resolved({}, {}).time_step == nominal_contact_time({}) / 100);
-  CHECK(*resolved({.wall_stiffness = 1e-6}, {}).time_step == pi / 100);
+  CHECK(*resolved({}, {}).time_step == nominal_contact_time(SceneDamper{}) / 100);
+  CHECK(*resolved({.dampers = {{.wall_stiffness = 1e-6}}}, {}).time_step == pi / 100);
   CHECK(*resolved({.force_amplitude = 1, .force_frequency = 5000}, {}).time_step == pi / 5000 / 100);
   CHECK(*resolved({}, {.time_step = 1e-3}).time_step == 1e-3);
 }
 
 TEST_CASE("without contact x converges to the closed forms with second order") {
-  Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1};
+  Scene scene{.x0 = 0.2, .v0 = 0.1, .dampers = {{.y0 = 0.5, .w0 = -0.1}}};
   check_second_order(scene, 9.7, 0.2 * std::cos(9.7) + 0.1 * std::sin(9.7));
 
   scene.damping_ratio = 0.1;
@@ -255,8 +258,8 @@ TEST_CASE("without contact x converges to the closed forms with second order") {
 }
 
 TEST_CASE("forced response and resonance converge to the closed forms with second order") {
-  Scene scene{.x0 = 0, .y0 = 0.5, .force_amplitude = 0.02, .force_frequency = 1.7};
-  scene.w0 = 0;
+  Scene scene{.x0 = 0, .force_amplitude = 0.02, .force_frequency = 1.7, .dampers = {{.y0 = 0.5}}};
+  scene.damper().w0 = 0;
   check_second_order(scene, 19.3, 0.02 / (1 - 1.7 * 1.7) * (std::sin(1.7 * 19.3) - 1.7 * std::sin(19.3)));
   scene.force_frequency = 1;
   check_second_order(scene, 19.3, 0.01 * (std::sin(19.3) - 19.3 * std::cos(19.3)));
@@ -264,7 +267,7 @@ TEST_CASE("forced response and resonance converge to the closed forms with secon
 
 TEST_CASE("forcing is as good after many steps as at the first") {
   // At resonance the envelope grows as f0 t / 2; 2e6 steps reseed the forcing's recurrence 2e3 times.
-  Scene scene{.x0 = 0, .y0 = 0.5, .force_amplitude = 4e-4};
+  Scene scene{.x0 = 0, .force_amplitude = 4e-4, .dampers = {{.y0 = 0.5}}};
   const double time = 2000.1, h = 1e-3;
   CHECK(x_at(scene, time, h) ==
         doctest::Approx(2e-4 * (std::sin(time) - time * std::cos(time))).epsilon(2e-4));
@@ -272,7 +275,7 @@ TEST_CASE("forcing is as good after many steps as at the first") {
 
 TEST_CASE("half cycles have the closed form's crossings and amplitudes, to second order") {
   // Undamped, x = A cos(t - phase): crossings at phase + pi/2 + n pi, every amplitude A.
-  Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = 20};
+  Scene scene{.x0 = 0.2, .v0 = 0.1, .until_time = 20, .dampers = {{.y0 = 0.5, .w0 = -0.1}}};
   const double amplitude = std::hypot(0.2, 0.1), phase = std::atan2(0.1, 0.2);
   for (double h : {0.02, 0.01}) {
     const Run run = simulated(scene, {.time_step = h, .unstable = true}, {});
@@ -299,8 +302,8 @@ TEST_CASE("released from rest the first amplitude is the release, at time 0") {
 
 TEST_CASE("located, one impact delivers the contact's restitution to second order") {
   for (double e : {0.6, 0.9, 0.2}) {
-    const Scene scene{.restitution = e};
-    const double z = zeta_m_closed_form(e) * std::sqrt(1 + scene.mass_ratio);
+    const Scene scene{.dampers = {{.restitution = e}}};
+    const double z = zeta_m_closed_form(e) * std::sqrt(1 + scene.damper().mass_ratio);
     const double exact = std::exp(-pi * z / std::sqrt(1 - z * z));
     std::array<double, 3> error;
     for (int i = 0; i < 3; ++i) error[i] = mean_restitution_error(scene, {.locate = true}, 40 << i, exact);
@@ -329,7 +332,7 @@ TEST_CASE("not located, or with the damper lagged, one impact is accurate to fir
 TEST_CASE("an impact, its wall, time and speed are where a mass in uniform flight meets the wall") {
   // x stays at rest until the first impact: y = y0 + w0 t.
   for (bool locate : {false, true}) {
-    Scene scene{.x0 = 0, .y0 = 0.25, .w0 = 0.5, .until_time = 2};
+    Scene scene{.x0 = 0, .until_time = 2, .dampers = {{.y0 = 0.25, .w0 = 0.5}}};
     const Run run = simulated(scene, {.locate = locate}, everything());
     REQUIRE(run.impacts->time.size() == 1);
     CHECK(run.impacts->time[0] == doctest::Approx(1.5).epsilon(1e-9));
@@ -339,7 +342,7 @@ TEST_CASE("an impact, its wall, time and speed are where a mass in uniform fligh
     CHECK(run.contacts->begin[0] == run.impacts->time[0]);
     CHECK(run.contacts->wall[0] == Wall::right);
     const double z = zeta_m_closed_form(0.6) * std::sqrt(1.02);
-    const double contact = nominal_contact_time(scene) / std::sqrt(1 - z * z);
+    const double contact = nominal_contact_time(scene.damper()) / std::sqrt(1 - z * z);
     CHECK(run.contacts->end[0] - run.contacts->begin[0] == doctest::Approx(contact).epsilon(0.02));
   }
 }
@@ -352,13 +355,10 @@ TEST_CASE("not located, a step from one wall through to beyond the other is an i
   // inside the gap.
   constexpr double h = 0x1p-20;
   constexpr int period = 13, periods = 10;
-  const Scene scene{.mass_ratio = h * h,
-                    .restitution = 1,
-                    .wall_stiffness = 1,
-                    .x0 = 0,
-                    .y0 = 0.5,
-                    .w0 = -4 / h,
-                    .until_time = periods * period * h};
+  const Scene scene{
+      .x0 = 0,
+      .until_time = periods * period * h,
+      .dampers = {{.mass_ratio = h * h, .restitution = 1, .wall_stiffness = 1, .y0 = 0.5, .w0 = -4 / h}}};
   const Run run = simulated(
       scene, {.time_step = h},
       {.impacts = true, .contacts = true, .history = {{0, *scene.until_time, periods * period + 1}}});
@@ -436,9 +436,10 @@ TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme
     const History& h = *run.history;
     double before = INFINITY, largest_rise = 0;
     for (std::size_t i = 0; i < h.time.size(); ++i) {
-      const double nu = scene.mass_ratio, y = h.dampers[0].y[i], q = std::min(y, std::max(y - 1, 0.0));
+      const double nu = scene.damper().mass_ratio, y = h.dampers[0].y[i],
+                   q = std::min(y, std::max(y - 1, 0.0));
       const double energy = (h.v[i] * h.v[i] + nu * std::pow(h.v[i] + h.dampers[0].w[i], 2) +
-                             h.x[i] * h.x[i] + scene.wall_stiffness * q * q) /
+                             h.x[i] * h.x[i] + scene.damper().wall_stiffness * q * q) /
                             2;
       largest_rise = std::max(largest_rise, energy - before);
       before = energy;
@@ -451,7 +452,7 @@ TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme
 
 TEST_CASE("a lossless wall keeps the energy") {
   for (bool locate : {false, true}) {
-    Scene scene{.restitution = 1, .until_time = 30};
+    Scene scene{.until_time = 30, .dampers = {{.restitution = 1}}};
     const Run run = simulated(scene, {.locate = locate}, everything());
     CHECK(run.impacts->time.size() > 10);
     // Unlocated, touch and release find overlaps of up to a step's way: (omega_c h)^2 of what an impact
@@ -572,7 +573,8 @@ TEST_CASE("a run ends when its steps are used up, wherever the last of them lead
 }
 
 TEST_CASE("a scene at rest, whose amplitude never comes to an end, stops when its steps are used up") {
-  const Run run = simulated({.x0 = 0, .y0 = 0.5, .until_amplitude = 0.1}, {.max_steps = 100'000}, {});
+  const Run run =
+      simulated({.x0 = 0, .until_amplitude = 0.1, .dampers = {{.y0 = 0.5}}}, {.max_steps = 100'000}, {});
   CHECK(run.stop_reason == StopReason::step_budget);
 }
 
@@ -602,7 +604,8 @@ TEST_CASE("an arc falls through zero at the first root of its parabola at which 
 
 TEST_CASE("samples are continuous through the step in which a wall is met") {
   for (bool locate : {false, true}) {
-    Scene scene{.x0 = 0, .y0 = 0.25, .w0 = 0.5, .until_time = 1.5001};  // meets the right wall at 1.5
+    Scene scene{
+        .x0 = 0, .until_time = 1.5001, .dampers = {{.y0 = 0.25, .w0 = 0.5}}};  // meets the right wall at 1.5
     const Run run = simulated(scene, {.locate = locate}, {.history = {{1.4999, 1.5001, 401}}});
     const History& h = *run.history;
     REQUIRE(h.time.size() == 401);

@@ -25,26 +25,25 @@ Record everything() { return {.impacts = true, .contacts = true, .energy = true}
 
 Scene bounce_down(double until) { return {.until_time = until}; }
 
-const Scene forced{.mass_ratio = 0.1,
-                   .restitution = 0.3,
-                   .damping_ratio = 0.02,
+const Scene forced{.damping_ratio = 0.02,
                    .x0 = 3,
-                   .y0 = 0.4,
                    .force_amplitude = 0.5,
                    .force_frequency = 0.9,
-                   .until_time = 15};
-const Scene shaken{.mass_ratio = 0.5,
-                   .restitution = 0.7,
-                   .damping_ratio = 0.3,
+                   .until_time = 15,
+                   .dampers = {{.mass_ratio = 0.1, .restitution = 0.3, .y0 = 0.4}}};
+const Scene shaken{.damping_ratio = 0.3,
                    .x0 = 0.5,
                    .v0 = -1,
-                   .y0 = 0.5,
                    .force_amplitude = 3,
                    .force_frequency = 4,
-                   .until_time = 8};
-const Scene overlapping{
-    .restitution = 0.2, .damping_ratio = 1.2, .x0 = -4, .y0 = -0.01, .w0 = 0.5, .until_time = 4};
-const Scene soft{.mass_ratio = 0.05, .restitution = 0.5, .wall_stiffness = 50, .x0 = 2, .until_time = 8};
+                   .until_time = 8,
+                   .dampers = {{.mass_ratio = 0.5, .restitution = 0.7, .y0 = 0.5}}};
+const Scene overlapping{.damping_ratio = 1.2,
+                        .x0 = -4,
+                        .until_time = 4,
+                        .dampers = {{.restitution = 0.2, .y0 = -0.01, .w0 = 0.5}}};
+const Scene soft{
+    .x0 = 2, .until_time = 8, .dampers = {{.mass_ratio = 0.05, .restitution = 0.5, .wall_stiffness = 50}}};
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   REQUIRE(a.size() == b.size());
@@ -141,7 +140,8 @@ TEST_CASE("a flight that is certified free meets no wall, in closed form or in c
 TEST_CASE("two rates find the very impacts that small steps alone find") {
   std::vector<Scene> scenes{bounce_down(60), overlapping, forced, shaken, soft};
   for (double beyond : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
-    scenes.push_back({.x0 = 0.3, .y0 = 0.4 + beyond, .until_time = 4});  // y = y0 + 0.3 (1 - cos t)
+    scenes.push_back(
+        {.x0 = 0.3, .until_time = 4, .dampers = {{.y0 = 0.4 + beyond}}});  // y = y0 + 0.3 (1 - cos t)
   }
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Scene& scene = scenes[i];
@@ -167,7 +167,7 @@ TEST_CASE("two rates find the very impacts that small steps alone find") {
 
 TEST_CASE("located, the method is of second order in S3's bounce-down, with one rate and with two") {
   const Scene scene = bounce_down(400);
-  const double contact = nominal_contact_time(scene);
+  const double contact = nominal_contact_time(scene.damper());
   const Run exact = simulate(scene, Exact{}, {});
   const auto error = [&](double steps_in_contact, double large) {
     Cem options{.time_step = contact / steps_in_contact, .locate = true};
@@ -183,13 +183,13 @@ TEST_CASE("located, the method is of second order in S3's bounce-down, with one 
 TEST_CASE("located, with both steps halved two rates converge to the exact engine with second order") {
   for (const Scene& scene : {bounce_down(160), forced, shaken, overlapping, soft}) {
     const Run exact = simulate(scene, Exact{}, looked_at(scene));
-    const double unit = nominal_contact_time(scene) / 0.0044;
+    const double unit = nominal_contact_time(scene.damper()) / 0.0044;
     const auto far = [&](double scale) {
       return distance(scene, {.time_step = 2e-5 * unit * scale, .locate = true, .large_step = 0.008 * scale},
                       exact);
     };
     const Distance coarse = far(1), fine = far(0.125);
-    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damper().mass_ratio);
     CAPTURE(fine.x);
     CHECK(order(coarse.x, fine.x, 8) == doctest::Approx(2).epsilon(0.1));
     if (fine.amplitude > 0)
@@ -209,7 +209,7 @@ TEST_CASE("with the default step and large ones of 0.05 a decay to 5.3 has the e
 
 TEST_CASE("changing the step does not change the energy") {
   // Without losses; some thousand changes of step.
-  Scene scene{.restitution = 1, .until_time = 300};
+  Scene scene{.until_time = 300, .dampers = {{.restitution = 1}}};
   for (double large : {0.2, 0.05}) {
     const Run run = simulate(scene, Cem{.locate = true, .large_step = large}, everything());
     CHECK(run.impacts->time.size() > 100);
@@ -234,10 +234,10 @@ TEST_CASE("damped and forced too, a change of step during rest is wrong by no mo
         const double small = 1e-5 * large;
         const Scene scene{.damping_ratio = zeta,
                           .x0 = 0.6,
-                          .y0 = 0.5,
                           .force_amplitude = force,
                           .force_frequency = 1.5,
-                          .until_time = small + steps * large};
+                          .until_time = small + steps * large,
+                          .dampers = {{.y0 = 0.5}}};
         const Record record{.history = {{0, *scene.until_time, 2}}};
         const Run exact = simulate(scene, Exact{}, record);
         // One step more than that: should the last one end a rounding error short of the time.
@@ -281,11 +281,10 @@ TEST_CASE("with two rates the energy balance closes with second order") {
 
 TEST_CASE("long steps in a long contact, of a heavy mass too, leave the energy as small ones do") {
   for (double mass_ratio : {0.02, 1.0}) {
-    const Scene scene{.mass_ratio = mass_ratio,
-                      .restitution = 0.3,
-                      .wall_stiffness = 1e4 * mass_ratio,
-                      .x0 = 20,
-                      .until_time = 60};
+    const Scene scene{
+        .x0 = 20,
+        .until_time = 60,
+        .dampers = {{.mass_ratio = mass_ratio, .restitution = 0.3, .wall_stiffness = 1e4 * mass_ratio}}};
     const Run one = simulate(scene, Cem{.locate = true}, everything());
     const Run two = simulate(scene, Cem{.locate = true, .large_step = 0.02}, everything());
     double longest = 0;
@@ -302,7 +301,7 @@ TEST_CASE("in long flights times are counted and the motion keeps to the scheme'
   // The first step is small; each of the others takes x by 2 asin(H/2) round the circle, the last a shorter
   // one.
   const double small = 1e-4, large = 2999 * small, time = 1e6;
-  const Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = time};
+  const Scene scene{.x0 = 0.2, .v0 = 0.1, .until_time = time, .dampers = {{.y0 = 0.5, .w0 = -0.1}}};
   const Run run = simulate(scene,
                            Cem{.time_step = small,
                                .large_step = 0.29999,
@@ -319,7 +318,7 @@ TEST_CASE("in long flights times are counted and the motion keeps to the scheme'
 TEST_CASE("amplitudes, zero crossings and samples in large steps are those of the closed form") {
   const double amplitude = std::hypot(0.2, 0.1), phase = std::atan2(0.1, 0.2);
   for (double large : {0.2, 0.05}) {
-    const Scene scene{.x0 = 0.2, .v0 = 0.1, .y0 = 0.5, .w0 = -0.1, .until_time = 40};
+    const Scene scene{.x0 = 0.2, .v0 = 0.1, .until_time = 40, .dampers = {{.y0 = 0.5, .w0 = -0.1}}};
     const Run run = simulate(scene, Cem{.large_step = large}, {.history = {{0, 40, 999}}});
     const HalfCycles& rows = *run.half_cycles;
     REQUIRE(rows.amplitude.size() == 13);
@@ -343,7 +342,7 @@ TEST_CASE("amplitudes, zero crossings and samples in large steps are those of th
 TEST_CASE("a peak that falls between two steps of unequal length is not lost") {
   // Impacts, and with them changes of step, at all phases of x: bounds follow from the energy, which the
   // impacts leave as it is, and y' = 0 at no peak in particular.
-  Scene scene{.mass_ratio = 1e-9, .restitution = 1, .until_time = 400};
+  Scene scene{.until_time = 400, .dampers = {{.mass_ratio = 1e-9, .restitution = 1}}};
   scene.x0 = 3;
   const Run run = simulate(scene, Cem{.locate = true, .large_step = 0.3}, {.impacts = true});
   CHECK(run.impacts->time.size() > 500);
@@ -384,7 +383,8 @@ TEST_CASE("with two rates a run ends at its time, and when its steps are used up
 }
 
 TEST_CASE("a scene at rest stays there in steps of any length") {
-  const Run run = simulate({.x0 = 0, .y0 = 0.5, .until_time = 1000}, Cem{.large_step = 1.9}, everything());
+  const Run run =
+      simulate({.x0 = 0, .until_time = 1000, .dampers = {{.y0 = 0.5}}}, Cem{.large_step = 1.9}, everything());
   CHECK(run.impacts->time.empty());
   CHECK(run.energy->final.total() == 0);
 }

@@ -58,20 +58,22 @@ struct Joined {
 };
 
 // Pressed to the left wall at rest from the beginning, with damping and a force.
-const Scene pressed{.mass_ratio = 0.5,
-                    .damping_ratio = 0.2,
-                    .wall_stiffness = 100,
+const Scene pressed{.damping_ratio = 0.2,
                     .x0 = -2,
                     .force_amplitude = 0.3,
                     .force_frequency = 1.7,
-                    .until_time = 2};
+                    .until_time = 2,
+                    .dampers = {{.mass_ratio = 0.5, .wall_stiffness = 100}}};
 
 }  // namespace
 
 TEST_CASE("both masses move by equation (9) and part where x'' changes its sign, with second order") {
-  Joined joined{
-      pressed.mass_ratio, pressed.damping_ratio, pressed.force_amplitude, pressed.force_frequency, 0,
-      pressed.x0};
+  Joined joined{pressed.damper().mass_ratio,
+                pressed.damping_ratio,
+                pressed.force_amplitude,
+                pressed.force_frequency,
+                0,
+                pressed.x0};
   for (int i = 0; i < 100; ++i) joined.step(0.005L);
   const double x_at_half = double(joined.x), v_at_half = double(joined.v);
   joined.part();
@@ -110,8 +112,10 @@ TEST_CASE("both masses move by equation (9) and part where x'' changes its sign,
 TEST_CASE("from rest in the middle a force moves both masses, from the first step on") {
   // x = f0 omega_f t^3/6 divided by 1 + nu, as long as t is small.
   const double h = 1e-3, f0 = 0.5;
-  const Scene scene{
-      .mass_ratio = 0.5, .wall_stiffness = 100, .x0 = 0, .force_amplitude = f0, .until_time = 0.1};
+  const Scene scene{.x0 = 0,
+                    .force_amplitude = f0,
+                    .until_time = 0.1,
+                    .dampers = {{.mass_ratio = 0.5, .wall_stiffness = 100}}};
   const Run run =
       simulate(scene, Cem{.time_step = h, .stuck_speed = always}, {.contacts = true, .history = {{0, h, 2}}});
   CHECK(run.history->x[1] == doctest::Approx(f0 * h * h * h / 6 / 1.5).epsilon(1e-3));
@@ -120,7 +124,7 @@ TEST_CASE("from rest in the middle a force moves both masses, from the first ste
 
 TEST_CASE("a slow impact joins the masses with their momentum, at what that costs, until x returns to zero") {
   // x = -cos t; the secondary mass goes straight on, from -0.9 with the speed -0.3.
-  const Scene scene{.mass_ratio = 0.2, .x0 = -1, .y0 = 0.1, .w0 = -0.3, .until_time = 3};
+  const Scene scene{.x0 = -1, .until_time = 3, .dampers = {{.mass_ratio = 0.2, .y0 = 0.1, .w0 = -0.3}}};
   const auto gap = [](double t) { return -0.9 - 0.3 * t + std::cos(t); };
   double before = 0, after = 1;
   while (after - before > 1e-15) {
@@ -128,7 +132,7 @@ TEST_CASE("a slow impact joins the masses with their momentum, at what that cost
     (gap(middle) > 0 ? before : after) = middle;
   }
   const double touch = before, x = -std::cos(touch), v = std::sin(touch), w = -0.3 - v;
-  const double nu = scene.mass_ratio, joined_v = v + nu * w / (1 + nu), root = std::sqrt(1 + nu);
+  const double nu = scene.damper().mass_ratio, joined_v = v + nu * w / (1 + nu), root = std::sqrt(1 + nu);
   const double end = touch + root * std::atan2(-x / root, joined_v);
   const double loss = nu * w * w / (2 * (1 + nu));
   Record record = everything();
@@ -157,17 +161,17 @@ TEST_CASE("a slow impact joins the masses with their momentum, at what that cost
 
 TEST_CASE("with every impact slow it converges to the restitution engine at e = 0 with second order") {
   // Three scenes in which the wall pushes at every impact: only then do both join the masses.
-  const Scene free{.restitution = 0, .until_time = 60};
-  const Scene damped{.mass_ratio = 0.5, .restitution = 0, .damping_ratio = 0.02, .x0 = 9, .until_time = 12};
-  const Scene forced{.mass_ratio = 0.1,
-                     .restitution = 0,
-                     .damping_ratio = 0.01,
+  const Scene free{.until_time = 60, .dampers = {{.restitution = 0}}};
+  const Scene damped{
+      .damping_ratio = 0.02, .x0 = 9, .until_time = 12, .dampers = {{.mass_ratio = 0.5, .restitution = 0}}};
+  const Scene forced{.damping_ratio = 0.01,
                      .x0 = 3,
                      .force_amplitude = 0.4,
                      .force_frequency = 0.8,
-                     .until_time = 20};
+                     .until_time = 20,
+                     .dampers = {{.mass_ratio = 0.1, .restitution = 0}}};
   for (const Scene& scene : {free, damped, forced}) {
-    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damper().mass_ratio);
     const Run rigid = simulate(scene, Restitution{}, everything());
     REQUIRE(rigid.contacts->begin.size() > 3);
     for (const bool locate : {false, true}) {
@@ -234,10 +238,10 @@ TEST_CASE("with a speed that no impact falls below, the run is the one without t
 
 TEST_CASE("an impact from which the wall withdraws does not join the masses, however slow") {
   // x'' < 0 at the left wall: the wall falls behind a mass that would stay.
-  const Scene scene{.x0 = 1, .v0 = 0.5, .y0 = 0.01, .w0 = -0.3, .until_time = 0.2};
+  const Scene scene{.x0 = 1, .v0 = 0.5, .until_time = 0.2, .dampers = {{.y0 = 0.01, .w0 = -0.3}}};
   const Run run = simulate(scene, Cem{.stuck_speed = always}, everything());
   REQUIRE(run.impacts->time.size() == 1);
-  CHECK(run.contacts->end.at(0) - run.contacts->begin.at(0) < 2 * nominal_contact_time(scene));
+  CHECK(run.contacts->end.at(0) - run.contacts->begin.at(0) < 2 * nominal_contact_time(scene.damper()));
 }
 
 TEST_CASE("with two rates the joined masses take large steps, to the same motion") {
@@ -257,10 +261,10 @@ TEST_CASE("with two rates the joined masses take large steps, to the same motion
 TEST_CASE(
     "a contact under a push lasts from W a / omega_c down, W = 2.21 at e = 0.6, in which the default lies") {
   // x'' = 1 to 1e-9 while a contact of a stiff wall lasts: an impact at once, in closed form.
-  Scene scene{.wall_stiffness = 1e10, .x0 = -1, .until_time = 0.01};
-  const double contact = nominal_contact_time(scene), per_push = contact / std::numbers::pi;
+  Scene scene{.x0 = -1, .until_time = 0.01, .dampers = {{.wall_stiffness = 1e10}}};
+  const double contact = nominal_contact_time(scene.damper()), per_push = contact / std::numbers::pi;
   const auto lasts = [&](double speed) {
-    scene.w0 = -speed * per_push;
+    scene.damper().w0 = -speed * per_push;
     const Run run = simulate(scene, Exact{}, everything());
     return run.contacts->end.at(0) - run.contacts->begin.at(0) > 2 * contact;
   };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "impact_damper/simulate.hpp"
+#include "list_of_one.hpp"
 
 namespace compliant_dampers {
 
@@ -225,38 +226,34 @@ inline Reference reference_of(const Scene& scene) {
   const Run run = run_of(scene, Cem{});
   return {scene, run.history->time};
 }
-inline Scene list_of_one(const Scene& scene) {
-  Scene list = scene;
-  list.dampers = {{.mass_ratio = scene.mass_ratio,
-                   .restitution = scene.restitution,
-                   .wall_stiffness = scene.wall_stiffness,
-                   .y0 = scene.y0,
-                   .w0 = scene.w0}};
-  return list;
+// What the engines of lists make of a scene of one damper.
+inline Run run_of_list(const Scene& scene, const Engine& engine) {
+  return in_its_own_units(run_of(list_of_one(scene), engine));
 }
 
 inline const std::vector<Scene> single{
     {.until_time = 30},
-    {.mass_ratio = 0.1,
-     .restitution = 0.3,
-     .damping_ratio = 0.02,
+    {.damping_ratio = 0.02,
      .x0 = 3,
-     .y0 = 0.4,
      .force_amplitude = 0.5,
      .force_frequency = 0.9,
-     .until_time = 15},
-    {.mass_ratio = 0.5,
-     .restitution = 0.7,
-     .damping_ratio = 0.3,
+     .until_time = 15,
+     .dampers = {{.mass_ratio = 0.1, .restitution = 0.3, .y0 = 0.4}}},
+    {.damping_ratio = 0.3,
      .x0 = 0.5,
      .v0 = -1,
-     .y0 = 0.5,
      .force_amplitude = 3,
      .force_frequency = 4,
-     .until_time = 8},
-    {.restitution = 0.2, .damping_ratio = 1.2, .x0 = -4, .y0 = -0.01, .w0 = 0.5, .until_time = 4},
-    {.mass_ratio = 0.05, .restitution = 0.5, .wall_stiffness = 50, .x0 = 2, .y0 = 1.05, .until_time = 8},
-    {.x0 = 0, .y0 = 1, .force_amplitude = 1, .force_frequency = 2, .until_time = 10}};
+     .until_time = 8,
+     .dampers = {{.mass_ratio = 0.5, .restitution = 0.7, .y0 = 0.5}}},
+    {.damping_ratio = 1.2,
+     .x0 = -4,
+     .until_time = 4,
+     .dampers = {{.restitution = 0.2, .y0 = -0.01, .w0 = 0.5}}},
+    {.x0 = 2,
+     .until_time = 8,
+     .dampers = {{.mass_ratio = 0.05, .restitution = 0.5, .wall_stiffness = 50, .y0 = 1.05}}},
+    {.x0 = 0, .force_amplitude = 1, .force_frequency = 2, .until_time = 10, .dampers = {{.y0 = 1}}}};
 // All columns of `some` are those of `all` to within `off`, and `unit` times as large.
 inline void check_alike(const Run& some, const Run& all, double off) {
   const auto alike = [&](const std::vector<double>& a, const std::vector<double>& b) {

@@ -41,9 +41,9 @@ std::array<Quad, 4> shifted(const ContactModes<Real>& wall, const std::array<dou
 
 Scene random_scene(reference::Random& random) {
   Scene scene;
-  scene.mass_ratio = random.log_uniform(1e-8, 1e3);
-  scene.restitution = random.chance(0.1) ? double(random.chance(0.5)) : random.uniform(0, 1);
-  scene.wall_stiffness = random.log_uniform(1, 1e12);
+  scene.damper().mass_ratio = random.log_uniform(1e-8, 1e3);
+  scene.damper().restitution = random.chance(0.1) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damper().wall_stiffness = random.log_uniform(1, 1e12);
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-4, 10);
   if (random.chance(0.5)) {
     scene.force_amplitude = random.log_uniform(1e-3, 10);
@@ -60,13 +60,14 @@ TEST_CASE_TEMPLATE("the two quadratic factors give back the contact's characteri
   reference::Random random(11);
   for (int n = 0; n < 20000; ++n) {
     const Scene scene = random_scene(random);
-    const Real nu = scene.mass_ratio, zeta = scene.damping_ratio, k = Real(scene.wall_stiffness) / nu;
-    const Real c = 2 * zeta_m_closed_form(Real(scene.restitution)) * square_root(k);
+    const Real nu = scene.damper().mass_ratio, zeta = scene.damping_ratio,
+               k = Real(scene.damper().wall_stiffness) / nu;
+    const Real c = 2 * zeta_m_closed_form(Real(scene.damper().restitution)) * square_root(k);
     const ContactFactors<Real> f = factor_contact(nu, zeta, k, c);
     CAPTURE(n);
-    CAPTURE(scene.mass_ratio);
-    CAPTURE(scene.restitution);
-    CAPTURE(scene.wall_stiffness);
+    CAPTURE(scene.damper().mass_ratio);
+    CAPTURE(scene.damper().restitution);
+    CAPTURE(scene.damper().wall_stiffness);
     CAPTURE(scene.damping_ratio);
     CHECK(f.p >= 0);
     CHECK(f.p2 >= 0);
@@ -88,7 +89,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
   for (int n = 0; n < 4000; ++n) {
     const Scene scene = random_scene(random);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const double root_k = std::sqrt(walls.stiffness), rate = walls.fast.rate();
     // An impact, or any overlap, of either mass's motion of any size.
     std::array<double, 4> from{random.uniform(-10, 10), random.uniform(-10, 10), 0,
@@ -103,7 +104,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
     const auto expected = shifted(walls, from, begin, t);
 
     // The sizes of the two motions, and how far rounding of the phase shifts what still rings.
-    const double f0 = std::abs(scene.force_amplitude), nu = scene.mass_ratio;
+    const double f0 = std::abs(scene.force_amplitude), nu = scene.damper().mass_ratio;
     const double slow = std::abs(from[0]) + std::abs(from[1]) + f0 * (1 + std::min(t, 20.0)) +
                         nu / (1 + nu) * (std::abs(from[3]) + root_k * std::abs(from[2]));
     const double fast = std::abs(from[3]) + root_k * std::abs(from[2]) + slow / std::max(root_k, 1.0);
@@ -115,9 +116,9 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
                               magnitude(found.y - expected[2]) / (fast / root_k),
                               magnitude(found.w - expected[3]) / fast};
     CAPTURE(n);
-    CAPTURE(scene.mass_ratio);
-    CAPTURE(scene.restitution);
-    CAPTURE(scene.wall_stiffness);
+    CAPTURE(scene.damper().mass_ratio);
+    CAPTURE(scene.damper().restitution);
+    CAPTURE(scene.damper().wall_stiffness);
     CAPTURE(scene.damping_ratio);
     CAPTURE(scene.force_amplitude);
     CAPTURE(scene.force_frequency);
@@ -138,13 +139,13 @@ struct Impact {
 };
 Impact impact_of(const Scene& scene, Calibration calibration) {
   const System<double> system(scene);
-  const ContactModes<double> walls(system, zeta_m<double>(scene, calibration));
+  const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), calibration));
   const Contact<double> contact(walls, 0.0, {0, 0, 0, -1}, Wall::left);
   Search<double> search{std::numeric_limits<double>::infinity()};
   const auto left = contact.leave(100.0, search);
   REQUIRE(left.has_value());
   const State<double> after = left->state;
-  const double nu = scene.mass_ratio;
+  const double nu = scene.damper().mass_ratio;
   return {after.w, (1 + nu) * after.v + nu * after.w + nu};
 }
 
@@ -155,7 +156,7 @@ TEST_CASE("the first three derivatives of x at a contact's beginning are those o
   for (int n = 0; n < 500; ++n) {
     const Scene scene = random_scene(random);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const bool at_rest = random.chance(0.2);  // then the force's own jerk may be all there is
     const double x = at_rest ? 0 : random.uniform(-6, 6), v = at_rest ? 0 : random.uniform(-6, 6);
     const double w = at_rest ? 0 : random.uniform(-6, 0), begin = at_rest ? 0 : random.uniform(0, 10);
@@ -168,13 +169,13 @@ TEST_CASE("the first three derivatives of x at a contact's beginning are those o
     const double x3 = double((behind - 2 * Quad(v) + before) / (Quad(h) * h));
     const double size =
         std::abs(x) + (1 + scene.damping_ratio) * std::abs(v) + std::abs(scene.force_amplitude) +
-        scene.mass_ratio * (walls.damping * std::abs(w) + walls.stiffness * std::abs(w) / rate);
+        scene.damper().mass_ratio * (walls.damping * std::abs(w) + walls.stiffness * std::abs(w) / rate);
     const std::array<double, 4> leads = contact.leads_of_x();
     CAPTURE(n);
     CHECK(leads[0] == x);
     CHECK(leads[1] == v);
     CHECK(std::abs(leads[2] - x2) <= 1e-10 * size);
-    CHECK(std::abs(leads[3] - x3) <= 1e-6 * size * rate * (1 + scene.mass_ratio));
+    CHECK(std::abs(leads[3] - x3) <= 1e-6 * size * rate * (1 + scene.damper().mass_ratio));
     if (at_rest && scene.force_amplitude != 0)
       CHECK(leads[3] == doctest::Approx(scene.force_amplitude * scene.force_frequency));
   }
@@ -186,13 +187,13 @@ TEST_CASE("the velocities at the end of a short contact are off by a few roundin
   int contacts = 0;
   for (int i = 0; i < 400; ++i) {
     Scene scene;
-    scene.mass_ratio = random.log_uniform(0.01, 20);
-    scene.restitution = random.uniform(0.3, 1);
-    scene.wall_stiffness = random.log_uniform(1e3, 1e8);
+    scene.damper().mass_ratio = random.log_uniform(0.01, 20);
+    scene.damper().restitution = random.uniform(0.3, 1);
+    scene.damper().wall_stiffness = random.log_uniform(1e3, 1e8);
     if (random.chance(0.5)) scene.damping_ratio = random.uniform(0, 0.1);
     if (random.chance(0.5)) scene.force_amplitude = random.uniform(0, 2);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const double size = random.log_uniform(1, 1000);  // of x, in units of the velocities
     for (int touch = 0; touch < 20; ++touch) {
       const double x = random.uniform(-size, size), v = random.uniform(-1, 1), w = random.uniform(-1, -0.05);
@@ -202,7 +203,7 @@ TEST_CASE("the velocities at the end of a short contact are off by a few roundin
       if (!end || !(std::abs(end->time * walls.fast.rate() - std::numbers::pi) < 0.5)) continue;
       ++contacts;
       const auto truth = shifted(walls, {x, v, 0, w}, begin, end->time);
-      CAPTURE(scene.mass_ratio);
+      CAPTURE(scene.damper().mass_ratio);
       CAPTURE(x);
       // 8 was seen for w, 5 for v; an impulse that acts on x has its rounding, too.
       CHECK(magnitude(truth[3] - Quad(end->state.w)) < 16 * 0x1p-53 * (-w + std::abs(x) * end->time));
@@ -229,11 +230,12 @@ struct CommonError {
 };
 CommonError common_error(const Scene& scene) {
   const System<double> system(scene);
-  const double damping_ratio = zeta_m<double>(scene, Calibration::fixed_wall);
+  const double damping_ratio = zeta_m<double>(scene.damper(), Calibration::fixed_wall);
   const ContactModes<double> walls(system, damping_ratio);
   const double T = walls.fast.half_period();
   // The scene's own stiffness and damping, not as they are rounded.
-  const Quad nu = scene.mass_ratio, k = scene.wall_stiffness / nu, c = 2 * damping_ratio * root(k);
+  const Quad nu = scene.damper().mass_ratio, k = scene.damper().wall_stiffness / nu,
+             c = 2 * damping_ratio * root(k);
   const Quad zeta = scene.damping_ratio, f0 = scene.force_amplitude, omega = scene.force_frequency;
   const Quad s = std::sqrt(double(k));
   const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
@@ -260,7 +262,7 @@ CommonError common_error(const Scene& scene) {
       for (std::size_t j = 0; j < 6; ++j) truth[j] += term[j] *= rest / n;
     }
     const Quad dx = end->x - truth[0], dv = end->v - truth[1], dw = end->w - truth[3];
-    const double energy = 0.5 * (x * x + v * v + scene.mass_ratio * (v + w) * (v + w));
+    const double energy = 0.5 * (x * x + v * v + scene.damper().mass_ratio * (v + w) * (v + w));
     sum.energy += double(truth[0] * dx + truth[1] * dv + nu * (truth[1] + truth[3]) * (dv + dw)) / energy;
     sum.w += double(dw) / w;
     sum.time += double(truth[2] / s / truth[3]) / T;
@@ -279,9 +281,9 @@ TEST_CASE("errors that are the same in every short contact are well below a roun
       for (double stiffness : {1.3e4, 1e6, 1e8}) {
         for (bool driven : {false, true}) {
           Scene scene;
-          scene.mass_ratio = nu;
-          scene.restitution = e;
-          scene.wall_stiffness = stiffness * nu;
+          scene.damper().mass_ratio = nu;
+          scene.damper().restitution = e;
+          scene.damper().wall_stiffness = stiffness * nu;
           if (driven) scene.damping_ratio = 0.02, scene.force_amplitude = 1, scene.force_frequency = 0.9;
           const CommonError error = common_error(scene);
           CAPTURE(nu);
@@ -302,15 +304,15 @@ TEST_CASE("a single impact delivers the restitution of the effective damping rat
   for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
     for (double e : {0.2, 0.6, 0.9, 1.0}) {
       Scene scene;
-      scene.mass_ratio = nu;
-      scene.restitution = e;
-      scene.wall_stiffness = 1e14;
+      scene.damper().mass_ratio = nu;
+      scene.damper().restitution = e;
+      scene.damper().wall_stiffness = 1e14;
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
       if (z > 0.99) continue;
       CAPTURE(nu);
       CAPTURE(e);
       // In its short time, about pi sqrt(nu/k), the spring acts on the primary mass: relative order 1/K.
-      const double allowed = 1e-11 + 100 * nu / scene.wall_stiffness;
+      const double allowed = 1e-11 + 100 * nu / scene.damper().wall_stiffness;
       const Impact fixed = impact_of(scene, Calibration::fixed_wall);
       CHECK(std::abs(fixed.restitution - std::exp(-std::numbers::pi * z / std::sqrt(1 - z * z))) < allowed);
       CHECK(std::abs(fixed.momentum_change) < allowed * nu + 1e-15);
@@ -318,7 +320,7 @@ TEST_CASE("a single impact delivers the restitution of the effective damping rat
     }
   }
   Scene paper;
-  paper.wall_stiffness = 1e14;
+  paper.damper().wall_stiffness = 1e14;
   CHECK(impact_of(paper, Calibration::fixed_wall).restitution ==
         doctest::Approx(0.597).epsilon(5e-4 / 0.597));
 }
@@ -329,10 +331,10 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
   // until it has turned and x'' > 0 no longer presses.
   for (double nu : {1e-6, 0.5, 30.0}) {
     Scene scene;
-    scene.mass_ratio = nu;
-    scene.restitution = 0;
+    scene.damper().mass_ratio = nu;
+    scene.damper().restitution = 0;
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
     Search<double> search{std::numeric_limits<double>::infinity()};
     const auto left = contact.leave(100.0, search);

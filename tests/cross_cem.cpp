@@ -52,16 +52,16 @@ void check_order(const Scene& scene, Cem options, double expected, double tolera
 // before.
 const Scene bounce_down{.until_time = 160};
 
-const Scene forced{.mass_ratio = 0.1,
-                   .restitution = 0.3,
-                   .damping_ratio = 0.02,
+const Scene forced{.damping_ratio = 0.02,
                    .x0 = 3,
-                   .y0 = 0.4,
                    .force_amplitude = 0.5,
                    .force_frequency = 0.9,
-                   .until_time = 15};
-const Scene overlapping{
-    .restitution = 0.2, .damping_ratio = 1.2, .x0 = -4, .y0 = -0.01, .w0 = 0.5, .until_time = 4};
+                   .until_time = 15,
+                   .dampers = {{.mass_ratio = 0.1, .restitution = 0.3, .y0 = 0.4}}};
+const Scene overlapping{.damping_ratio = 1.2,
+                        .x0 = -4,
+                        .until_time = 4,
+                        .dampers = {{.restitution = 0.2, .y0 = -0.01, .w0 = 0.5}}};
 
 }  // namespace
 

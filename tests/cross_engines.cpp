@@ -12,7 +12,7 @@ namespace {
 // The largest difference of the half-cycle amplitudes of a compliant wall from those of rigid ones.
 double difference(double stiffness, Calibration calibration) {
   Scene scene;
-  scene.wall_stiffness = stiffness;
+  scene.damper().wall_stiffness = stiffness;
   scene.until_time = 60;
   Exact options;
   options.calibration = calibration;
@@ -100,26 +100,26 @@ TEST_CASE(
     return scene;
   };
   Scene struck = resting(), overlapping = resting(), hit_later = resting(), lossless = resting();
-  struck.w0 = -1;
+  struck.damper().w0 = -1;
   struck.force_amplitude = 0.1;
-  overlapping.y0 = -0.01;
+  overlapping.damper().y0 = -0.01;
   overlapping.force_amplitude = 0.1;
-  hit_later.restitution = 1;
-  hit_later.mass_ratio = 1;
-  hit_later.wall_stiffness = 0.01;
-  hit_later.y0 = 0.5;
-  hit_later.w0 = 1;
+  hit_later.damper().restitution = 1;
+  hit_later.damper().mass_ratio = 1;
+  hit_later.damper().wall_stiffness = 0.01;
+  hit_later.damper().y0 = 0.5;
+  hit_later.damper().w0 = 1;
   hit_later.until_time = 160;
-  lossless.mass_ratio = 2.041;
-  lossless.wall_stiffness = 235.8;
-  lossless.restitution = 1;
+  lossless.damper().mass_ratio = 2.041;
+  lossless.damper().wall_stiffness = 235.8;
+  lossless.damper().restitution = 1;
   lossless.damping_ratio = 0.1;
-  lossless.y0 = 1;
-  lossless.w0 = 1;
+  lossless.damper().y0 = 1;
+  lossless.damper().w0 = 1;
   lossless.until_time = 6;
   for (const Scene& scene : {struck, overlapping, hit_later, lossless}) {
-    CAPTURE(scene.y0);
-    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damper().y0);
+    CAPTURE(scene.damper().mass_ratio);
     Cem steps;
     steps.locate = true;
     const HalfCycles exact = *simulate(scene, Exact{}, {}).half_cycles;

@@ -18,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 // n peaks, pi apart, that fall as exp(-eta t/2) from `from`.
 Run exponential_decay(int n, double from, double eta) {
   Run run;
-  run.scene.mass_ratio = 0.01;
+  run.scene.damper().mass_ratio = 0.01;
   run.scene.until_amplitude = 0.01;
   HalfCycles& rows = run.half_cycles.emplace();
   for (int i = 0; i < n; ++i) {
@@ -32,7 +32,7 @@ double relative(double value, double to) { return std::abs(value / to - 1); }
 
 Run decay_of(double mass_ratio, double x0, double until) {
   Scene scene;
-  scene.mass_ratio = mass_ratio;
+  scene.damper().mass_ratio = mass_ratio;
   scene.x0 = x0;
   scene.until_time = 1e5;
   scene.until_amplitude = until;

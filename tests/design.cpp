@@ -21,7 +21,7 @@ namespace {
 // A mast: 40 kg on 16 kN/m, 1.6 kg in a box with a clearance of 10 mm.
 Scene mast() {
   Scene scene;
-  scene.mass_ratio = 0.04;
+  scene.damper().mass_ratio = 0.04;
   scene.damping_ratio = 0.002;
   return scene;
 }
@@ -118,9 +118,9 @@ TEST_CASE(
   // fold.
   for (const double nu : {0.002, 0.004}) {
     Scene scene;
-    scene.mass_ratio = nu;
+    scene.damper().mass_ratio = nu;
     scene.x0 = 0.35;
-    scene.w0 = 0.3;
+    scene.damper().w0 = 0.3;
     scene.until_amplitude = 0.1;
     const Run run = simulate(scene, Exact{}, {});
     const HalfCycles& rows = *run.half_cycles;
@@ -166,9 +166,9 @@ TEST_CASE("force and duration of a contact are those of a stepped contact") {
     for (const double nu : {0.01, 0.3})
       for (const double k : {1e4, 1e6}) {
         Scene scene;
-        scene.restitution = e;
-        scene.mass_ratio = nu;
-        scene.wall_stiffness = k;
+        scene.damper().restitution = e;
+        scene.damper().mass_ratio = nu;
+        scene.damper().wall_stiffness = k;
         const double w = 0.7, decrement = -std::log(e);
         const double zeta_m = decrement / std::hypot(pi, decrement);
         const double c = 2 * std::sqrt(k / nu) * zeta_m;
@@ -185,7 +185,7 @@ TEST_CASE("force and duration of a contact are those of a stepped contact") {
           v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
           t += h;
         } while (q > 0 && t < 50 / std::sqrt(k / nu));
-        const ShortContact contact = short_contact(scene, Calibration::fixed_wall, w);
+        const ShortContact contact = short_contact(scene.damper(), Calibration::fixed_wall, w);
         CHECK(contact.force == doctest::Approx(largest).epsilon(1e-6));
         const bool rebounds = zeta_m * std::sqrt(1 + nu) < 1;
         REQUIRE(contact.duration.has_value() == rebounds);
@@ -201,7 +201,7 @@ TEST_CASE(
   record.impacts = record.contacts = true;
   Run run = simulate(scene, Exact{}, record);
   const double speed = std::abs(run.impacts->relative_velocity[0]);
-  const ShortContact contact = short_contact(scene, Calibration::fixed_wall, speed);
+  const ShortContact contact = short_contact(scene.damper(), Calibration::fixed_wall, speed);
   const double begin = run.contacts->begin[0], end = run.contacts->end[0];
   // The primary spring bends the relative motion by its acceleration, at most 6 here: of relative order 6 T /
   // w.
@@ -221,13 +221,13 @@ TEST_CASE(
 
 TEST_CASE("a secondary mass that begins in a wall is pushed by it from the beginning") {
   Scene scene = mast();
-  scene.y0 = 1.002;
-  scene.w0 = 0.5;
+  scene.damper().y0 = 1.002;
+  scene.damper().w0 = 0.5;
   const double zeta_m = -std::log(0.6) / std::hypot(pi, std::log(0.6));
-  CHECK(initial_wall_force(scene, Calibration::fixed_wall) ==
+  CHECK(initial_wall_force(scene.damper(), Calibration::fixed_wall) ==
         doctest::Approx(1e4 * 0.002 + 0.04 * 2 * std::sqrt(1e4 / 0.04) * zeta_m * 0.5).epsilon(1e-6));
-  scene.y0 = 0.5;
-  CHECK(initial_wall_force(scene, Calibration::fixed_wall) == 0);
+  scene.damper().y0 = 0.5;
+  CHECK(initial_wall_force(scene.damper(), Calibration::fixed_wall) == 0);
 }
 
 TEST_CASE("the linear responses are those of a stepped oscillator, and none is larger than the worst") {

@@ -37,7 +37,7 @@ std::vector<std::string> names(const std::vector<Drawing>& drawings) {
 
 TEST_CASE("the closed form drawn for a damped scene is that for zeta = 0 and 2 zeta on top") {
   Scene scene;
-  scene.mass_ratio = 0.03;
+  scene.damper().mass_ratio = 0.03;
   scene.damping_ratio = 0.004;
   scene.until_amplitude = 0.05;
   const std::vector<Drawing> drawings = drawings_of(examined(scene));
@@ -68,7 +68,7 @@ TEST_CASE("a scene in units has its scales in every table, a dimensionless one i
 
 TEST_CASE("what would be too much for a picture is thinned, and it is said how much") {
   Scene scene;
-  scene.restitution = 0.95;
+  scene.damper().restitution = 0.95;
   scene.until_time = 9000;
   const Findings findings = examined(scene);
   REQUIRE(findings.run.impacts->time.size() > 8000);
@@ -133,7 +133,7 @@ TEST_CASE("each motion of the response is drawn once, the closed forms beside it
 
 TEST_CASE("the loss factor is drawn up to impact failure, apart behind it, with the fold") {
   Scene scene;
-  scene.mass_ratio = 0.04;
+  scene.damper().mass_ratio = 0.04;
   scene.until_amplitude = 0.02;
   const Findings findings = examined(scene);
   const std::vector<Drawing> drawings = drawings_of(findings);

@@ -45,21 +45,22 @@ TEST_CASE("whatever sets a scene moving is shifted, and nothing else") {
   resting.x0 = 0;
   resting.until_time = 60;
   struct Release {
-    double Scene::*by;
+    SceneNumber by;
     double size;
   };
-  for (const Release release : {Release{&Scene::v0, 3}, Release{&Scene::w0, -2}, Release{&Scene::y0, -0.25},
-                                Release{&Scene::y0, 1.25}, Release{&Scene::force_amplitude, 0.1}}) {
+  for (const Release release :
+       {Release{&Scene::v0, 3}, Release{&SceneDamper::w0, -2}, Release{&SceneDamper::y0, -0.25},
+        Release{&SceneDamper::y0, 1.25}, Release{&Scene::force_amplitude, 0.1}}) {
     Scene scene = resting;
-    scene.*release.by = release.size;
+    release.by.in(scene) = release.size;
     CAPTURE(release.size);
     const std::vector<Scene> members = ensemble_of(scene);
     for (std::size_t i = 1; i < members.size(); ++i) {
       Scene same = members[i];
-      const double shift = std::abs(same.*release.by - release.size);
+      const double shift = std::abs(release.by.in(same)-release.size);
       CHECK(shift >= 0.2e-9);  // a step, of the least depth in a wall
       CHECK(shift <= 3.01e-6);
-      same.*release.by = release.size;
+      release.by.in(same) = release.size;
       CHECK(same == scene);
     }
     // No two members have the same motion.
@@ -75,7 +76,7 @@ TEST_CASE(
   Scene scene;
   scene.x0 = 0;
   for (const double y0 : {0.0, 0.5, 1.0}) {
-    scene.y0 = y0;
+    scene.damper().y0 = y0;
     for (const Scene& member : ensemble_of(scene)) CHECK(member == scene);
   }
 }
@@ -83,7 +84,7 @@ TEST_CASE(
 TEST_CASE("no member has a number that a scene does not allow") {
   Scene scene;
   scene.x0 = 1e12;
-  scene.w0 = -1e12;
+  scene.damper().w0 = -1e12;
   scene.until_time = 1;
   for (const Scene& member : ensemble_of(scene)) CHECK(problems_of(member).empty());
   CHECK(ensemble_of(scene)[1] != scene);
@@ -127,8 +128,8 @@ TEST_CASE("scenes are run in their order, and the first that is not valid is the
     REQUIRE(runs.size() == scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) CHECK(runs[i].end_time == *scenes[i].until_time);
   }
-  scenes[1].mass_ratio = -1;
-  scenes[3].restitution = 2;
+  scenes[1].damper().mass_ratio = -1;
+  scenes[3].damper().restitution = 2;
   CHECK_THROWS_WITH_AS(simulate_scenes(scenes, Exact{}, Record{}, 3),
                        "mass_ratio: must be >= 1e-09 and <= 1e+06, got -1", std::invalid_argument);
 }

@@ -23,10 +23,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Scene scene_of(reference::Random& random, bool forced) {
   Scene scene;
-  scene.mass_ratio = random.log_uniform(1e-4, 10);
-  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damper().mass_ratio = random.log_uniform(1e-4, 10);
+  scene.damper().restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
   scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 3);
-  scene.wall_stiffness = random.log_uniform(1e2, 1e10);
+  scene.damper().wall_stiffness = random.log_uniform(1e2, 1e10);
   if (forced) {
     scene.force_amplitude = random.log_uniform(1e-3, 10);
     scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
@@ -268,7 +268,7 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     const Scene scene = scene_of(random, n >= 40000);
     const System<double> system(scene);
     Search<double> search{bounded_span(system)};
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
     const double inward = wall == Wall::left ? -1 : 1;
     const double w = random.log_uniform(1e-6, 30) * inward;
@@ -301,9 +301,9 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     const double off = std::abs(found->time - time);
     CHECK(std::abs(found->state.x - expected->state.x) <= 128 * epsilon * speed + speed * off);
     CHECK(std::abs(found->state.v - expected->state.v) <=
-          128 * epsilon * speed + (scene.mass_ratio * std::abs(w) * rate + speed) * off);
+          128 * epsilon * speed + (scene.damper().mass_ratio * std::abs(w) * rate + speed) * off);
     CHECK(std::abs(found->state.w - expected->state.w) <=
-          128 * epsilon * speed * (1 + scene.mass_ratio) + (std::abs(w) * rate + speed) * off);
+          128 * epsilon * speed * (1 + scene.damper().mass_ratio) + (std::abs(w) * rate + speed) * off);
   }
   CHECK(left > 20000);
   CHECK(short_contacts > 5000);
@@ -319,12 +319,12 @@ TEST_CASE_TEMPLATE("a contact that lasts ends when the certified search says, wh
   for (int n = 0; n < 40000; ++n) {
     Scene scene = scene_of(random, forced);
     // The mass comes slowly to a wall that it is mostly pushed to.
-    scene.mass_ratio = random.log_uniform(1e-3, 1);
+    scene.damper().mass_ratio = random.log_uniform(1e-3, 1);
     scene.damping_ratio = random.chance(0.5) ? 0 : random.log_uniform(1e-4, 0.3);
     if (forced && random.chance(0.1)) scene.force_frequency = random.log_uniform(1e-3, 100);
     const System<double, Force> system(scene);
     Search<double> search{bounded_span(system)};
-    const ContactModes<double, Force> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double, Force> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
     const double inward = wall == Wall::left ? -1 : 1;
     const State<double> start{inward * random.uniform(-0.5, 6), random.uniform(-3, 3),
@@ -351,8 +351,8 @@ TEST_CASE_TEMPLATE("a contact that lasts ends when the certified search says, wh
                          scene.force_amplitude * std::min(time, 1.0);
     CHECK(std::abs(end->x - expected->state.x) <= 128 * epsilon * speed + speed * off);
     CHECK(std::abs(end->v - expected->state.v) <= 128 * epsilon * speed + 2 * speed * off);
-    CHECK(std::abs(end->w - expected->state.w) <=
-          128 * epsilon * speed * (1 + scene.mass_ratio) + 2 * (speed + size * walls.stiffness) * off);
+    CHECK(std::abs(end->w - expected->state.w) <= 128 * epsilon * speed * (1 + scene.damper().mass_ratio) +
+                                                      2 * (speed + size * walls.stiffness) * off);
   }
   MESSAGE(told, " told, ", while_it_rings, " while it rings, ", lasting, " lasting");
   CHECK(told > 5000);
@@ -411,12 +411,12 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
   int short_contacts = 0;
   for (int n = 0; n < 20000; ++n) {
     Scene scene;
-    scene.mass_ratio = random.log_uniform(1e-3, 100);
-    scene.restitution = random.uniform(0, 1);
+    scene.damper().mass_ratio = random.log_uniform(1e-3, 100);
+    scene.damper().restitution = random.uniform(0, 1);
     scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 3);
-    scene.wall_stiffness = random.log_uniform(1e-2, 1);
+    scene.damper().wall_stiffness = random.log_uniform(1e-2, 1);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
@@ -496,7 +496,7 @@ TEST_CASE("x crosses zero and turns in a contact where the certified search find
     Scene scene = scene_of(random, false);
     scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-4, 0.3);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     // Pressed on the wall by x, and on its way to zero or to a turn.
     const State<double> start{-random.log_uniform(1e-2, 30), signed_log(random, 1e-2, 30), 0,
                               -random.log_uniform(1e-6, 1)};
@@ -518,7 +518,7 @@ TEST_CASE("x crosses zero and turns in a contact where the certified search find
     const auto slow = contact.slow_at(*expected), fast = contact.fast_at(*expected);
     const double slope = std::abs(contact.derivative_of_x(order, sign, *expected, infinite).whole.g1);
     const double size = std::abs(slow.x) + std::abs(fast.x) + std::abs(slow.v) + std::abs(fast.v) +
-                        std::abs(start.x) + std::abs(start.v) + scene.mass_ratio * std::abs(start.w);
+                        std::abs(start.x) + std::abs(start.v) + scene.damper().mass_ratio * std::abs(start.w);
     CHECK(std::abs(*found - *expected) <= 16 * epsilon * *expected + 64 * epsilon * size / slope);
   }
   CHECK(fell > 2000);
@@ -592,19 +592,19 @@ TEST_CASE("in a short contact under a force x crosses zero and turns where the c
     Scene scene = scene_of(random, true);
     if (random.chance(0.5)) {  // a force as fast as the wall gives way
       scene.force_frequency =
-          random.log_uniform(0.01, 1) * std::sqrt(scene.wall_stiffness / scene.mass_ratio);
+          random.log_uniform(0.01, 1) * std::sqrt(scene.damper().wall_stiffness / scene.damper().mass_ratio);
       scene.force_amplitude = scene.force_frequency * random.log_uniform(1e-2, 30);
     }
     const System<double> system(scene);
     Search<double> search{bounded_span(system)};
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     if (!walls.short_contact || !(walls.x_in_short_contact.end() > 0)) continue;
     const Wall wall = random.chance(0.5) ? Wall::left : Wall::right;
     const double inward = wall == Wall::left ? -1 : 1,
                  begin = random.uniform(0, 100) / std::max(scene.force_frequency, 1.0);
     const double w = random.log_uniform(1e-3, 30) * inward;
     // What the contact changes x' and x by tells how large these are if they vanish in it.
-    const double kick = scene.mass_ratio / (1 + scene.mass_ratio) * std::abs(w),
+    const double kick = scene.damper().mass_ratio / (1 + scene.damper().mass_ratio) * std::abs(w),
                  swing = walls.fast.half_period();
     State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 2) * kick,
                         wall == Wall::left ? 0.0 : 1.0, w};
@@ -687,7 +687,7 @@ TEST_CASE("the derivatives of x in a rebound stay within their bounds") {
     for (int n = 0; n < 4000; ++n) {
       const Scene scene = scene_of(random, forced);
       const System<double> system(scene);
-      const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+      const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
       if (!walls.short_contact) continue;
       State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                           -random.log_uniform(1e-6, 30)};
@@ -722,7 +722,7 @@ TEST_CASE("the series of x in a short contact is its motion") {
   for (int n = 0; n < 4000; ++n) {
     Scene scene = scene_of(random, true);
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const auto& table = walls.x_in_short_contact;
     if (!walls.short_contact || !(table.end() > 0)) continue;
     ++told;
@@ -733,7 +733,8 @@ TEST_CASE("the series of x in a short contact is its motion") {
     const auto phase = walls.forcing.phase(begin);
     const XInShortContact<double> x(table, {start.x, start.v, start.w, f0 * phase.sin, f0 * phase.cos},
                                     table.end());
-    const double speed = std::abs(start.v) + scene.mass_ratio / (1 + scene.mass_ratio) * std::abs(start.w) +
+    const double speed = std::abs(start.v) +
+                         scene.damper().mass_ratio / (1 + scene.damper().mass_ratio) * std::abs(start.w) +
                          (std::abs(start.x) + f0) / rate;
     for (int i = 0; i <= 32; ++i) {
       const double t = i / 32.0 * table.end();

@@ -18,8 +18,7 @@ void finish_and_examine(Recorder* recorder, Run& run) asm("__wrap_" FINISH);
 void finish_and_examine(Recorder* recorder, Run& run) {
   finish(recorder, run);
   if (!doctest::is_running_in_test) return;
-  if (!problems_of(run.scene, DamperList::allowed).empty())
-    return;  // no run of simulate()'s: a recorder's alone, without scene
+  if (!problems_of(run.scene).empty()) return;  // no run of simulate()'s: a recorder's alone, without scene
   for (const Problem& problem : inconsistencies_of(run))
     FAIL_CHECK(std::string(name_of(run.engine)), " run of ", scene_text(run.scene), ": ", problem.field, ": ",
                problem.message);

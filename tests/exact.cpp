@@ -33,8 +33,8 @@ Scene without_contact(double x0, double v0 = 0) {
   Scene scene;
   scene.x0 = x0;
   scene.v0 = v0;
-  scene.y0 = 0.5 - x0;
-  scene.w0 = -v0;
+  scene.damper().y0 = 0.5 - x0;
+  scene.damper().w0 = -v0;
   return scene;
 }
 
@@ -57,20 +57,20 @@ std::vector<Scene> many_scenes() {
     scenes.push_back(scene);
   };
   add([](Scene&) {});
-  add([](Scene& s) { s.mass_ratio = 0.5; });
+  add([](Scene& s) { s.damper().mass_ratio = 0.5; });
   add([](Scene& s) { s.damping_ratio = 0.08; });
   add([](Scene& s) { s.damping_ratio = 5, s.v0 = 40; });
-  add([](Scene& s) { s.restitution = 0; });
-  add([](Scene& s) { s.restitution = 1, s.until_time = 20; });
-  add([](Scene& s) { s.restitution = 0.95, s.wall_stiffness = 1e9; });
+  add([](Scene& s) { s.damper().restitution = 0; });
+  add([](Scene& s) { s.damper().restitution = 1, s.until_time = 20; });
+  add([](Scene& s) { s.damper().restitution = 0.95, s.damper().wall_stiffness = 1e9; });
   add([](Scene& s) { s.force_amplitude = 0.4, s.force_frequency = 0.9, s.x0 = 0; });
   add([](Scene& s) { s.force_amplitude = 0.2, s.x0 = 0.3, s.damping_ratio = 0.02; });
   add([](Scene& s) { s.force_amplitude = 3, s.force_frequency = 2.5, s.damping_ratio = 5; });
-  add([](Scene& s) { s.y0 = -0.01; });
-  add([](Scene& s) { s.y0 = 1.02, s.w0 = 3, s.mass_ratio = 0.1; });
+  add([](Scene& s) { s.damper().y0 = -0.01; });
+  add([](Scene& s) { s.damper().y0 = 1.02, s.damper().w0 = 3, s.damper().mass_ratio = 0.1; });
   add([](Scene& s) { s.x0 = -4; });
-  add([](Scene& s) { s.x0 = 4, s.y0 = 1; });
-  add([](Scene& s) { s.wall_stiffness = 20, s.mass_ratio = 2; });
+  add([](Scene& s) { s.x0 = 4, s.damper().y0 = 1; });
+  add([](Scene& s) { s.damper().wall_stiffness = 20, s.damper().mass_ratio = 2; });
   return scenes;
 }
 
@@ -248,8 +248,8 @@ TEST_CASE("history is sampled where it is asked for, to its last sample, by time
 TEST_CASE("a lossless wall conserves energy") {
   for (double stiffness : {1e4, 1e8}) {
     Scene scene;
-    scene.restitution = 1;
-    scene.wall_stiffness = stiffness;
+    scene.damper().restitution = 1;
+    scene.damper().wall_stiffness = stiffness;
     scene.until_time = 400;
     const Run run = simulate(scene, Exact{}, everything());
     CHECK(run.impacts->time.size() > 500);
@@ -261,8 +261,8 @@ TEST_CASE("a lossless wall conserves energy") {
 
 TEST_CASE("with e = 0 the mass stays at the wall that it meets until the primary mass turns back") {
   Scene scene;
-  scene.restitution = 0;
-  scene.wall_stiffness = 1e8;
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e8;
   scene.until_time = 60;
   const Run run = simulate(scene, Exact{}, everything());
   const std::vector<std::int64_t>& impacts = run.half_cycles->impacts;
@@ -272,7 +272,7 @@ TEST_CASE("with e = 0 the mass stays at the wall that it meets until the primary
     double nearest = 1e9;
     for (double zero : run.half_cycles->zero_crossing)
       nearest = std::min(nearest, std::abs(zero - run.contacts->end[n]));
-    CHECK(nearest < 20 / std::sqrt(scene.wall_stiffness / scene.mass_ratio));
+    CHECK(nearest < 20 / std::sqrt(scene.damper().wall_stiffness / scene.damper().mass_ratio));
   }
 }
 
@@ -281,16 +281,16 @@ TEST_CASE("the mirrored scene runs mirrored") {
   // rounding, carried on by the motion: hence above the chaotic amplitudes, and where stuck phases contract.
   Scene scene;
   scene.x0 = 6;
-  scene.y0 = 0.25;
-  scene.w0 = 0.5;
+  scene.damper().y0 = 0.25;
+  scene.damper().w0 = 0.5;
   scene.damping_ratio = 0.01;
   scene.force_amplitude = 0.05;
   scene.force_frequency = 0.7;
   scene.until_time = 40;
   Scene mirrored = scene;
   mirrored.x0 = -6;
-  mirrored.y0 = 0.75;
-  mirrored.w0 = -0.5;
+  mirrored.damper().y0 = 0.75;
+  mirrored.damper().w0 = -0.5;
   mirrored.force_amplitude = -0.05;
   const Run a = simulate(scene, Exact{}, everything({{0, 40, 401}}));
   const Run b = simulate(mirrored, Exact{}, everything({{0, 40, 401}}));
@@ -310,11 +310,11 @@ TEST_CASE(
     "a primary mass that the first impact sets in motion starts its first half cycle there, either way") {
   Scene scene;
   scene.x0 = 0;
-  scene.y0 = 0.5;
-  scene.w0 = 1;
+  scene.damper().y0 = 0.5;
+  scene.damper().w0 = 1;
   scene.until_time = 20;
   const Run right = simulate(scene, Exact{}, everything());
-  scene.w0 = -1;
+  scene.damper().w0 = -1;
   const Run left = simulate(scene, Exact{}, everything());
   REQUIRE(right.half_cycles->amplitude.size() == left.half_cycles->amplitude.size());
   for (std::size_t n = 0; n < left.half_cycles->amplitude.size(); ++n) {
@@ -324,11 +324,11 @@ TEST_CASE(
 
 TEST_CASE("energy never rises unforced and the energy balance closes, over many scenes") {
   for (const Scene& scene : many_scenes()) {
-    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damper().mass_ratio);
     CAPTURE(scene.damping_ratio);
     CAPTURE(scene.force_amplitude);
-    CAPTURE(scene.y0);
-    CAPTURE(scene.restitution);
+    CAPTURE(scene.damper().y0);
+    CAPTURE(scene.damper().restitution);
     const Run run = simulate(scene, Exact{}, everything({{0, *scene.until_time, 2001}}));
     CHECK(std::abs(run.energy->residual) < 1e-12);
     if (scene.force_amplitude != 0) continue;
@@ -356,14 +356,14 @@ TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and n
   CHECK(run.energy->contact_loss > 0);
   Scene mirrored = pressed;
   mirrored.x0 = 4;
-  mirrored.y0 = 1;
+  mirrored.damper().y0 = 1;
   const Run other = simulate(mirrored, Exact{}, everything());
   CHECK(other.impacts->time.empty());
   REQUIRE(other.contacts->begin.size() == 1);
   CHECK(other.contacts->wall[0] == Wall::right);
   CHECK(other.energy->contact_loss == doctest::Approx(run.energy->contact_loss).epsilon(1e-12));
   Scene overlapping;
-  overlapping.y0 = 1.01;
+  overlapping.damper().y0 = 1.01;
   overlapping.until_time = 0.2;
   run = simulate(overlapping, Exact{}, everything());
   CHECK(run.contacts->wall.at(0) == Wall::right);
@@ -374,16 +374,17 @@ TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and n
 TEST_CASE("a peak that the wall's push brings about is as high as the motion there") {
   // From rest in a very stiff wall: the push moves x on by nu q / (1 + nu), and x turns where it has just
   // died away, 1e-8 later, before the slow mode by itself would.
-  Scene scene{.mass_ratio = 7.8656316044176389e-08,
-              .restitution = 0,
-              .damping_ratio = 0.47923816447962952,
-              .wall_stiffness = 376298906401.30078,
+  Scene scene{.damping_ratio = 0.47923816447962952,
               .x0 = 3.9183899940046203,
-              .y0 = 1.0321419220423089,
-              .until_time = 5};
+              .until_time = 5,
+              .dampers = {{.mass_ratio = 7.8656316044176389e-08,
+                           .restitution = 0,
+                           .wall_stiffness = 376298906401.30078,
+                           .y0 = 1.0321419220423089}}};
   const Run run = simulate(scene, Exact{}, everything({{0, 4e-8, 4001}}));
   const double highest = *std::max_element(run.history->x.begin(), run.history->x.end());
-  CHECK(highest == doctest::Approx(scene.x0 + scene.mass_ratio * (scene.y0 - 1)).epsilon(1e-14));
+  CHECK(highest ==
+        doctest::Approx(scene.x0 + scene.damper().mass_ratio * (scene.damper().y0 - 1)).epsilon(1e-14));
   CHECK(run.half_cycles->amplitude[0] == doctest::Approx(highest).epsilon(4e-16));
 }
 
@@ -445,11 +446,13 @@ TEST_CASE("who asks for the state at a time that was told of gets it, that of th
 }
 
 TEST_CASE("the budget's time ends every scene, sooner where a forcing is fast, unless it is given") {
-  const Run late = simulate({.x0 = 0.01, .y0 = 0.5, .until_time = 1e12}, Exact{}, {.half_cycles = false});
+  const Run late =
+      simulate({.x0 = 0.01, .until_time = 1e12, .dampers = {{.y0 = 0.5}}}, Exact{}, {.half_cycles = false});
   CHECK(late.stop_reason == StopReason::time_budget);
   CHECK(late.end_time == 500'000);
   CHECK(std::get<Exact>(late.engine).budget.max_time == 500'000);
-  Scene fast{.x0 = 0, .y0 = 0.5, .force_amplitude = 1e-3, .force_frequency = 50, .until_time = 1e12};
+  Scene fast{
+      .x0 = 0, .force_amplitude = 1e-3, .force_frequency = 50, .until_time = 1e12, .dampers = {{.y0 = 0.5}}};
   CHECK(simulate(fast, Exact{}, {.half_cycles = false}).end_time == 10'000);
   fast.until_time = 10'000;
   CHECK(simulate(fast, Exact{}, {.half_cycles = false}).stop_reason == StopReason::time);

@@ -20,7 +20,7 @@ namespace {
 // A mast: 40 kg on 16 kN/m, 1.6 kg in a box with a clearance of 10 mm.
 Scene mast(double force, double frequency) {
   Scene scene;
-  scene.mass_ratio = 0.04;
+  scene.damper().mass_ratio = 0.04;
   scene.damping_ratio = 0.002;
   scene.x0 = 0;
   scene.force_amplitude = force;
@@ -65,7 +65,7 @@ ArrivedMotion made_up(double amplitude, double scatter = 0) {
 
 TEST_CASE("a mass that is never struck leaves the closed form of the empty box at every frequency") {
   Scene scene = mast(0.01, 0.9);
-  scene.y0 = 0.5;
+  scene.damper().y0 = 0.5;
   scene.damping_ratio = 0.02;
   const ForcedResponse response = response_of(scene);
   double largest = 0;
@@ -89,7 +89,7 @@ TEST_CASE("a mass that is never struck leaves the closed form of the empty box a
 TEST_CASE("frequencies ascend, lie about both resonances, and have the scene's own among them") {
   for (const double given : {0.01, 0.98, 1.0, 1.0001, 3.0}) {
     Scene scene = mast(0.01, given);
-    scene.y0 = 0.5;
+    scene.damper().y0 = 0.5;
     scene.damping_ratio = 0.1;
     const ForcedResponse response = response_of(scene);
     const auto frequencies = [&](std::size_t i) { return response.points[i].frequency; };
@@ -237,7 +237,7 @@ TEST_CASE(
     "without viscous damping a force that impacts cannot hold leads to no steady motion, and that is seen") {
   Scene scene;
   scene.x0 = 0;
-  scene.force_amplitude = 2.5 * scene.mass_ratio;
+  scene.force_amplitude = 2.5 * scene.damper().mass_ratio;
   const ForcedResponse response = response_of(scene);
   const auto largest = response.largest();
   REQUIRE(largest);

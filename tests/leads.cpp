@@ -6,6 +6,7 @@
 
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/simulate.hpp"
+#include "list_of_one.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;
@@ -17,17 +18,6 @@ using Walls = std::vector<PushedWall<double>>;
 Lead<double> lead_at(const Forcing<double>& force, const SinCos<double>& phase, double zeta, double x,
                      double v, const Walls& walls = {}) {
   return lead_of_x<double>(2 * zeta, 1.0, force, phase, x, v, walls);
-}
-
-Scene as_list(Scene scene) {
-  scene.dampers = {{.mass_ratio = scene.mass_ratio,
-                    .restitution = scene.restitution,
-                    .wall_stiffness = scene.wall_stiffness,
-                    .y0 = scene.y0}};
-  const Scene defaults;
-  scene.mass_ratio = defaults.mass_ratio, scene.restitution = defaults.restitution;
-  scene.wall_stiffness = defaults.wall_stiffness, scene.y0 = defaults.y0;
-  return scene;
 }
 
 Run run_of(const Scene& scene, const Engine& engine) {
@@ -81,23 +71,23 @@ TEST_CASE(
   reference::Random random(2);
   for (int i = 0; i < 60; ++i) {
     Scene scene;
-    scene.mass_ratio = random.log_uniform(1e-3, 10);
-    scene.restitution = i % 4 == 0 ? 0 : random.uniform(0.1, 0.9);
+    scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
+    scene.damper().restitution = i % 4 == 0 ? 0 : random.uniform(0.1, 0.9);
     scene.damping_ratio = i % 3 == 0 ? 0 : random.log_uniform(1e-3, 2);
-    scene.wall_stiffness = random.log_uniform(1e2, 1e8);
+    scene.damper().wall_stiffness = random.log_uniform(1e2, 1e8);
     scene.force_amplitude = random.log_uniform(0.1, 10) * random.sign();
     scene.force_frequency = random.log_uniform(0.2, 2);
     scene.v0 = scene.force_amplitude * scene.force_frequency;
     scene.x0 = -2 * scene.damping_ratio * scene.v0;
-    scene.y0 = i % 2;
+    scene.damper().y0 = i % 2;
     scene.until_time = 3 / scene.force_frequency;
     // y^(5) = f0 omega_f^3.
-    const bool sticks = (scene.y0 == 0) == (scene.force_amplitude < 0);
+    const bool sticks = (scene.damper().y0 == 0) == (scene.force_amplitude < 0);
     std::array<double, 2> parts{};  // when the mass leaves the wall, with either kind
     for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
       CAPTURE(i);
       CAPTURE(name_of(engine));
-      const Run one = run_of(scene, engine), list = run_of(as_list(scene), engine);
+      const Run one = run_of(scene, engine), list = run_of(list_of_one(scene), engine);
       for (const Run* run : {&one, &list}) {
         CHECK(run->stop_reason == StopReason::time);
         CHECK(run->impacts->time.size() < 200);
@@ -116,14 +106,15 @@ TEST_CASE(
         parts[std::holds_alternative<Exact>(engine)] = one.contacts->end[0];
       }
     }
-    if (sticks && scene.wall_stiffness > 1e4 * scene.mass_ratio)
-      CHECK(std::fabs(parts[0] - parts[1]) < 20 * std::sqrt(scene.mass_ratio / scene.wall_stiffness));
+    if (sticks && scene.damper().wall_stiffness > 1e4 * scene.damper().mass_ratio)
+      CHECK(std::fabs(parts[0] - parts[1]) <
+            20 * std::sqrt(scene.damper().mass_ratio / scene.damper().wall_stiffness));
   }
 }
 
 TEST_CASE("the paper's stuck regime begins with a mass that the fifth derivative presses to its wall") {
   Scene scene;
-  scene.x0 = 0, scene.v0 = 1, scene.y0 = 1, scene.mass_ratio = 1;
+  scene.x0 = 0, scene.v0 = 1, scene.damper().y0 = 1, scene.damper().mass_ratio = 1;
   scene.force_amplitude = scene.force_frequency = 1;
   scene.until_time = 1;
   Cem options;

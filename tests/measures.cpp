@@ -160,9 +160,9 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
   // contact beside that of a free mass, x - x(0) - v(0) t. The wall's damper adds 2/omega_m, omega_m = 2000,
   // in proportion.
   Scene scene;
-  scene.mass_ratio = 0.25;
-  scene.restitution = 0;
-  scene.wall_stiffness = 1e6;
+  scene.damper().mass_ratio = 0.25;
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e6;
   scene.force_amplitude = 2;
   scene.force_frequency = 0.4;
   scene.until_time = 20;
@@ -175,7 +175,8 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
   for (std::size_t c = 0; c < run.contacts->begin.size(); ++c) {
     const auto overlap = [&](std::size_t i) {
       const double force = scene.force_amplitude * std::sin(scene.force_frequency * h.time[i]);
-      return scene.mass_ratio * (force - h.x[i]) / (1 + scene.mass_ratio) / scene.wall_stiffness;
+      return scene.damper().mass_ratio * (force - h.x[i]) / (1 + scene.damper().mass_ratio) /
+             scene.damper().wall_stiffness;
     };
     std::size_t begin = 0;
     for (std::size_t i = 1; i + 1 < h.time.size(); ++i) {
@@ -291,7 +292,7 @@ TEST_CASE("a further run is read from its files, and without a folder simulated 
     CHECK(std::holds_alternative<Restitution>(other.engine));
     CHECK(one.half_cycles->amplitude == other.half_cycles->amplitude);
   }
-  CHECK(simulated.file("short.stiff").scene.wall_stiffness == 1e5);
+  CHECK(simulated.file("short.stiff").scene.damper().wall_stiffness == 1e5);
   CHECK(simulated.file("short.stiff").scene.until_amplitude == 5.7);
   CHECK(simulated.file("short.stiff").engine == files.first.engine);
   // Further runs are no part of whose verdicts these are.
@@ -311,9 +312,9 @@ TEST_CASE("a further run is read from its files, and without a folder simulated 
 
   // Of another scene there is another further run.
   Run other = files.first;
-  other.scene.restitution = 0.7;
+  other.scene.damper().restitution = 0.7;
   simulated.put("short", other);
-  CHECK(simulated.file("short.rigid").scene.restitution == 0.7);
+  CHECK(simulated.file("short.rigid").scene.damper().restitution == 0.7);
   CHECK(simulated.file("short.rigid").scene.x0 == 6.5);
 }
 

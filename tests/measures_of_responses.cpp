@@ -33,7 +33,7 @@ Run decay() {
   Scene scene;
   scene.until_time = 0.1;
   Run run = simulate(scene, Exact{}, Record{});
-  run.scene.mass_ratio = nu;
+  run.scene.damper().mass_ratio = nu;
   HalfCycles& half_cycles = run.half_cycles.emplace();
   for (int i = 0; i < rows; ++i) {
     half_cycles.zero_crossing.push_back((i + 0.5) * pi);
@@ -260,8 +260,8 @@ TEST_CASE("points of a map with one impact on each wall in a period are counted,
 TEST_CASE("two impacts in a period are held against the power of the closed form") {
   // Undamped, M13.18.
   SweepResponse sweep;
-  sweep.scene.mass_ratio = 0.1;
-  sweep.scene.restitution = 0.5;
+  sweep.scene.damper().mass_ratio = 0.1;
+  sweep.scene.damper().restitution = 0.5;
   sweep.scene.force_amplitude = 0.08;
   sweep.axis = {&Scene::force_frequency, 0.9, 1, 3};
   const auto powers = [](double omega) {

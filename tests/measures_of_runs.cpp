@@ -91,7 +91,7 @@ double measured(const std::string& name, std::map<std::string, double> numbers,
 TEST_CASE("measures of the loss factor are what they are for amplitudes that fall evenly") {
   // A = 6 - 0.05 i at t = i pi: eta = -2 A'/A = (0.1/pi) / A exactly, at A = 5.75, 5.70, ..., 0.3.
   const Run even = linear_decay(120, 6, 0.05);
-  const double c = 0.1 / pi, nu = even.scene.mass_ratio;
+  const double c = 0.1 / pi, nu = even.scene.damper().mass_ratio;
   const auto of = [&](const std::string& name, const std::map<std::string, double>& numbers) {
     return measured(name, numbers, {even});
   };
@@ -102,7 +102,7 @@ TEST_CASE("measures of the loss factor are what they are for amplitudes that fal
   const Run faster = decay(120, [](int i) { return std::sqrt(36 - 0.25 * i); });
   for (const char* first : {"", "_with_first"}) {
     const double largest = std::sqrt(36 - 0.25 * (*first ? 5 : 6)),
-                 product = 0.25 / pi / faster.scene.mass_ratio;
+                 product = 0.25 / pi / faster.scene.damper().mass_ratio;
     const auto fast = [&](const std::string& name) {
       return measured(name, {{"from", 2.99}, {"to", 6}}, {faster});
     };
@@ -128,7 +128,7 @@ TEST_CASE("measures of the loss factor are what they are for amplitudes that fal
         doctest::Approx(4 / 2.5));
   // A eta_s in proportion to nu^1/2.
   Run heavy = linear_decay(60, 6, 0.1);
-  heavy.scene.mass_ratio = 4 * nu;
+  heavy.scene.damper().mass_ratio = 4 * nu;
   CHECK(measured("mass_ratio_exponent", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(0.5));
   CHECK(measured("product_ratio", {{"from", 1}, {"to", 5}}, {even, heavy}) == doctest::Approx(2));
   // A eta is twice as much: the power 1/2 of 4, whatever mass ratio the scene names.
@@ -177,8 +177,8 @@ TEST_CASE("measures of the release are what they are, of the scene that is farth
 
 TEST_CASE("what the impacts take out is compared with what the amplitudes lose") {
   Run run = linear_decay(21, 6, 0.25);  // from 6 to 1: (36 - 1) / 2
-  run.scene.mass_ratio = 0.25;
-  run.scene.restitution = 0.5;
+  run.scene.damper().mass_ratio = 0.25;
+  run.scene.damper().restitution = 0.5;
   add_impact(run, 1, 30, 3);
   add_impact(run, 2, 30, -4);
   const double lost = 0.25 * 0.75 / 2.5 * 25;
@@ -251,15 +251,15 @@ TEST_CASE("a wall gives way as a damped spring struck at the fastest impact does
   for (const double w0 : {-2.0, 3.0}) {
     Scene scene;
     scene.x0 = 0;
-    scene.y0 = 0.5;
-    scene.w0 = w0;
+    scene.damper().y0 = 0.5;
+    scene.damper().w0 = w0;
     scene.until_time = 0.4;
     Record record;
     record.impacts = true;
     const Run run = simulate(scene, Exact{}, record);
-    const double nu = scene.mass_ratio, decrement = -std::log(scene.restitution);
+    const double nu = scene.damper().mass_ratio, decrement = -std::log(scene.damper().restitution);
     const double z = decrement / std::hypot(pi, decrement) * std::sqrt(1 + nu);
-    const double omega = std::sqrt((1 + nu) * scene.wall_stiffness / nu);
+    const double omega = std::sqrt((1 + nu) * scene.damper().wall_stiffness / nu);
     // The samples, two hundred in a contact, miss the deepest point by less than 1e-4 of it.
     CHECK(measured("wall_overlap", {}, {run}) ==
           doctest::Approx(std::abs(w0) / omega * std::exp(-z * std::acos(z) / std::sqrt(1 - z * z)))
@@ -338,8 +338,8 @@ TEST_CASE("curves collapse as far as their ordinates agree") {
   Run one = linear_decay(120, 6, 0.05), other = slower(one, 1.25);
   one.scene.damping_ratio = 0.001;
   other.scene.damping_ratio = 0.002;
-  other.scene.mass_ratio = 0.03;
-  other.scene.restitution = 0.5;
+  other.scene.damper().mass_ratio = 0.03;
+  other.scene.damper().restitution = 0.5;
   const double eta = 0.1 / pi / 3, its = eta / 1.25;
   const auto of = [&](const std::string& name) {
     return measured(name, {{"from", 2.99}, {"to", 3.01}}, {one, other});
@@ -390,8 +390,8 @@ TEST_CASE("a first missed impact is put in proportion to another scene's") {
 
 TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") {
   Scene scene;
-  scene.mass_ratio = 0.1;
-  scene.wall_stiffness = 100;
+  scene.damper().mass_ratio = 0.1;
+  scene.damper().wall_stiffness = 100;
   scene.until_time = 30;
   const Run exact = simulate(scene, Exact{}, Record{});
   const auto error = [&](double step, bool locate) {
@@ -401,7 +401,7 @@ TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") 
       sum += std::abs(run.half_cycles->amplitude.at(row) - exact.half_cycles->amplitude[row]);
     return sum;
   };
-  const double contact = pi / std::sqrt(scene.wall_stiffness * 1.1 / 0.1);
+  const double contact = pi / std::sqrt(scene.damper().wall_stiffness * 1.1 / 0.1);
   for (const bool locate : {false, true}) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (int i = 0; i < 32; ++i) {
@@ -417,13 +417,13 @@ TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") 
 
 TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1/(1 - e)") {
   Scene scene;
-  scene.mass_ratio = 0.02;
+  scene.damper().mass_ratio = 0.02;
   scene.until_time = 1;
   const double grows = measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})});
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const double e : {0.4, 0.6, 0.8, 0.9}) {
     Scene other = scene;
-    other.restitution = e;
+    other.damper().restitution = e;
     other.x0 = 1.1 * bounce_down_end(e);
     other.until_amplitude.reset();
     other.until_time = 20;
@@ -434,13 +434,13 @@ TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1
     sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   CHECK(grows == doctest::Approx((4 * sxy - sx * sy) / (4 * sxx - sx * sx)).epsilon(1e-9));
-  scene.mass_ratio = 100;  // stuck, a half cycle takes ten times as long
+  scene.damper().mass_ratio = 100;  // stuck, a half cycle takes ten times as long
   CHECK(std::isnan(measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})})));
 }
 
 TEST_CASE("the paper's stuck regime saves the steps that a run to the same amplitude can do without") {
   Scene scene;
-  scene.mass_ratio = 0.05;
+  scene.damper().mass_ratio = 0.05;
   scene.until_amplitude = 1;
   const Run file = simulate(scene, Exact{}, {true, true, true});
   const double speed = 0.4;
@@ -486,7 +486,7 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   set.end_time = *(set.scene.until_time = 300 * pi);
   set.half_cycles->dampers = {{set.half_cycles->impacts}, {set.half_cycles->impacts}};
   Run alone = decay(800, [](int i) { return 7 * std::exp(-0.01 * i * pi / 2); });
-  alone.scene.mass_ratio = 0.02;
+  alone.scene.damper().mass_ratio = 0.02;
   alone.scene.until_amplitude = 0.01;
   // All bins alike.
   const Spread excess = spread_measured("from_sum", all, {set, alone});

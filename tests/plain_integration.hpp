@@ -27,7 +27,7 @@ class PlainIntegration {
   // Rigid walls are those of the restitution engine. Samples the history `samples` times from 0 to
   // until_time.
   PlainIntegration(const Scene& scene, bool rigid, int samples) : scene_(scene), rigid_(rigid) {
-    const double decrement = -std::log(scene.restitution);
+    const double decrement = -std::log(scene.damper().restitution);
     wall_damping_ = 2 * std::sqrt(k_over_nu()) * decrement / std::hypot(std::numbers::pi, decrement);
     run_.scene = scene;
     run_.half_cycles.emplace(), run_.impacts.emplace(), run_.contacts.emplace();
@@ -48,12 +48,12 @@ class PlainIntegration {
   enum class Regime { flight, contact, stuck };
   using State = std::array<double, 7>;  // x, v, y, w; viscous work, work of the force, loss in the wall
 
-  double k_over_nu() const { return scene_.wall_stiffness / scene_.mass_ratio; }
+  double k_over_nu() const { return scene_.damper().wall_stiffness / scene_.damper().mass_ratio; }
   double position() const { return wall_ == Wall::left ? 0 : 1; }
   double inward() const { return wall_ == Wall::left ? -1 : 1; }
 
   State rates(double t, const State& s) const {
-    const double nu = scene_.mass_ratio, zeta = scene_.damping_ratio;
+    const double nu = scene_.damper().mass_ratio, zeta = scene_.damping_ratio;
     const double force = scene_.force_amplitude * std::sin(scene_.force_frequency * t);
     double acceleration = force - 2 * zeta * s[1] - s[0], relative = 0, lost = 0;
     if (regime_ == Regime::stuck) {
@@ -97,7 +97,7 @@ class PlainIntegration {
   }
 
   void begin() {
-    now_ = {scene_.x0, scene_.v0, scene_.y0, scene_.w0, 0, 0, 0};
+    now_ = {scene_.x0, scene_.v0, scene_.damper().y0, scene_.damper().w0, 0, 0, 0};
     wall_ = now_[2] <= 0.5 ? Wall::left : Wall::right;
     const double outward_pull = inward() * rates(0, now_)[3];
     const bool inside = now_[2] < 0 || now_[2] > 1;
@@ -107,7 +107,7 @@ class PlainIntegration {
     peak_ = std::abs(now_[0]);
   }
   void advance(double until) {
-    const double rate = std::sqrt(k_over_nu() * (1 + scene_.mass_ratio));
+    const double rate = std::sqrt(k_over_nu() * (1 + scene_.damper().mass_ratio));
     double h = std::min(regime_ == Regime::contact ? 0.01 / rate : 1e-3, until - time_);
     if (regime_ == Regime::flight && time_ == regime_since_ &&
         now_[3] != 0)  // or it may be back at the wall within the step
@@ -149,13 +149,13 @@ class PlainIntegration {
       run_.impacts->relative_velocity.push_back(now_[3]);
       run_.impacts->displacement.push_back(now_[0]);
       if (rigid_) {
-        const double nu = scene_.mass_ratio, before = energy().kinetic;
-        now_[1] += nu * (1 + scene_.restitution) * now_[3] / (1 + nu);
-        now_[3] *= -scene_.restitution;
+        const double nu = scene_.damper().mass_ratio, before = energy().kinetic;
+        now_[1] += nu * (1 + scene_.damper().restitution) * now_[3] / (1 + nu);
+        now_[3] *= -scene_.damper().restitution;
         run_.energy->impact_loss.push_back(before - energy().kinetic);
         const double push = inward() * rates(time_, now_)[3];
         if (push > 0 && std::abs(now_[3]) < slowest) {
-          pressed_from_ = time_ + 2 * std::abs(now_[3]) / (push * (1 - scene_.restitution));
+          pressed_from_ = time_ + 2 * std::abs(now_[3]) / (push * (1 - scene_.damper().restitution));
           const double apart = energy().kinetic;
           now_[1] += nu * now_[3] / (1 + nu);
           now_[3] = 0;
@@ -187,9 +187,9 @@ class PlainIntegration {
   }
   Energy energy() const {
     const auto& [x, v, y, w, viscous, forcing, lost] = now_;
-    const double nu = scene_.mass_ratio, depth = y < 0 ? y : y > 1 ? y - 1 : 0;
-    return {(v * v + nu * (v + w) * (v + w)) / 2, x * x / 2, scene_.wall_stiffness * depth * depth / 2,
-            (v * v + nu * (v * v + w * w) + x * x) / 2};
+    const double nu = scene_.damper().mass_ratio, depth = y < 0 ? y : y > 1 ? y - 1 : 0;
+    return {(v * v + nu * (v + w) * (v + w)) / 2, x * x / 2,
+            scene_.damper().wall_stiffness * depth * depth / 2, (v * v + nu * (v * v + w * w) + x * x) / 2};
   }
   void sample() {
     auto& history = *run_.history;

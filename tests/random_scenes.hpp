@@ -16,21 +16,21 @@ namespace random_scenes {
 inline impact_damper::Scene scene_of(std::uint64_t seed) {
   reference::Random random(seed);
   impact_damper::Scene scene;
-  scene.mass_ratio = random.log_uniform(1e-8, 1e3);
-  scene.restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damper().mass_ratio = random.log_uniform(1e-8, 1e3);
+  scene.damper().restitution = random.chance(0.2) ? double(random.chance(0.5)) : random.uniform(0, 1);
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-4, 10);
-  scene.wall_stiffness = random.log_uniform(1, 1e12);
+  scene.damper().wall_stiffness = random.log_uniform(1, 1e12);
   const auto motion = [&] { return random.chance(0.3) ? 0 : random.log_uniform(1e-8, 1e8) * random.sign(); };
   scene.x0 = random.chance(0.5) ? random.uniform(-10, 10) : motion();
   scene.v0 = random.chance(0.7) ? 0 : motion();
-  scene.y0 = random.chance(0.5) ? double(random.chance(0.5)) : random.uniform(0, 1);
-  scene.w0 = random.chance(0.6) ? 0 : motion();
+  scene.damper().y0 = random.chance(0.5) ? double(random.chance(0.5)) : random.uniform(0, 1);
+  scene.damper().w0 = random.chance(0.6) ? 0 : motion();
   if (random.chance(0.4)) {
     scene.force_amplitude = random.log_uniform(1e-3, 100);
     scene.force_frequency = random.chance(0.4) ? 1 : random.log_uniform(0.05, 20);
   }
   if (random.chance(0.15))
-    scene.y0 = random.chance(0.5) ? -random.log_uniform(1e-9, 1) : 1 + random.log_uniform(1e-9, 1);
+    scene.damper().y0 = random.chance(0.5) ? -random.log_uniform(1e-9, 1) : 1 + random.log_uniform(1e-9, 1);
   scene.until_time = random.uniform(1, 50);
   return scene;
 }
@@ -40,7 +40,7 @@ inline std::string text_of(const impact_damper::Scene& scene) {
   std::ostringstream text;
   text.precision(17);
   for (const impact_damper::SceneField& field : impact_damper::scene_fields)
-    text << '"' << field.name << "\": " << scene.*field.member << ", ";
+    text << '"' << field.name << "\": " << field.number.in(scene) << ", ";
   text << "\"until_time\": " << scene.until_time.value_or(0);
   return text.str();
 }

@@ -22,18 +22,18 @@ const Record everything{true, true, true, true, {{0, duration, samples}}, {}};
 // that is in a contact, with impacts before the first zero crossing and behind the last. Short of where the
 // motion amplifies errors more than a hundredfold.
 Scene eventful(bool rigid) {
-  return {.mass_ratio = 0.3,
-          .restitution = 0.7,
-          .damping_ratio = 0.05,
-          .wall_stiffness = 300,
+  return {.damping_ratio = 0.05,
           .x0 = -2,
           .v0 = 0.3,
-          .y0 = rigid ? 0 : -0.01,
-          .w0 = rigid ? 0 : 0.1,
           .force_amplitude = 0.5,
           .force_frequency = 0.7,
           .until_time = duration,
-          .until_amplitude = 0.01};
+          .until_amplitude = 0.01,
+          .dampers = {{.mass_ratio = 0.3,
+                       .restitution = 0.7,
+                       .wall_stiffness = 300,
+                       .y0 = rigid ? 0 : -0.01,
+                       .w0 = rigid ? 0 : 0.1}}};
 }
 constexpr Budget budget{.max_impacts = 1000, .max_half_cycles = 1001, .max_time = 1002};
 
@@ -84,7 +84,7 @@ TEST_CASE(
     "all that the restitution engine records of a mass that bounces to rest is what a plain integration "
     "finds") {
   Scene scene = eventful(true);
-  scene.restitution = 0.4;
+  scene.damper().restitution = 0.4;
   scene.x0 = 7;
   // The tolerance is such that the engine steps through all the impacts that the plain integration does.
   const Run run = simulate(scene, Restitution{.accumulation_tolerance = 1e-10}, everything);
@@ -94,7 +94,7 @@ TEST_CASE(
 
 TEST_CASE("a bounce-down's loss is the energy that was left after the last impact that is recorded") {
   Scene scene = eventful(true);
-  scene.restitution = 0.4;
+  scene.damper().restitution = 0.4;
   scene.x0 = 7;
   const Run run = simulate(scene, Restitution{}, everything);
   double loss = 0;
@@ -102,8 +102,8 @@ TEST_CASE("a bounce-down's loss is the energy that was left after the last impac
     std::size_t i = 0;
     while (i < run.impacts->time.size() && run.impacts->time[i] <= begin) ++i;
     REQUIRE(i > 0);
-    const double w = scene.restitution * run.impacts->relative_velocity[i - 1];
-    loss += scene.mass_ratio * w * w / (2 * (1 + scene.mass_ratio));
+    const double w = scene.damper().restitution * run.impacts->relative_velocity[i - 1];
+    loss += scene.damper().mass_ratio * w * w / (2 * (1 + scene.damper().mass_ratio));
   }
   CHECK(run.energy->bounce_downs == std::int64_t(run.contacts->begin.size()));
   CHECK(run.energy->bounce_down_loss == doctest::Approx(loss).epsilon(1e-12).scale(0));
@@ -123,8 +123,10 @@ TEST_CASE("all that the component element method records is what a plain integra
 TEST_CASE("the residual is what the recorded terms leave open, in units of the energy that was handled") {
   // Unforced that is the initial energy. Long runs of lossless impacts, so that rounding errors add up to
   // more than a hundred times those of this sum's own.
-  const Scene one{
-      .mass_ratio = 0.02, .restitution = 1, .damping_ratio = 1e-4, .x0 = 3.59, .y0 = 0.2, .until_time = 3000};
+  const Scene one{.damping_ratio = 1e-4,
+                  .x0 = 3.59,
+                  .until_time = 3000,
+                  .dampers = {{.mass_ratio = 0.02, .restitution = 1, .y0 = 0.2}}};
   const Scene several{.damping_ratio = 1e-4,
                       .x0 = 3.59,
                       .until_time = 3000,
@@ -144,7 +146,7 @@ TEST_CASE("the residual is what the recorded terms leave open, in units of the e
       CHECK(std::abs(energy.residual) > 100 * rounding);
       CHECK(std::abs(energy.residual - open / energy.initial.total()) < rounding);
     }
-    const Scene at_rest{.x0 = 0, .y0 = 0.5, .until_time = 1};  // no energy is handled
+    const Scene at_rest{.x0 = 0, .until_time = 1, .dampers = {{.y0 = 0.5}}};  // no energy is handled
     CHECK(simulate(at_rest, engine, {.energy = true}).energy->residual == 0);
   }
 }

@@ -45,7 +45,7 @@ Run rows_sticking(std::size_t count, const std::vector<std::size_t>& rows) {
 
 TEST_CASE("a compliant contact is stuck once it outlasts a full period, a rigid one always") {
   Run run = rows_with_impacts({1, 1});
-  const double nominal = nominal_contact_time(run.scene);
+  const double nominal = nominal_contact_time(run.scene.damper());
   run.contacts = Contacts{{0.1, 0.3, 1.2},
                           {0.1 + nominal, 0.3 + 1.99 * nominal, 1.2 + 2.01 * nominal},
                           {Wall::left, Wall::right, Wall::left},

@@ -37,19 +37,19 @@ Scene scene_until(double time, Change&& change) {
 std::vector<Scene> many_scenes() {
   return {
       scene_until(60, [](Scene&) {}),
-      scene_until(60, [](Scene& s) { s.mass_ratio = 0.5; }),
+      scene_until(60, [](Scene& s) { s.damper().mass_ratio = 0.5; }),
       scene_until(60, [](Scene& s) { s.x0 = 0.3; }),
       scene_until(60, [](Scene& s) { s.x0 = 1e6; }),
       scene_until(60, [](Scene& s) { s.damping_ratio = 0.08; }),
       scene_until(60, [](Scene& s) { s.damping_ratio = 5, s.v0 = 40; }),
-      scene_until(60, [](Scene& s) { s.restitution = 0; }),
-      scene_until(60, [](Scene& s) { s.restitution = 0.95; }),
+      scene_until(60, [](Scene& s) { s.damper().restitution = 0; }),
+      scene_until(60, [](Scene& s) { s.damper().restitution = 0.95; }),
       scene_until(60, [](Scene& s) { s.force_amplitude = 0.4, s.force_frequency = 0.9, s.x0 = 0; }),
       scene_until(60, [](Scene& s) { s.force_amplitude = 0.2, s.x0 = 0.3, s.damping_ratio = 0.02; }),
       scene_until(60, [](Scene& s) { s.force_amplitude = 3, s.force_frequency = 2.5, s.damping_ratio = 5; }),
       scene_until(60, [](Scene& s) { s.x0 = -4; }),
-      scene_until(60, [](Scene& s) { s.x0 = 4, s.y0 = 1; }),
-      scene_until(60, [](Scene& s) { s.x0 = 10, s.mass_ratio = 20; })};
+      scene_until(60, [](Scene& s) { s.x0 = 4, s.damper().y0 = 1; }),
+      scene_until(60, [](Scene& s) { s.x0 = 10, s.damper().mass_ratio = 20; })};
 }
 
 }  // namespace
@@ -60,11 +60,11 @@ TEST_CASE(
   for (double nu : {1e-6, 0.02, 1.0, 40.0}) {
     for (double e : {0.0, 0.3, 0.6, 1.0}) {
       const Scene scene = scene_until(0.5 + 1e-9, [&](Scene& s) {
-        s.mass_ratio = nu;
-        s.restitution = e;
+        s.damper().mass_ratio = nu;
+        s.damper().restitution = e;
         s.x0 = 0;
-        s.y0 = 0.5;
-        s.w0 = 1;
+        s.damper().y0 = 0.5;
+        s.damper().w0 = 1;
       });
       // The primary mass rests until the impact at t = 0.5.
       const Run run = simulate(scene, Restitution{}, everything({{0.4, 0.5 + 1e-9, 2}}));
@@ -85,10 +85,10 @@ TEST_CASE("bouncing to rest ends after 2 w / (a (1 - e)) under a constant relati
     // x stays near -1e4 for the short while that the bouncing takes: y'' = x, a = 1e4.
     const double a = 1e4, w = 0.3;
     const Scene scene = scene_until(0.01, [&](Scene& s) {
-      s.mass_ratio = 1e-9;
-      s.restitution = e;
+      s.damper().mass_ratio = 1e-9;
+      s.damper().restitution = e;
       s.x0 = -a;
-      s.w0 = w;
+      s.damper().w0 = w;
     });
     const Run run = simulate(scene, Restitution{}, everything());
     const double end = 2 * w / (a * (1 - e));
@@ -139,10 +139,10 @@ TEST_CASE("where x'' varies the bounces accumulate where a sum of stepped bounce
     CAPTURE(velocity);
     const auto accumulation = [&](double mass_ratio) {
       const Scene scene = scene_until(1.4, [&](Scene& s) {
-        s.mass_ratio = mass_ratio;
-        s.restitution = e;
+        s.damper().mass_ratio = mass_ratio;
+        s.damper().restitution = e;
         s.x0 = x0;
-        s.w0 = velocity;
+        s.damper().w0 = velocity;
       });
       const Run run = simulate(scene, Restitution{}, everything());
       REQUIRE(run.contacts->begin.size() == 1);
@@ -204,7 +204,7 @@ TEST_CASE("nothing jumps where a stuck mass is released") {
 
 TEST_CASE("0 <= y <= 1 always, energy never rises unforced, and the energy balance closes") {
   for (const Scene& scene : many_scenes()) {
-    CAPTURE(scene.mass_ratio);
+    CAPTURE(scene.damper().mass_ratio);
     CAPTURE(scene.damping_ratio);
     CAPTURE(scene.force_amplitude);
     CAPTURE(scene.x0);
@@ -231,8 +231,8 @@ TEST_CASE("bounce-down that ends stuck costs w^2 / (pi A^2) per radian and mass 
   for (double amplitude : {1.0, 7.5, 100.0}) {
     const double nu = 1e-7;
     const Scene scene = scene_until(30, [&](Scene& s) {
-      s.mass_ratio = nu;
-      s.restitution = 0;
+      s.damper().mass_ratio = nu;
+      s.damper().restitution = 0;
       s.x0 = amplitude;
     });
     const Run run = simulate(scene, Restitution{}, everything());
@@ -253,8 +253,8 @@ TEST_CASE("bounce-down that ends stuck costs w^2 / (pi A^2) per radian and mass 
 
 TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
   Scene scene;
-  scene.restitution = 1;
-  scene.mass_ratio = 0.3;
+  scene.damper().restitution = 1;
+  scene.damper().mass_ratio = 0.3;
   scene.x0 = 2;
   scene.until_time = 1e7;
   Restitution options;
@@ -288,8 +288,8 @@ TEST_CASE("the accumulation tolerance does not show in the motion") {
 TEST_CASE("the mirrored scene runs mirrored, and what is recorded never changes the motion") {
   for (Scene scene : many_scenes()) {
     scene.until_time = 12;
-    scene.w0 = 0.1;
-    scene.y0 = 0.25;
+    scene.damper().w0 = 0.1;
+    scene.damper().y0 = 0.25;
     const Run run = simulate(scene, Restitution{}, everything({{0, 12, 500}}));
     const Run bare = simulate(scene, Restitution{}, {});
     CHECK(run.half_cycles->amplitude == bare.half_cycles->amplitude);
@@ -297,8 +297,8 @@ TEST_CASE("the mirrored scene runs mirrored, and what is recorded never changes 
     Scene mirrored = scene;
     mirrored.x0 *= -1;
     mirrored.v0 *= -1;
-    mirrored.y0 = 1 - scene.y0;
-    mirrored.w0 *= -1;
+    mirrored.damper().y0 = 1 - scene.damper().y0;
+    mirrored.damper().w0 *= -1;
     mirrored.force_amplitude *= -1;
     const Run other = simulate(mirrored, Restitution{}, everything());
     // 1 - y rounds differently from y: equal to rounding, which a few impacts amplify.
@@ -331,14 +331,14 @@ TEST_CASE("the forced solution with two symmetric impacts per cycle holds for te
   while (since < 0) since += period, side = -side;
   while (since >= period) since -= period, side = -side;
   Scene scene;
-  scene.mass_ratio = nu;
-  scene.restitution = e;
+  scene.damper().mass_ratio = nu;
+  scene.damper().restitution = e;
   scene.force_amplitude = side * f0;
   scene.force_frequency = omega;
   scene.x0 = x(since);
   scene.v0 = v(since);
-  scene.y0 = x(0) + speed * since - scene.x0;
-  scene.w0 = speed - scene.v0;
+  scene.damper().y0 = x(0) + speed * since - scene.x0;
+  scene.damper().w0 = speed - scene.v0;
   scene.until_time = 1e4 * 2 * period;
   for (int i = 1; i < 1000; ++i) {
     const double y = x(0) + speed * i * period / 1000 - x(i * period / 1000);
@@ -374,12 +374,12 @@ TEST_CASE("the clock of many motions is right to its last two digits") {
 
 TEST_CASE("where an impact throws x back, its height then is the half cycle's amplitude") {
   Scene scene;
-  scene.mass_ratio = 1;
-  scene.restitution = 1;
+  scene.damper().mass_ratio = 1;
+  scene.damper().restitution = 1;
   scene.x0 = 0;
   scene.v0 = 1;
-  scene.y0 = 0.5;
-  scene.w0 = -5;
+  scene.damper().y0 = 0.5;
+  scene.damper().w0 = -5;
   scene.until_time = 1;
   const Run run = simulate(scene, Restitution{}, everything());
   REQUIRE(!run.impacts->time.empty());
@@ -397,8 +397,8 @@ TEST_CASE("x thrown back just as it comes to zero begins no half cycle by roundi
   for (int n = -4; n <= 4; ++n) {
     for (double nu = 2; nu < 1e6; nu *= 1.1) {
       Scene scene;
-      scene.mass_ratio = nu;
-      scene.restitution = 1;
+      scene.damper().mass_ratio = nu;
+      scene.damper().restitution = 1;
       scene.x0 = 1 + n * std::numeric_limits<double>::epsilon();
       scene.until_time = 1.6;
       const Run run = simulate(scene, Restitution{}, everything());
@@ -411,13 +411,11 @@ TEST_CASE("x thrown back just as it comes to zero begins no half cycle by roundi
 TEST_CASE("a fast light mass costs the primary mass's speed no digits") {
   // Some 690 000 impacts at a speed 1700 times the primary mass's. Rounding of each is allowed, a bias is
   // not.
-  const Scene scene{.mass_ratio = 2e-7,
-                    .restitution = 1,
-                    .damping_ratio = 0.06,
+  const Scene scene{.damping_ratio = 0.06,
                     .x0 = -5,
                     .v0 = 20,
-                    .w0 = -34488,
-                    .until_time = 20};
+                    .until_time = 20,
+                    .dampers = {{.mass_ratio = 2e-7, .restitution = 1, .w0 = -34488}}};
   Restitution options;
   options.budget.max_impacts = 1'000'000;
   const Run run = simulate(scene, options, {.energy = true});

@@ -247,30 +247,35 @@ TEST_CASE("flights across the cavity meet the wall that an independent search fi
     Scene scene;
     scene.x0 = random.chance(0.1) ? 0 : random.log_uniform(1e-3, 30) * random.sign();
     scene.v0 = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 30) * random.sign();
-    scene.y0 = random.chance(0.3) ? double(random.chance(0.5)) : random.uniform(0, 1);
-    scene.w0 = random.chance(0.2) ? 0 : random.log_uniform(1e-3, 30) * random.sign();
-    if ((scene.y0 == 0 && scene.w0 <= 0) || (scene.y0 == 1 && scene.w0 >= 0)) continue;
+    scene.damper().y0 = random.chance(0.3) ? double(random.chance(0.5)) : random.uniform(0, 1);
+    scene.damper().w0 = random.chance(0.2) ? 0 : random.log_uniform(1e-3, 30) * random.sign();
+    if ((scene.damper().y0 == 0 && scene.damper().w0 <= 0) ||
+        (scene.damper().y0 == 1 && scene.damper().w0 >= 0))
+      continue;
     const auto y = [&](auto t) {
-      return scene.y0 + scene.w0 * t - scene.x0 * (std::cos(t) - 1) - scene.v0 * (std::sin(t) - t);
+      return scene.damper().y0 + scene.damper().w0 * t - scene.x0 * (std::cos(t) - 1) -
+             scene.v0 * (std::sin(t) - t);
     };
-    const auto w = [&](auto t) { return scene.w0 + scene.x0 * std::sin(t) - scene.v0 * (std::cos(t) - 1); };
+    const auto w = [&](auto t) {
+      return scene.damper().w0 + scene.x0 * std::sin(t) - scene.v0 * (std::cos(t) - 1);
+    };
 
     const System<double> system(scene);
-    const Flight<double> flight(system, 0.0, {scene.x0, scene.v0, scene.y0, scene.w0});
+    const Flight<double> flight(system, 0.0, {scene.x0, scene.v0, scene.damper().y0, scene.damper().w0});
     const double horizon = 20;
     Search<double> search{std::numeric_limits<double>::infinity()};
     const auto found =
         first_root<double>([&](double t) { return flight.gaps(t, search.span); }, 0.0, horizon, search, 1.0);
     const double noise =
-        4 * epsilon * (1 + 20 * std::abs(scene.w0) + std::abs(scene.x0) + 20 * std::abs(scene.v0));
+        4 * epsilon * (1 + 20 * std::abs(scene.damper().w0) + std::abs(scene.x0) + 20 * std::abs(scene.v0));
     const auto left = first_below(y, w, 0, horizon, noise, 100);
     const auto right =
         first_below([&](auto t) { return 1 - y(t); }, [&](auto t) { return -w(t); }, 0, horizon, noise, 100);
     CAPTURE(n);
     CAPTURE(scene.x0);
     CAPTURE(scene.v0);
-    CAPTURE(scene.y0);
-    CAPTURE(scene.w0);
+    CAPTURE(scene.damper().y0);
+    CAPTURE(scene.damper().w0);
     if (!found) {
       CHECK(!left);
       CHECK(!right);

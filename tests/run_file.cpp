@@ -61,7 +61,7 @@ Run full_run(Engine engine = lagged_cem()) {
   Run run;
   run.stop_reason = StopReason::impact_budget;
   run.end_time = 7.25;
-  run.scene.mass_ratio = 0.1;
+  run.scene.damper().mass_ratio = 0.1;
   run.scene.until_amplitude = 0.01;
   run.engine = engine;
   run.half_cycles = HalfCycles{{1.5, 4.6}, {0, 3}, {6, 5.9}, {3, 0}, {{{3, 0}}}};
@@ -490,7 +490,7 @@ TEST_CASE("a scene file names what differs from the defaults") {
   const Scene scene =
       parse_scene("s.json", R"({"mass_ratio": 0.04, "until_amplitude": 0.01, "description": "d"})");
   Scene expected;
-  expected.mass_ratio = 0.04;
+  expected.damper().mass_ratio = 0.04;
   expected.until_amplitude = 0.01;
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);
@@ -582,10 +582,10 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
        {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
     Run run = full_run(engine);
     same(parse_run("run.json", run_text(run)), run);
-    run.scene = {0.1, 0.2, 0.3, 4, 5, 6, 0.7, 8, 9, 10, 11, {}, {}};
+    run.scene = {0.3, 5, 6, 9, 10, 11, {}, {{0.1, 0.2, 1, 4, 0.7, 8}}};
     same(parse_run("run.json", run_text(run)), run);
     run.scene.until_amplitude = 0.5;
-    run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.y0 = run.scene.w0 = 0;
+    run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.damper().y0 = run.scene.damper().w0 = 0;
     run.scene.force_amplitude = run.end_time = 0;
     run.energy = EnergyBalance{.initial = {}, .final = {}, .impact_loss = {0, 0, 0}};
     same(parse_run("run.json", run_text(run)), run);
@@ -613,7 +613,6 @@ namespace {
 Run run_of_several() {
   Run run = full_run(restitution_on_a_budget());
   run.scene.dampers = {{.mass_ratio = 0.1, .clearance = 1, .y0 = 0.5}, {.restitution = 1, .clearance = 0.25}};
-  run.scene.mass_ratio = Scene{}.mass_ratio;  // means nothing beside them
   run.half_cycles->dampers = {{{1, 0}}, {{2, 0}}};
   run.impacts->damper = {0, 1, 1};
   run.contacts->damper = {1, 0};
@@ -624,7 +623,7 @@ Run run_of_several() {
 
 Lines problems_of_several(const std::string& text) {
   try {
-    parse_run("r.json", text, DamperList::allowed);
+    parse_run("r.json", text);
   } catch (const InputError& error) {
     return error.problems();
   }
@@ -672,19 +671,16 @@ TEST_CASE("a run file of several dampers numbers them from 1 and has columns of 
  },)");
 }
 
-TEST_CASE("a run of several dampers reads back as it was, and only where it may") {
+TEST_CASE("a run of several dampers reads back as it was") {
   Run other = run_of_several();  // zero where the first is not, and the other way round
   other.scene.dampers[0].y0 = 0;
   other.scene.dampers[0].w0 = 2;
   other.energy->dampers[0] = {};
   for (const Run& run : {run_of_several(), other}) {
     const std::string text = run_text(run);
-    const Run back = parse_run("r.json", text, DamperList::allowed);
+    const Run back = parse_run("r.json", text);
     same(back, run);
     CHECK(run_text(back) == text);
-    CHECK(problems(text) ==
-          Lines{"r.json: /scene/dampers: a list is for run, sweep, report and response: give one "
-                "damper without a list"});
   }
 }
 
@@ -743,39 +739,33 @@ TEST_CASE(
   expected.x0 = 2;
   expected.until_time = 4;
   expected.dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}};
-  const Scene scene = parse_scene("s.json", text, DamperList::allowed);
+  const Scene scene = parse_scene("s.json", text);
   CHECK(scene == expected);
-  CHECK(parse_scene("s.json", scene_text(scene), DamperList::allowed) == scene);
+  CHECK(parse_scene("s.json", scene_text(scene)) == scene);
   CHECK(scene_text(scene).find("\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,") !=
         std::string::npos);
-  CHECK_THROWS_WITH_AS(
-      parse_scene("s.json", text),
-      "s.json: /dampers: a list is for run, sweep, report and response: give one damper without a list",
-      InputError);
 }
 
 TEST_CASE("the longest list of dampers is read from a file as it was") {
-  Scene scene;
-  scene.until_time = 1.0 / 3;
+  Scene scene{.until_time = 1.0 / 3, .dampers = {}};
   for (std::size_t i = 0; i < most_dampers; ++i) {
     const double number = 1 / (30003.0 + static_cast<double>(i));
     scene.dampers.push_back({number, number, 7 * number, number, number, -number});
   }
   const auto file = std::filesystem::temp_directory_path() / "longest_list_of_dampers.json";
   write_file(file, scene_text(scene));
-  CHECK(read_scene(file, DamperList::allowed) == scene);
+  CHECK(read_scene(file) == scene);
   std::filesystem::remove(file);
   scene.dampers.emplace_back();
-  CHECK_THROWS_WITH_AS(parse_scene("s.json", scene_text(scene), DamperList::allowed),
+  CHECK_THROWS_WITH_AS(parse_scene("s.json", scene_text(scene)),
                        "s.json: /dampers: must have at most 1000 elements, got 1001", InputError);
-  CHECK(problems_of(scene, DamperList::allowed).size() == 1);
+  CHECK(problems_of(scene).size() == 1);
 }
 
 TEST_CASE("a list of dampers beside numbers of one is rejected with all that is wrong") {
   try {
     parse_scene("s.json", R"({"mass_ratio": 0.1, "restitution": 0.1, "wall_stiffness": 1, "y0": 0, "w0": 0,
-        "dampers": [{"mass_ratio": 0, "x0": 1}, 3, {"clearance": "1"}], "until_time": 4})",
-                DamperList::allowed);
+        "dampers": [{"mass_ratio": 0, "x0": 1}, 3, {"clearance": "1"}], "until_time": 4})");
     FAIL("read what is not valid");
   } catch (const InputError& error) {
     const std::string beside = ": must not be given beside dampers, each of which has its own";

@@ -59,7 +59,8 @@ void check(const Scene& scene, const Engine& engine) {
 }  // namespace
 
 TEST_CASE(
-    "any scene runs to its end in the exact engine, finite, in order and with an energy balance that closes") {
+    "any scene runs to its end in the exact engine, finite, in order and with an energy balance that "
+    "closes") {
   Exact options;
   options.budget.max_impacts = 10000;
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
@@ -87,7 +88,7 @@ TEST_CASE("any scene that begins between rigid walls runs to its end in the rest
   options.budget.max_impacts = 10000;
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
     Scene scene = scene_of(seed);
-    scene.y0 = std::fmin(std::fmax(scene.y0, 0), 1);
+    scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
     CAPTURE(seed);
     CAPTURE(text_of(scene));
     check(scene, options);

@@ -263,7 +263,7 @@ TEST_CASE("the spread leaves out each curve's first point, which the release ent
 
 TEST_CASE("a second panel holds the same amplitudes with its own ordinate") {
   Run run = exponential_decay(4e-3, 60);
-  run.scene.mass_ratio = 0.25;
+  run.scene.damper().mass_ratio = 0.25;
   Figure figure = loss_figure(LossOrdinate::amplitude_times);
   CHECK_FALSE(has_block(figure_table(figure, {{"decay", {"decay.json", run}}}), "second-1"));
   figure.second_ordinate = LossOrdinate::carried;
@@ -323,7 +323,7 @@ TEST_CASE("a motion begins where its amplitude was first undercut and touches th
 TEST_CASE("the stuck region has one row per half cycle and a gap where the mass did not stick") {
   // Half cycles of length 1 after row 0; stuck in rows 1, 2 and 4, in row 2 until a little past its end.
   Run run;
-  run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
+  run.scene.damper().wall_stiffness = 1e12;  // a contact is over in no time, so these last
   run.half_cycles = HalfCycles{};
   run.impacts = Impacts{};
   for (int i = 0; i < 14; ++i) {
@@ -426,14 +426,14 @@ TEST_CASE("curves of one figure must differ in what it varies and in nothing els
   figure.varied = Varied::mass_ratio;
   FigureRuns runs{{"one", {"one.json", exponential_decay(0.01, 40)}},
                   {"two", {"two.json", exponential_decay(0.01, 40)}}};
-  runs["two"].run.scene.mass_ratio = 0.04;
+  runs["two"].run.scene.damper().mass_ratio = 0.04;
   const Table table = figure_table(figure, runs);
   CHECK(block(table, "curve-1").columns[1].heading == "ν = 2 %");
   CHECK(block(table, "curve-2").columns[1].heading == "ν = 4 %");
   CHECK(table.header[1] == "Parameters: e = 0.6, ζ = 1 %");
-  runs["two"].run.scene.restitution = 0.5;
+  runs["two"].run.scene.damper().restitution = 0.5;
   CHECK(rejection(figure, runs).find("same restitution") != std::string::npos);
-  runs["two"].run.scene.restitution = 0.6;
+  runs["two"].run.scene.damper().restitution = 0.6;
   runs["two"].run.engine = Restitution{};
   CHECK(rejection(figure, runs).find("another engine") != std::string::npos);
 }
@@ -497,15 +497,16 @@ double ordinate_of(LossOrdinate which, const Scene& scene, double amplitude, dou
     case LossOrdinate::eta:
       return eta;
     case LossOrdinate::specific:
-      return eta / scene.mass_ratio;
+      return eta / scene.damper().mass_ratio;
     case LossOrdinate::specific_secondary:
-      return left / scene.mass_ratio;
+      return left / scene.damper().mass_ratio;
     case LossOrdinate::amplitude_times:
-      return amplitude * left / scene.mass_ratio;
+      return amplitude * left / scene.damper().mass_ratio;
     case LossOrdinate::by_restitution:
-      return amplitude * left / scene.mass_ratio / (1 - scene.restitution);
+      return amplitude * left / scene.damper().mass_ratio / (1 - scene.damper().restitution);
     case LossOrdinate::carried:
-      return amplitude * (eta - 2 * scene.damping_ratio / (1 + scene.mass_ratio)) / scene.mass_ratio;
+      return amplitude * (eta - 2 * scene.damping_ratio / (1 + scene.damper().mass_ratio)) /
+             scene.damper().mass_ratio;
   }
   return 0;
 }
@@ -527,8 +528,8 @@ TEST_CASE(
     "the curves of a straight envelope are its own, in each ordinate, before and after impact failure") {
   Run run = linear_decay(120, 100);
   run.scene.damping_ratio = 0.001;
-  run.scene.restitution = 0.25;
-  run.scene.mass_ratio = 0.05;
+  run.scene.damper().restitution = 0.25;
+  run.scene.damper().mass_ratio = 0.05;
   for (const LossOrdinate which : ordinates) {
     CAPTURE(name_of(which));
     Figure figure = loss_figure(which);
@@ -583,7 +584,7 @@ double flight_time(double amplitude) {
 
 TEST_CASE("the closed forms in the tables of the loss factor are those for a nearly plastic impact") {
   Run run = linear_decay(40, 40);
-  run.scene.restitution = nearly_plastic;
+  run.scene.damper().restitution = nearly_plastic;
   for (const LossOrdinate which : ordinates) {
     CAPTURE(name_of(which));
     const Table table = figure_table(loss_figure(which), {{"decay", {"decay.json", run}}});
@@ -598,7 +599,7 @@ TEST_CASE("the closed forms in the tables of the loss factor are those for a nea
       CHECK(amplitude.back() == doctest::Approx(to).epsilon(1e-10));
       for (std::size_t i = 0; i < amplitude.size(); ++i) {
         if (i > 0) CHECK(amplitude[i] / amplitude[i - 1] == doctest::Approx(factor).epsilon(1e-9));
-        const double eta = run.scene.mass_ratio * specific_loss(amplitude[i]);
+        const double eta = run.scene.damper().mass_ratio * specific_loss(amplitude[i]);
         CHECK(loss[i] == doctest::Approx(ordinate_of(which, run.scene, amplitude[i], eta)).epsilon(1e-4));
       }
     };
@@ -618,8 +619,8 @@ TEST_CASE("the closed forms in the tables of the loss factor are those for a nea
 // them recorded, at 30 degrees and one more in each row; the mass sticks in rows 2, 3 and 5.
 Run made_by_hand() {
   Run run;
-  run.scene.wall_stiffness = 1e12;  // a contact is over in no time, so these last
-  run.scene.restitution = nearly_plastic;
+  run.scene.damper().wall_stiffness = 1e12;  // a contact is over in no time, so these last
+  run.scene.damper().restitution = nearly_plastic;
   run.half_cycles.emplace(), run.impacts.emplace();
   for (int i = 0; i < 30; ++i) {
     run.half_cycles->zero_crossing.push_back(i);
@@ -745,8 +746,8 @@ TEST_CASE("the law of a decay has each curve's slope, and the line their mean") 
   // A = 6 - 0.05 i at t = i pi: the slope is the same from any peak to any other. The heavy mass begins
   // later.
   Run light = linear_decay(100, 100), heavy = light;
-  light.scene.mass_ratio = 0.01;
-  heavy.scene.mass_ratio = 0.04;
+  light.scene.damper().mass_ratio = 0.01;
+  heavy.scene.damper().mass_ratio = 0.04;
   for (double& time : heavy.half_cycles->peak_time) time += 2;
   // Its last peaks, below 2.02, are off the line and must not count.
   for (std::size_t i = 81; i < 100; ++i) heavy.half_cycles->amplitude[i] /= 2;
@@ -821,7 +822,7 @@ SteadyState ended_state() {
   return state;
 }
 
-const Scene driven{.mass_ratio = 0.02, .damping_ratio = 0.1, .force_amplitude = 0.006};
+const Scene driven{.damping_ratio = 0.1, .force_amplitude = 0.006, .dampers = {{.mass_ratio = 0.02}}};
 
 using Rows = std::vector<std::vector<double>>;  // of columns
 void check_block(const Table& table, const std::string& name, const Rows& wanted,
@@ -895,7 +896,7 @@ TEST_CASE("a table of responses has the sweeps' motions, the branches' pieces an
   // Orbits of a force that no sweep is of, and a response of another damper.
   figure.responses = {"b"};
   CHECK_THROWS_AS(figure_table(figure, {}, {{"b", {"b.json", orbits}}}), InputError);
-  other.scene.restitution = 0.7;
+  other.scene.damper().restitution = 0.7;
   figure.responses = {"a", "c"};
   CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", sweep}}, {"c", {"c.json", other}}}),
                        doctest::Contains("c.json: must have the same restitution"), InputError);
@@ -945,9 +946,9 @@ TEST_CASE(
   SweepResponse a = sweep(axis, 1, 2, 3, 4), other = sweep(axis, 2, 1, 2, 5);
   a.sweeps.push_back(sweep(axis, 7, 6, 9, 1).sweeps[0]);
   other.sweeps.push_back(sweep(axis, 1, 8, 1, 2).sweeps[0]);
-  const Table table = figure_table(figure, {{"decay", decay}},
-                                   {{"a", {"a.json", a}}, {"b", {"b.json", other}}, {"c", {"c.json", ended}}});
-  const double nu = decay.run.scene.mass_ratio, f1 = 0.002 / nu, f2 = 0.004 / nu, f3 = 0.006 / nu,
+  const Table table = figure_table(
+      figure, {{"decay", decay}}, {{"a", {"a.json", a}}, {"b", {"b.json", other}}, {"c", {"c.json", ended}}});
+  const double nu = decay.run.scene.damper().mass_ratio, f1 = 0.002 / nu, f2 = 0.004 / nu, f3 = 0.006 / nu,
                f4 = 0.008 / nu;
   check_block(table, "rising", {{f1, f2, f1, f2, f3}, {2, 2, 7, 8, 5}});
   check_block(table, "falling", {{f1, f2, f1, f2, f3, f4}, {3, 5, 9, 2, 7, 8}});
@@ -1002,7 +1003,7 @@ TEST_CASE("beyond the largest force of a decay the prediction is a curve of its 
   figure.responses = {"a"};
   const Table table = figure_table(figure, {{"decay", decay}}, {{"a", {"a.json", sweep}}});
   CHECK_FALSE(has_block(table, "band"));
-  const double nu = decay.run.scene.mass_ratio;
+  const double nu = decay.run.scene.damper().mass_ratio;
   for (const auto& [name, most, least] : {std::tuple{"beyond", 4.9, 3.0}, {"prediction", 3.0, 0.6}}) {
     const auto block = std::ranges::find(table.blocks, name, &TableBlock::name);
     REQUIRE(block != table.blocks.end());
@@ -1018,7 +1019,7 @@ TEST_CASE("beyond the largest force of a decay the prediction is a curve of its 
 TEST_CASE("the table of a map has each point under the motion that it ends in") {
   BasinResponse map;
   map.scene = driven;
-  map.scene.mass_ratio = 0.5;
+  map.scene.damper().mass_ratio = 0.5;
   map.first = {&Scene::force_frequency, 0.5, 1.5, 3};
   map.second = {&Scene::force_amplitude, 0.5, 2.5, 5};
   map.basin.attractors = {{false, 1, {1, 1}, true, 2},  {false, 1, {1, 1}, false, 1},
@@ -1110,8 +1111,7 @@ TEST_CASE("several dampers are drawn by their mass, beside the sum of what each 
   };
   const std::vector<SceneDamper> dampers{{.mass_ratio = 0.01, .clearance = wide},
                                          {.mass_ratio = 0.03, .clearance = 1}};
-  Run alone = decay(0.01, {});
-  alone.scene.mass_ratio = 0.02;
+  Run alone = decay(0.01, {{.mass_ratio = 0.02}});
   alone.scene.until_amplitude = 0.02;
   FigureRuns runs{{"set", {"set.json", decay(0.02, dampers), {decay(0.06, dampers), decay(0.02, dampers)}}},
                   {"one", {"one.json", alone, {alone}}}};
@@ -1160,7 +1160,7 @@ TEST_CASE("several dampers are drawn by their mass, beside the sum of what each 
            "one.json: must be of a single damper");
   rejected([](FigureRuns& all) { all["one"].run.scene.until_amplitude.reset(); },
            "one.json: must stop at an amplitude");
-  rejected([](FigureRuns& all) { all["one"].run.scene.restitution = 0.5; },
+  rejected([](FigureRuns& all) { all["one"].run.scene.damper().restitution = 0.5; },
            "one.json: must have the restitution");
   rejected([](FigureRuns& all) { all["set"].run.half_cycles.reset(); }, "set.json: holds no half_cycles");
 }

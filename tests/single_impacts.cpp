@@ -18,10 +18,10 @@ constexpr double nu = 1e-4, e = 0.6;
 
 Run decay(const Engine& engine, double mass_ratio) {
   Scene scene;
-  scene.mass_ratio = mass_ratio;
-  scene.restitution = e;
+  scene.damper().mass_ratio = mass_ratio;
+  scene.damper().restitution = e;
   // Contact takes pi/omega_c of the time and is not in the closed forms: 3e-5 with this wall.
-  scene.wall_stiffness = 1e6;
+  scene.damper().wall_stiffness = 1e6;
   scene.x0 = 1;
   scene.until_amplitude = 0.07;
   Record record;

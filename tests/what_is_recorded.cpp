@@ -91,11 +91,12 @@ Trial trial_of(std::uint64_t seed, bool round) {
               reference::Random(seed + 1'000'000'007),
               {}};
   Scene& scene = trial.scene;
-  if constexpr (std::is_same_v<Choice, Restitution>) scene.y0 = std::clamp(scene.y0, 0.0, 1.0);
+  if constexpr (std::is_same_v<Choice, Restitution>)
+    scene.damper().y0 = std::clamp(scene.damper().y0, 0.0, 1.0);
   if constexpr (std::is_same_v<Choice, Cem>) {
     // Walls as stiff as an impact between the masses can be in ten thousand steps that go somewhere.
-    scene.mass_ratio = std::max(scene.mass_ratio, 1e-3);
-    scene.wall_stiffness = std::min(scene.wall_stiffness, 1e5 * scene.mass_ratio);
+    scene.damper().mass_ratio = std::max(scene.damper().mass_ratio, 1e-3);
+    scene.damper().wall_stiffness = std::min(scene.damper().wall_stiffness, 1e5 * scene.damper().mass_ratio);
     trial.engine = cem_of(scene, round, trial.random);
   }
   if (trial.random.chance(0.3)) scene.until_amplitude = std::fabs(scene.x0) * trial.random.uniform(0.01, 1);
@@ -253,9 +254,10 @@ std::string cuts_are_beginnings(Trial& trial) {
 }
 
 Scene mirrored(Scene scene) {
-  for (double Scene::*value : {&Scene::x0, &Scene::v0, &Scene::w0, &Scene::force_amplitude})
-    scene.*value = -(scene.*value);
-  scene.y0 = 1 - scene.y0;
+  for (const SceneNumber& number :
+       std::initializer_list<SceneNumber>{&Scene::x0, &Scene::v0, &SceneDamper::w0, &Scene::force_amplitude})
+    number.in(scene) = -number.in(scene);
+  scene.damper().y0 = 1 - scene.damper().y0;
   return scene;
 }
 
@@ -275,8 +277,8 @@ Run mirrored_back(Run run) {
 // mirrored run has the same bits, but for y itself, which is nearer to 0 in one of them and has more digits
 // there. Released in the middle y counts from the left wall in both: then rounding differs.
 std::string mirrors(Trial& trial) {
-  trial.scene.y0 = std::round(trial.scene.y0 * 0x1p20) / 0x1p20;  // so that 1 - y0 is exact
-  if (trial.scene.y0 == 0.5) return {};
+  trial.scene.damper().y0 = std::round(trial.scene.damper().y0 * 0x1p20) / 0x1p20;  // so that 1 - y0 is exact
+  if (trial.scene.damper().y0 == 0.5) return {};
   const Record record = everything(trial.scene);
   Run run = simulate(trial.scene, trial.engine, record);
   Run back = mirrored_back(simulate(mirrored(trial.scene), trial.engine, record));
@@ -307,7 +309,7 @@ Run stepped(const Trial& trial, const Scene& scene) {
 // makes of either. Compared up to where that comes to 1e-7 of anything: motions that have parted may differ
 // in one number less than in another.
 std::string mirrors_but_for_rounding(Trial& trial) {
-  trial.scene.y0 = std::round(trial.scene.y0 * 0x1p20) / 0x1p20;
+  trial.scene.damper().y0 = std::round(trial.scene.damper().y0 * 0x1p20) / 0x1p20;
   const Scene &scene = trial.scene, opposite = mirrored(scene);
   const Columns run = columns_of(stepped<long double>(trial, scene)),
                 rounded = columns_of(stepped<double>(trial, scene)),
@@ -410,13 +412,13 @@ TEST_CASE("how often samples are looked at does not count against the component 
   // A mass so light that nothing else moves, and so fast that it meets a wall in every third step: ten
   // million events later the method gives up.
   constexpr double h = 0x1p-20;
-  const Scene scene{.mass_ratio = 0x1p-29,
-                    .restitution = 1,
-                    .wall_stiffness = 0x1p-29 / (h * h),
-                    .x0 = 0,
-                    .y0 = 0.5,
-                    .w0 = -4 / h,
-                    .until_time = 1000};
+  const Scene scene{.x0 = 0,
+                    .until_time = 1000,
+                    .dampers = {{.mass_ratio = 0x1p-29,
+                                 .restitution = 1,
+                                 .wall_stiffness = 0x1p-29 / (h * h),
+                                 .y0 = 0.5,
+                                 .w0 = -4 / h}}};
   const Cem options{.time_step = h, .budget = {.max_impacts = 1'000'000'000}};
   const Run run = simulate(scene, options, {}),
             sampled = simulate(scene, options, {.half_cycles = false, .history = {{0, 10, 100'000}}});
@@ -446,7 +448,7 @@ TEST_CASE(
         CHECK(run.contacts->end[0] == 0.5);
         // At the other wall the same motion leaves it, without touching it.
         Scene leaving = start;
-        leaving.y0 = 1 - start.y0;
+        leaving.damper().y0 = 1 - start.damper().y0;
         leaving.until_time = 0.1;
         const Run left = simulate(leaving, Cem{.locate = locate}, record);
         CHECK(left.impacts->time.empty());

@@ -38,9 +38,9 @@ struct LongContact {
 LongContact random_contact(reference::Random& random) {
   LongContact contact;
   Scene& scene = contact.scene;
-  scene.mass_ratio = random.log_uniform(1e-3, 10);
-  scene.restitution = random.chance(0.3) ? 1 : random.uniform(0.1, 1);
-  scene.wall_stiffness = random.log_uniform(1e3, 1e5);
+  scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
+  scene.damper().restitution = random.chance(0.3) ? 1 : random.uniform(0.1, 1);
+  scene.damper().wall_stiffness = random.log_uniform(1e3, 1e5);
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 3);
   if (random.chance(0.6)) {
     scene.force_amplitude = random.log_uniform(1e-2, 10);
@@ -59,7 +59,7 @@ TEST_CASE("a long contact's works are those of a quadrature that follows all its
     const Scene& scene = drawn.scene;
     const double duration = drawn.duration;
     const System<double> system(scene);
-    const ContactModes<double> walls(system, zeta_m<double>(scene, Calibration::fixed_wall));
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const double begin = random.uniform(0, 10), root_k = std::sqrt(walls.stiffness);
     const Contact<double> contact(
         walls, begin, {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2) / root_k, -1.5},
@@ -70,9 +70,9 @@ TEST_CASE("a long contact's works are those of a quadrature that follows all its
     const Work<double> expected =
         work_of<Contact<double>>(system, contact, begin, duration, wall_damping, search);
     CAPTURE(n);
-    CAPTURE(scene.mass_ratio);
-    CAPTURE(scene.restitution);
-    CAPTURE(scene.wall_stiffness);
+    CAPTURE(scene.damper().mass_ratio);
+    CAPTURE(scene.damper().restitution);
+    CAPTURE(scene.damper().wall_stiffness);
     CAPTURE(scene.damping_ratio);
     CAPTURE(scene.force_amplitude);
     CAPTURE(scene.force_frequency);

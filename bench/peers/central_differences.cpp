@@ -13,9 +13,10 @@ namespace impact_damper::bench {
 namespace {
 
 Rows run(const Scene& scene, double h) {
-  const double nu = scene.mass_ratio, zeta = scene.damping_ratio, stiffness = scene.wall_stiffness / nu;
-  const double l = -std::log(scene.restitution);
-  const double zeta_m = scene.restitution > 0 ? l / std::hypot(std::numbers::pi, l) : 1;
+  const double nu = scene.damper().mass_ratio, zeta = scene.damping_ratio,
+               stiffness = scene.damper().wall_stiffness / nu;
+  const double l = -std::log(scene.damper().restitution);
+  const double zeta_m = scene.damper().restitution > 0 ? l / std::hypot(std::numbers::pi, l) : 1;
   const double half_damping = std::sqrt(stiffness) * zeta_m * h;  // c h / 2
   const double h2 = h * h, spring = h2 * stiffness, viscous = zeta * h;
   const double f0 = scene.force_amplitude, omega = scene.force_frequency;
@@ -27,8 +28,8 @@ Rows run(const Scene& scene, double h) {
 
   // The increments of the first step, by Taylor and in flight.
   double dx = h * scene.v0 - h2 / 2 * (scene.x0 + 2 * zeta * scene.v0);
-  double dy = h * (scene.v0 + scene.w0) - dx;
-  double x = scene.x0 + dx, y = scene.y0 + dy;
+  double dy = h * (scene.v0 + scene.damper().w0) - dx;
+  double x = scene.x0 + dx, y = scene.damper().y0 + dy;
   const double end = scene.until_time ? *scene.until_time : 1e6;
 
   RowBook rows(scene.x0, scene.until_amplitude);
@@ -81,8 +82,9 @@ Rows run(const Scene& scene, double h) {
 std::vector<Contender> central_differences_peers() {
   return {{"central differences", Walls::compliant, "time step",
            [](const Scene& scene) {
-             const double nu = scene.mass_ratio;
-             const double contact_time = std::numbers::pi / std::sqrt(scene.wall_stiffness / nu * (1 + nu));
+             const double nu = scene.damper().mass_ratio;
+             const double contact_time =
+                 std::numbers::pi / std::sqrt(scene.damper().wall_stiffness / nu * (1 + nu));
              return geometric(contact_time / 2, 0.5, 14);
            },
            run, "the same scheme as cem, a plain loop without the library"}};

@@ -35,13 +35,13 @@ class HybridSystem {
   // The scene begins in flight, or on a wall that it is about to leave.
   HybridSystem(const Scene& scene, Walls walls)
       : rigid_(walls == Walls::rigid),
-        nu_(scene.mass_ratio),
-        e_(scene.restitution),
+        nu_(scene.damper().mass_ratio),
+        e_(scene.damper().restitution),
         two_zeta_(2 * Real(scene.damping_ratio)),
-        stiffness_(Real(scene.wall_stiffness) / nu_),
+        stiffness_(Real(scene.damper().wall_stiffness) / nu_),
         f0_(scene.force_amplitude),
         omega_(scene.force_frequency),
-        state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)} {
+        state{Real(scene.x0), Real(scene.v0), Real(scene.damper().y0), Real(scene.damper().w0)} {
     using std::acos, std::log, std::sqrt;
     const Real pi = acos(Real(-1));
     Real zeta_m = 1;

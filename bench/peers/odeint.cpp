@@ -13,7 +13,7 @@ Rows run(const Scene& scene, Walls walls, double tolerance) {
 }
 
 Rows run_dormand_prince(const Scene& scene, Walls walls, double tolerance) {
-  return scene.dampers.empty() ? run<DormandPrince>(scene, walls, tolerance)
+  return has_one_damper(scene) ? run<DormandPrince>(scene, walls, tolerance)
                                : run_dampers(scene, walls, tolerance);
 }
 

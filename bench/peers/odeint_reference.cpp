@@ -17,7 +17,7 @@ struct boost::numeric::odeint::detail::extract_value_type<boost::multiprecision:
 namespace impact_damper::bench {
 
 std::optional<std::vector<double>> independent_amplitudes(const Scene& scene, Walls walls) {
-  if (!scene.dampers.empty()) return std::nullopt;
+  if (!has_one_damper(scene)) return std::nullopt;
 #ifdef HAVE_FLOAT128
   using Real = boost::multiprecision::float128;
 #else

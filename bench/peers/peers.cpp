@@ -17,7 +17,9 @@ SiconosScene siconos_scene(const Scene& scene) {
   SiconosScene same{scene.damping_ratio, scene.x0, scene.v0, *scene.until_time, {}};
   for (const SceneDamper& d : scene.dampers)
     same.dampers.push_back({d.mass_ratio, d.restitution, d.clearance, d.y0, d.w0});
-  if (scene.dampers.empty()) same.dampers = {{scene.mass_ratio, scene.restitution, 1, scene.y0, scene.w0}};
+  if (has_one_damper(scene))
+    same.dampers = {
+        {scene.damper().mass_ratio, scene.damper().restitution, 1, scene.damper().y0, scene.damper().w0}};
   return same;
 }
 

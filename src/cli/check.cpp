@@ -27,14 +27,14 @@ namespace fs = std::filesystem;
 
 // Checks a run; one named after a scene of that folder is compared with it, too.
 void check_run(const fs::path& file, const fs::path& scenes) {
-  const Run run = read_run(file, DamperList::allowed);
+  const Run run = read_run(file);
   require_consistent(run, file);
   if (const fs::path scene = scenes / file.filename(); fs::is_regular_file(scene))
     require_scene(run, file, scene);
 }
 
 void check_scene(const std::string& file) {
-  const SceneFile scene = read_scene_file(file, DamperList::allowed);
+  const SceneFile scene = read_scene_file(file);
   warn_of_cautions(file, scene.scene, scene.scales);
 }
 

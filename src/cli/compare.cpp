@@ -165,6 +165,7 @@ int compare(Arguments& arguments) {
     arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
   arguments.finish();
   const SceneFile file = read_scene_file(*scene_name);
+  require_one_damper(file.scene, *scene_name);
   if (!file.in_units)
     throw InputError(std::vector{
         *scene_name +

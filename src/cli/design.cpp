@@ -75,6 +75,7 @@ std::vector<Variable> tolerable(bool dimensionless) {
 Asked asked_of(Arguments& arguments) {
   Asked asked;
   const SceneFile file = scene_of(arguments, Stops::ignored);
+  require_one_damper(file.scene, arguments.file("--scene").value_or(""));
   reject_options_beside_units(arguments, file, "");
   DesignQuestion& question = asked.question;
   asked.dimensionless = !file.in_units;
@@ -88,8 +89,8 @@ Asked asked_of(Arguments& arguments) {
   }
   question.share = arguments.number("--share", within(0.5, 0.999)).value_or(question.share);
   question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(*question.scene.mass));
-  question.clearance =
-      range_of(arguments, "--clearance", default_clearances(question.amplitude, *question.scene.restitution));
+  question.clearance = range_of(arguments, "--clearance",
+                                default_clearances(question.amplitude, *question.scene.damper().restitution));
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
   if (tolerances.empty()) tolerances = {"restitution=0.1", "clearance=10%"};
   for (const std::string& text : tolerances)
@@ -160,8 +161,8 @@ std::string verdict_on(const DesignQuestion& question, const DesignCheck& check)
 std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
   if (!answer.designs.front().check.largest_wall_force) return "";
   const SceneInUnits& scene = asked.question.scene;
-  const double ratio = Scene{}.wall_stiffness;
-  const double stiffness = *scene.contact_stiffness;
+  const double ratio = SceneDamper{}.wall_stiffness;
+  const double stiffness = *scene.damper().contact_stiffness;
   const std::string text =
       "Wall forces are those of walls of " +
       (asked.dimensionless ? readable(stiffness / *scene.stiffness) + " K" : of_unit(stiffness, "N/m"));
@@ -191,7 +192,7 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
   if (design.clearance == question.clearance.least)
     text += "The clearance is the least of its range: a narrower one may do better.\n";
   if (design.clearance == question.clearance.most) {
-    const auto failing = failing_clearance(question.amplitude, *question.scene.restitution);
+    const auto failing = failing_clearance(question.amplitude, *question.scene.damper().restitution);
     text += "The clearance is the widest of its range: a wider one may do better" +
             (failing ? "; with " + of_unit(*failing, units.length) + " impacts fail at " +
                            of_unit(question.amplitude, units.length)

@@ -45,6 +45,7 @@ void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
 Asked asked_of(Arguments& arguments) {
   Asked asked;
   asked.file = scene_of(arguments, Stops::ignored);
+  require_one_damper(asked.file.scene, arguments.file("--scene").value_or(""));
   reject_options_beside_units(arguments, asked.file, "");
   for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
@@ -64,8 +65,9 @@ Asked asked_of(Arguments& arguments) {
   question.to = arguments.number("--to", above(0)).value_or(question.release / 10);
   question.upper = arguments.number("--upper", above(0)).value_or(0.9 * question.release);
   question.mass_ratio =
-      arguments.number("--secondary-mass", above(0)).value_or(scene.mass_ratio * asked.mass) / asked.mass;
-  question.restitution = scene.restitution;
+      arguments.number("--secondary-mass", above(0)).value_or(scene.damper().mass_ratio * asked.mass) /
+      asked.mass;
+  question.restitution = scene.damper().restitution;
   question.damping_ratio = scene.damping_ratio;
   read_tolerances(arguments, question);
   return asked;
@@ -83,12 +85,7 @@ std::string scene_file_text(const Asked& asked, const DamperSet& set) {
                                readable(question.release) + " to " + readable(question.to));
   if (asked.file.in_units) {
     SceneInUnits scene = *asked.file.in_units;
-    scene.secondary_mass.reset();
-    scene.clearance.reset();
-    scene.restitution.reset();
-    scene.contact_stiffness.reset();
-    scene.secondary_displacement.reset();
-    scene.secondary_velocity.reset();
+    scene.dampers.clear();
     scene.initial_displacement = question.release;
     scene.initial_velocity.reset();
     scene.until_seconds.reset();

@@ -28,7 +28,7 @@ std::string page_of(const Findings& findings, const std::vector<Drawing>& drawin
 }
 
 int report(Arguments& arguments) {
-  const SceneFile file = scene_of(arguments, Stops::needed, DamperList::allowed);
+  const SceneFile file = scene_of(arguments, Stops::needed);
   const Engine engine = engine_of(arguments);
   EnsembleOptions ensemble;
   ensemble.members = arguments.whole_number("--members", within(1, 100)).value_or(ensemble.members);

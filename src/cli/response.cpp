@@ -83,16 +83,14 @@ Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) 
     variables[each.name] = {each.number, within(each.least, each.most)};
   if (!scales) return variables;
   for (const UnitField& field : unit_fields) {
-    const double scale = scale_of(field.unit, *scales);
-    const auto made = variables.find(field.becomes);
-    if (made != variables.end() && !field.also_dimensionless)
-      variables[std::string(field.name)] = {made->second.number, made->second.range, scale};
-    const auto* const its = std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name);
-    if (its == damper_unit_fields.end()) continue;
-    const auto* const becomes = std::ranges::find(scene_damper_fields, its->becomes, &SceneDamperField::name);
-    for (std::size_t i = 0; i < scene.dampers.size(); ++i)
-      variables[std::string(field.name) + "_" + std::to_string(i + 1)] = {
-          {becomes->member, i}, within(becomes->least, becomes->most), scale};
+    const bool in_list = field.number.of_damper && !has_one_damper(scene);
+    for (std::size_t i = 0; i < (in_list ? scene.dampers.size() : 1); ++i) {
+      const std::string number = in_list ? "_" + std::to_string(i + 1) : "";
+      const auto made = variables.find(std::string(field.becomes) + number);
+      if (made != variables.end() && !field.also_dimensionless)
+        variables[std::string(field.name) + number] = {made->second.number, made->second.range,
+                                                       scale_of(field.unit, *scales)};
+    }
   }
   return variables;
 }
@@ -196,7 +194,7 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
 // scene.
 std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file) {
   const std::optional<Scales>& scales = file.scales;
-  const std::size_t count = file.scene.dampers.empty() ? 4 : 2;
+  const std::size_t count = has_one_damper(file.scene) ? 4 : 2;
   std::array<double, 4> numbers{};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t colon = text.find(':');
@@ -219,10 +217,10 @@ std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
     const auto start = parse_state(text, file);
     if (start) {
       starts.push_back(*start);
-      for (const Problem& problem : problems_of(released_from(file.scene, *start), DamperList::allowed))
+      for (const Problem& problem : problems_of(released_from(file.scene, *start)))
         arguments.reject("--start", problem.field + " " + problem.message);
     } else {
-      arguments.reject("--start", (file.scene.dampers.empty() ? "must be four numbers X0:V0:Y0:W0, got "
+      arguments.reject("--start", (has_one_damper(file.scene) ? "must be four numbers X0:V0:Y0:W0, got "
                                                               : "must be two numbers X0:V0, got ") +
                                       in_quotes(text));
     }
@@ -429,9 +427,9 @@ Response averaged(const Request& asked) {
   Progress progress("periods", periods + discard);
   const LyapunovExponents found =
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {
-        if (done % 100 == 0 || !scene.dampers.empty()) progress(done);
+        if (done % 100 == 0 || !has_one_damper(scene)) progress(done);
       });
-  if (!asked.quiet) warn_of(found, scene.dampers.empty() ? 4 : dimensions_of(scene));
+  if (!asked.quiet) warn_of(found, dimensions_of(scene));
   return LyapunovResponse{scene, asked.engine, periods, discard, found};
 }
 
@@ -474,7 +472,7 @@ int respond(Arguments& arguments) {
   if (!arguments.given("WHAT")) arguments.reject("WHAT", "must be given: " + listed(words, "or"));
   Request asked;
   asked.kind = all_of<Kind>.begin()[word.value_or(0)];
-  asked.file = scene_of(arguments, Stops::ignored, DamperList::allowed);
+  asked.file = scene_of(arguments, Stops::ignored);
   asked.engine = engine_of(arguments, offered_engines());
   asked.starts = starts_of(arguments, asked.file);
   asked.nudge = nudge_of(arguments, asked.file);

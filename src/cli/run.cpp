@@ -154,7 +154,7 @@ void run_members(const std::string& file, const Run& first, const Record& record
 }
 
 int run_scene(Arguments& arguments) {
-  const SceneFile scene_file = scene_of(arguments, Stops::needed, DamperList::allowed);
+  const SceneFile scene_file = scene_of(arguments, Stops::needed);
   const Scene& scene = scene_file.scene;
   const std::optional<Scales>& scales = scene_file.scales;
   const Engine engine = engine_of(arguments);

@@ -147,9 +147,9 @@ std::string help_of(const OfferedOption& offered, std::size_t engines) {
 
 }  // namespace
 
-SceneFile scene_of(Arguments& arguments, Stops stops, DamperList dampers) {
+SceneFile scene_of(Arguments& arguments, Stops stops) {
   const std::optional<std::string> name = arguments.file("--scene");
-  SceneFile file = name ? read_scene_file(*name, dampers) : SceneFile{};
+  SceneFile file = name ? read_scene_file(*name) : SceneFile{};
   Scene& scene = file.scene;
   bool all_read = true;
   const auto override_with = [&](std::string_view field, auto& target) {
@@ -158,8 +158,8 @@ SceneFile scene_of(Arguments& arguments, Stops stops, DamperList dampers) {
     if (!value && arguments.given(option_of(field))) all_read = false;
   };
   for (const SceneField& field : scene_fields) {
-    override_with(field.name, scene.*field.member);
-    if (!scene.dampers.empty() && is_of_one_damper(field) && arguments.given(option_of(field.name)))
+    override_with(field.name, field.number.in(scene));
+    if (field.number.of_damper && !has_one_damper(scene) && arguments.given(option_of(field.name)))
       arguments.reject(option_of(field.name),
                        "is for one damper: " + *name + " has a list, which sets their numbers");
   }
@@ -176,9 +176,13 @@ SceneFile scene_of(Arguments& arguments, Stops stops, DamperList dampers) {
                        "it, --until-amplitude or both must be given: when is the run to stop?");
     return file;
   }
-  for (const Problem& problem : problems_of(scene, dampers))
+  for (const Problem& problem : problems_of(scene))
     arguments.reject(option_of(problem.field), problem.message);
   return file;
+}
+
+void require_one_damper(const Scene& scene, const std::string& scene_file) {
+  if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
 }
 
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {
@@ -279,7 +283,7 @@ Options scene_options(Stops stops) {
   for (const SceneField& field : scene_fields) {
     add(option_of(field.name), "X",
         std::string(field.meaning) + ";\n" + range_of(field) + ", default " +
-            number_text(defaults.*field.member));
+            number_text(field.number.in(defaults)));
   }
   if (stops == Stops::ignored) return options;
   add("--until-time", "T", "stop at this time; a number > 0");

@@ -14,8 +14,9 @@ namespace impact_damper::cli {
 // rejected beside a list of several. Stops::ignored: a command that does not use a scene's stops neither
 // offers them nor reads those of the file.
 enum class Stops { needed, ignored };
-SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed,
-                   DamperList dampers = DamperList::rejected);
+SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
+// Throws InputError about its file where a command that is for one damper is given several.
+void require_one_damper(const Scene& scene, const std::string& scene_file);
 // Rejects the options beside --scene, in commands that change a scene in units by its own numbers.
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());

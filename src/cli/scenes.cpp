@@ -36,11 +36,11 @@ int list_scenes(const fs::path& folder) {
   std::vector<std::string> problems;
   for (const fs::path& file : scene_files(folder)) {
     try {
-      const Scene scene = read_scene(file, DamperList::allowed);
+      const Scene scene = read_scene(file);
       Row row{file.stem().string()};
       for (const SceneField& field : scene_fields)
-        row.push_back(!scene.dampers.empty() && is_of_one_damper(field) ? "-"
-                                                                        : number_text(scene.*field.member));
+        row.push_back(field.number.of_damper && !has_one_damper(scene) ? "-"
+                                                                       : number_text(field.number.in(scene)));
       for (const auto& stop : {scene.until_time, scene.until_amplitude}) {
         row.push_back(stop ? number_text(*stop) : "-");
       }

@@ -123,7 +123,7 @@ std::string long_name(const std::string& name) { return name.substr(name.rfind('
 
 Plan plan_of_options(Arguments& arguments) {
   Plan plan;
-  plan.scene = scene_of(arguments, Stops::needed, DamperList::allowed);
+  plan.scene = scene_of(arguments, Stops::needed);
   plan.engine = engine_of(arguments);
   reject_options_beside_units(arguments, plan.scene, ", or --vary,");
   for (const std::string& text : arguments.texts("--vary"))

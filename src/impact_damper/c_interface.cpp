@@ -115,7 +115,7 @@ std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
     const auto count = std::min<std::size_t>(history->count, most_samples + 1);  // more are rejected, too
     record.history = {{history->begin, history->end, static_cast<std::int64_t>(count)}};
   }
-  const SceneFile file = parse_scene_file("scene", scene, DamperList::allowed);
+  const SceneFile file = parse_scene_file("scene", scene);
   auto result = std::make_unique<impact_damper_run>();
   result->run = simulate(file.scene, engine_of(engine), record);
   result->scales = file.scales;
@@ -193,7 +193,7 @@ size_t impact_damper_loss_factor(const impact_damper_run* run, double* amplitude
 
 double impact_damper_bounce_down_end(const impact_damper_run* run) {
   try {
-    if (run->run.scene.dampers.empty())
+    if (has_one_damper(run->run.scene))
       if (const auto end = impact_damper::end_of_bounce_down(run->run)) return end->amplitude;
   } catch (const std::exception&) {
     // Contacts were not recorded, or there was not enough memory.

@@ -11,23 +11,23 @@ namespace impact_damper {
 namespace {
 
 Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
-  return scene.dampers.empty() ? run_exact<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_exact<double>(scene, options, recorder)
                                : run_exact_dampers<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
-  return scene.dampers.empty() ? run_restitution<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_restitution<double>(scene, options, recorder)
                                : run_restitution_dampers<double>(scene, options, recorder);
 }
 
 Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
   options = resolved(scene, options);
-  return scene.dampers.empty() ? run_cem<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_cem<double>(scene, options, recorder)
                                : run_cem_dampers<double>(scene, options, recorder);
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {
-  std::vector<Problem> problems = problems_of(scene, DamperList::allowed);
+  std::vector<Problem> problems = problems_of(scene);
   const auto add_all = [&](const std::vector<Problem>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
@@ -38,7 +38,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const
       std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
 
   // Rejects budgets whose records would not fit into memory.
-  const std::int64_t dampers = std::max<std::int64_t>(1, std::int64_t(scene.dampers.size()));
+  const auto dampers = std::int64_t(std::max<std::size_t>(1, scene.dampers.size()));
   const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what,
                            std::int64_t most = most_rows) {
     if (rows <= most) return;
@@ -97,13 +97,13 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   Run result;
   result.scene = scene;
   result.engine = engine;
-  Recorder recorder(record, scene.dampers.size());
+  Recorder recorder(record, listed_dampers(scene));
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
         if (record.half_cycles) {
           options.budget.max_half_cycles =
-              std::min(options.budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
+              std::min(options.budget.max_half_cycles, most_half_cycles(listed_dampers(scene)));
         }
         return run(scene, options, recorder);
       },

@@ -16,33 +16,16 @@ constexpr double metres = 1e-3;  // per millimetre
 
 // The field of the scene in units that `field` of the dimensionless scene was made from.
 std::string maker_of(const SceneInUnits& scene, std::string_view field) {
-  if (const std::size_t point = field.find('.'); point != std::string_view::npos) {  // "dampers[2].clearance"
-    const auto* const maker =
-        std::ranges::find(damper_unit_fields, field.substr(point + 1), &DamperUnitField::becomes);
-    return std::string(field.substr(0, point + 1)) + std::string(maker->name);
-  }
-  std::string_view maker = field;  // of "dampers" itself
+  const std::size_t point = field.find('.') + 1;  // "dampers[2].clearance"
+  std::string maker(field);                       // of "dampers" itself
   for (const UnitField& each : unit_fields)
-    if (each.becomes == field && (maker == field || scene.*each.member)) maker = each.name;
-  return std::string(maker);
-}
-
-// Adds a problem if a needed value is missing or a given one is not valid.
-void check(std::vector<Problem>& problems, const std::string& name, const UnitField& field,
-           const std::optional<double>& value, bool needed) {
-  const NumberRange range{field.least, field.most, field.least_is_allowed};
-  if (!value && needed)
-    problems.push_back({name, "missing, a value must be given in " + std::string(field.unit)});
-  if (value && !range.allows(*value))
-    problems.push_back({name, range.describe("must be") + ", got " + number_text(*value)});
+    if (each.becomes == field.substr(point) && (maker == field || each.number.in(scene)))
+      maker = std::string(field.substr(0, point)) + std::string(each.name);
+  return maker;
 }
 
 bool is_needed(std::string_view name) {
   return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
-}
-
-const UnitField& unit_field(std::string_view name) {
-  return *std::ranges::find(unit_fields, name, &UnitField::name);
 }
 
 }  // namespace
@@ -51,25 +34,25 @@ const std::array<UnitField, 16> unit_fields{{
     {"mass", &SceneInUnits::mass, small, true, large, "kg", "", false, "mass M of the primary system"},
     {"stiffness", &SceneInUnits::stiffness, small, true, large, "N/m", "", false,
      "stiffness K of its spring"},
-    {"secondary_mass", &SceneInUnits::secondary_mass, small, true, large, "kg", "mass_ratio", false,
+    {"secondary_mass", &DamperInUnits::secondary_mass, small, true, large, "kg", "mass_ratio", false,
      "secondary mass"},
-    {"clearance", &SceneInUnits::clearance, small, true, large, "mm", "", false,
+    {"clearance", &DamperInUnits::clearance, small, true, large, "mm", "clearance", false,
      "clearance of the secondary mass, epsilon"},
-    {"restitution", &SceneInUnits::restitution, 0, true, 1, "", "restitution", true,
+    {"restitution", &DamperInUnits::restitution, 0, true, 1, "", "restitution", true,
      "coefficient of restitution, e"},
     {"damping", &SceneInUnits::damping, 0, true, large, "N s/m", "damping_ratio", false,
      "viscous damping of the primary system"},
     {"damping_ratio", &SceneInUnits::damping_ratio, 0, true, 1e6, "", "damping_ratio", true,
      "the same by critical damping, zeta"},
-    {"contact_stiffness", &SceneInUnits::contact_stiffness, small, true, large, "N/m", "wall_stiffness",
+    {"contact_stiffness", &DamperInUnits::contact_stiffness, small, true, large, "N/m", "wall_stiffness",
      false, "stiffness of the walls"},
     {"initial_displacement", &SceneInUnits::initial_displacement, -large, true, large, "mm", "x0", false,
      "initial displacement of the primary mass"},
     {"initial_velocity", &SceneInUnits::initial_velocity, -large, true, large, "mm/s", "v0", false,
      "initial velocity of the primary mass"},
-    {"secondary_displacement", &SceneInUnits::secondary_displacement, -large, true, large, "mm", "y0", false,
+    {"secondary_displacement", &DamperInUnits::secondary_displacement, -large, true, large, "mm", "y0", false,
      "initial distance of the secondary mass from the left wall"},
-    {"secondary_velocity", &SceneInUnits::secondary_velocity, -large, true, large, "mm/s", "w0", false,
+    {"secondary_velocity", &DamperInUnits::secondary_velocity, -large, true, large, "mm/s", "w0", false,
      "initial velocity of the secondary mass in the cavity"},
     {"exciting_force", &SceneInUnits::exciting_force, -large, true, large, "N", "force_amplitude", false,
      "amplitude of the exciting force"},
@@ -79,15 +62,6 @@ const std::array<UnitField, 16> unit_fields{{
      "the run ends at this time"},
     {"until_millimetres", &SceneInUnits::until_millimetres, 0, false, large, "mm", "until_amplitude", false,
      "the run ends with the first half cycle of a lower amplitude"},
-}};
-
-const std::array<DamperUnitField, 6> damper_unit_fields{{
-    {"secondary_mass", &DamperInUnits::secondary_mass, "mass_ratio"},
-    {"clearance", &DamperInUnits::clearance, "clearance"},
-    {"restitution", &DamperInUnits::restitution, "restitution"},
-    {"contact_stiffness", &DamperInUnits::contact_stiffness, "wall_stiffness"},
-    {"secondary_displacement", &DamperInUnits::secondary_displacement, "y0"},
-    {"secondary_velocity", &DamperInUnits::secondary_velocity, "w0"},
 }};
 
 double Scales::time() const { return std::sqrt(mass / stiffness); }
@@ -102,31 +76,31 @@ SiUnits si_units_of(const Scales& scales) {
   return {length, scales.time(), length / scales.time(), scales.mass, scales.force(), scales.energy()};
 }
 
-std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers) {
+std::vector<Problem> problems_of(const SceneInUnits& scene) {
   std::vector<Problem> problems;
-  for (const UnitField& field : unit_fields) {
-    const bool of_one_damper =
-        std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name) != damper_unit_fields.end();
-    const bool in_list = of_one_damper && !scene.dampers.empty();
-    if (in_list && scene.*field.member)
-      problems.push_back({std::string(field.name), std::string(beside_dampers)});
-    else
-      check(problems, std::string(field.name), field, scene.*field.member, is_needed(field.name) && !in_list);
-  }
-  for (std::size_t i = 0; i < scene.dampers.size() && i < most_dampers; ++i) {
-    for (const DamperUnitField& field : damper_unit_fields) {
-      const UnitField& same = unit_field(field.name);
-      check(problems, damper_field(i, field.name), same, scene.dampers[i].*field.member,
-            is_needed(field.name));
-    }
-  }
+  const auto check = [&](const std::string& name, const UnitField& field,
+                         const std::optional<double>& value) {
+    const NumberRange range{field.least, field.most, field.least_is_allowed};
+    if (!value && is_needed(field.name))
+      problems.push_back({name, "missing, a value must be given in " + std::string(field.unit)});
+    if (value && !range.allows(*value))
+      problems.push_back({name, range.describe("must be") + ", got " + number_text(*value)});
+  };
+  const bool one = scene.dampers.size() == 1;
+  for (const UnitField& field : unit_fields)
+    if (one || field.number.own) check(std::string(field.name), field, field.number.in(scene));
+  for (std::size_t i = 0; !one && i < scene.dampers.size() && i < most_dampers; ++i)
+    for (const UnitField& field : unit_fields)
+      if (field.number.of_damper)
+        check(damper_field(i, field.name), field, scene.dampers[i].*field.number.of_damper);
+  if (scene.dampers.empty()) problems.push_back({"dampers", "must be at least one, got 0"});
   if (scene.damping && scene.damping_ratio)
     problems.push_back({"damping", "either it or damping_ratio must be given, got both"});
   if (!scene.until_seconds && !scene.until_millimetres)
     problems.push_back({"until_seconds", "until_seconds, until_millimetres or both must be given"});
   if (!problems.empty()) return problems;
 
-  for (const Problem& problem : problems_of(dimensionless(scene), dampers)) {
+  for (const Problem& problem : problems_of(dimensionless(scene))) {
     const bool of_the_list = problem.field == "dampers";
     problems.push_back(
         {maker_of(scene, problem.field),
@@ -136,15 +110,13 @@ std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers) 
 }
 
 Scales scales_of(const SceneInUnits& scene) {
-  return {*scene.mass, *scene.stiffness,
-          scene.dampers.empty() ? *scene.clearance : *scene.dampers[0].clearance};
+  return {*scene.mass, *scene.stiffness, *scene.damper().clearance};
 }
 
 Scene dimensionless(const SceneInUnits& scene) {
   const Scales scales = scales_of(scene);
   Scene made;
-  if (scene.dampers.empty()) made.mass_ratio = *scene.secondary_mass / scales.mass;
-  made.restitution = scene.restitution.value_or(made.restitution);
+  made.dampers.clear();
   for (const DamperInUnits& damper : scene.dampers) {
     SceneDamper& its = made.dampers.emplace_back();
     its.mass_ratio = *damper.secondary_mass / scales.mass;
@@ -156,11 +128,8 @@ Scene dimensionless(const SceneInUnits& scene) {
   }
   if (scene.damping) made.damping_ratio = *scene.damping / scales.damping();
   if (scene.damping_ratio) made.damping_ratio = *scene.damping_ratio;
-  if (scene.contact_stiffness) made.wall_stiffness = *scene.contact_stiffness / scales.stiffness;
   made.x0 = scene.initial_displacement.value_or(0) / scales.length;
   made.v0 = scene.initial_velocity.value_or(0) / scales.velocity();
-  made.y0 = scene.secondary_displacement.value_or(0) / scales.length;
-  made.w0 = scene.secondary_velocity.value_or(0) / scales.velocity();
   made.force_amplitude = scene.exciting_force.value_or(0) / scales.force();
   if (scene.exciting_frequency) made.force_frequency = *scene.exciting_frequency / scales.frequency();
   if (scene.until_seconds) made.until_time = *scene.until_seconds / scales.time();

@@ -56,63 +56,76 @@ inline constexpr std::array<SiUnit, 6> si_units{{{"length_m", &SiUnits::length},
                                                  {"force_N", &SiUnits::force},
                                                  {"energy_J", &SiUnits::energy}}};
 
-// One damper of a list, with the names and defaults that the one damper has in SceneInUnits.
+// A damper in units; an absent number has the default that its comment names.
 struct DamperInUnits {
   std::optional<double> secondary_mass, clearance;  // kg, mm: both required
-  std::optional<double> restitution, contact_stiffness, secondary_displacement, secondary_velocity;
+  std::optional<double> restitution;                // as in SceneDamper, with its default
+  std::optional<double> contact_stiffness;          // of a wall, N/m; absent: SceneDamper's default k times K
+  // Each is 0 if absent: distance from the left wall, mm; velocity relative to the cavity, mm/s.
+  std::optional<double> secondary_displacement, secondary_velocity;
 };
 
 // Every number that may be given; an absent one has the default that its comment names. Allowed values:
 // unit_fields.
 struct SceneInUnits {
-  std::optional<double> mass, stiffness, secondary_mass, clearance;  // kg, N/m, kg, mm: all four required
-  std::optional<double> restitution;                                 // as in Scene, with its default
+  std::optional<double> mass, stiffness;         // kg, N/m: both required
   std::optional<double> damping, damping_ratio;  // N s/m, or as in Scene; at most one; none: undamped
-  std::optional<double> contact_stiffness;       // of a wall, N/m; absent: Scene's default k times K
   // Each is 0 if absent (unlike Scene::x0, whose default is 6).
   std::optional<double> initial_displacement, initial_velocity;  // of the primary mass; mm, mm/s
-  // Of the secondary mass: distance from the left wall, mm; velocity relative to the cavity, mm/s.
-  std::optional<double> secondary_displacement, secondary_velocity;
   std::optional<double> exciting_force,
       exciting_frequency;  // amplitude, N, absent: 0; Hz, absent: Omega_n / (2 pi)
-  std::optional<double> until_seconds, until_millimetres;  // stops, s and mm; at least one
-  // Several in place of the one damper, none of whose numbers may then be given. At most most_dampers.
-  std::vector<DamperInUnits> dampers;
+  std::optional<double> until_seconds, until_millimetres;              // stops, s and mm; at least one
+  std::vector<DamperInUnits> dampers = std::vector<DamperInUnits>(1);  // 1 to most_dampers
+
+  // The first damper, in a scene of one the only one.
+  DamperInUnits& damper() { return dampers.front(); }
+  const DamperInUnits& damper() const { return dampers.front(); }
 };
 
-// One number of SceneInUnits: its name, which is its JSON key, where it is kept, which values it allows and
-// what it is. The limits are such that no scale overflows or underflows.
+// Where a number of a scene in units is kept: in itself or, if of_damper is not null, in one of its dampers.
+struct NumberInUnits {
+  std::optional<double> SceneInUnits::*own = nullptr;
+  std::optional<double> DamperInUnits::*of_damper = nullptr;
+  std::size_t damper = 0;  // which, from 0
+
+  constexpr NumberInUnits() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  constexpr NumberInUnits(std::optional<double> SceneInUnits::*its) : own(its) {}
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  constexpr NumberInUnits(std::optional<double> DamperInUnits::*its, std::size_t which = 0)
+      : of_damper(its), damper(which) {}
+  std::optional<double>& in(SceneInUnits& scene) const {
+    return of_damper ? scene.dampers[damper].*of_damper : scene.*own;
+  }
+  const std::optional<double>& in(const SceneInUnits& scene) const {
+    return of_damper ? scene.dampers[damper].*of_damper : scene.*own;
+  }
+};
+
+// One number of a scene in units: its name, which is its JSON key, where it is kept (of a damper, in the
+// first), which values it allows and what it is. The limits are such that no scale overflows or underflows.
 struct UnitField {
   std::string_view name;
-  std::optional<double> SceneInUnits::*member;
+  NumberInUnits number;
   double least;              // smallest allowed value
   bool least_is_allowed;     // false: strictly above
   double most;               // largest allowed value
   std::string_view unit;     // "" for a ratio
-  std::string_view becomes;  // the field of Scene that is made of it; "" where it only scales
+  std::string_view becomes;  // the dimensionless field that is made of it; "" where it only scales
   bool also_dimensionless;   // has the same name and meaning in a dimensionless scene
   std::string_view meaning;
 };
 extern const std::array<UnitField, 16> unit_fields;
 
-// One number of DamperInUnits. The values it allows, its unit and meaning are those of the field of
-// unit_fields that has its name.
-struct DamperUnitField {
-  std::string_view name;
-  std::optional<double> DamperInUnits::*member;
-  std::string_view becomes;  // the field of SceneDamper that is made of it
-};
-extern const std::array<DamperUnitField, 6> damper_unit_fields;
-
-// The problem of a number of a scene's one damper that is given beside a list.
+// The problem of a number of a damper that is given beside a list.
 inline constexpr std::string_view beside_dampers =
     "must not be given beside dampers, each of which has its own";
 
-// The problems of a scene in units, one entry per invalid field, as by problems_of(Scene, DamperList):
-// required numbers that are missing, numbers out of range, both dampings given, no stop, a list of dampers
-// beside numbers of one, and numbers that make a Scene which is not valid. Empty means that the two functions
-// below may be called; otherwise their behaviour is undefined.
-std::vector<Problem> problems_of(const SceneInUnits& scene, DamperList dampers = DamperList::rejected);
+// The problems of a scene in units, one entry per invalid field, as by problems_of(Scene): required numbers
+// that are missing, numbers out of range, both dampings given, no stop, and numbers that make a Scene which
+// is not valid. Empty means that the two functions below may be called; otherwise their behaviour is
+// undefined.
+std::vector<Problem> problems_of(const SceneInUnits& scene);
 
 Scales scales_of(const SceneInUnits& scene);
 Scene dimensionless(const SceneInUnits& scene);

@@ -38,9 +38,9 @@ int main(int count, char** words) {
     };
     Row& row = rows[std::size_t(i)];
     row.truth = made::mast();
-    row.truth.restitution = between(0.4, 0.75);
+    row.truth.damper().restitution = between(0.4, 0.75);
     row.truth.damping_ratio = between(0.0005, 0.005);
-    row.truth.clearance = between(7, 14);
+    row.truth.damper().clearance = between(7, 14);
     row.truth.initial_displacement = between(40, 70);
     const Reduction reduction = reduced(
         "made", made::measured(row.truth, {.noise = 0.05, .offset = 1, .drift = 1, .seed = unsigned(i)}));

@@ -11,7 +11,7 @@ namespace {
 // Released from 40 mm; the scene that is fitted is made::mast() itself.
 SceneInUnits truth() {
   SceneInUnits scene = made::mast();
-  scene.restitution = 0.5, scene.damping_ratio = 0.003, scene.clearance = 12;
+  scene.damper().restitution = 0.5, scene.damping_ratio = 0.003, scene.damper().clearance = 12;
   scene.initial_displacement = 40, scene.until_seconds = 25;
   return scene;
 }

@@ -18,8 +18,9 @@ using namespace impact_damper;
 // The mast of data/examples, 60 s.
 inline SceneInUnits mast() {
   SceneInUnits scene;
-  scene.mass = 40, scene.stiffness = 16000, scene.secondary_mass = 1.6, scene.clearance = 10;
-  scene.restitution = 0.6, scene.damping_ratio = 0.002;
+  scene.mass = 40, scene.stiffness = 16000, scene.damper().secondary_mass = 1.6,
+  scene.damper().clearance = 10;
+  scene.damper().restitution = 0.6, scene.damping_ratio = 0.002;
   scene.initial_displacement = 60;
   scene.until_seconds = 60;
   return scene;

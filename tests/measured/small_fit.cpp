@@ -32,7 +32,8 @@ Reduction two_losses(int many, double eta, double later) {
 // Heavily damped, so that it ends soon.
 SceneInUnits heavy() {
   SceneInUnits scene = made::mast();
-  scene.secondary_mass = 4, scene.restitution = 0.4, scene.damping_ratio = 0.004, scene.clearance = 8;
+  scene.damper().secondary_mass = 4, scene.damper().restitution = 0.4, scene.damping_ratio = 0.004,
+  scene.damper().clearance = 8;
   scene.initial_displacement = 30, scene.until_seconds = 9;
   return scene;
 }
@@ -66,7 +67,11 @@ TEST_CASE("no bin reaches across a gap") {
 TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
   // Without impacts, the secondary mass at rest in the middle of a wide cavity, eta = 2 zeta / sqrt(1 -
   // zeta^2).
-  Scene scene{.damping_ratio = 0.01, .x0 = 0.05, .y0 = 0.5, .until_time = 400, .until_amplitude = 0.004};
+  Scene scene{.damping_ratio = 0.01,
+              .x0 = 0.05,
+              .until_time = 400,
+              .until_amplitude = 0.004,
+              .dampers = {{.y0 = 0.5}}};
   const HalfCycles rows = simulated_half_cycles(scene, Restitution{});
   const std::vector<LossBin> bins{{0.04, 0.02}, {0.02, 0.01}, {0.01, 0.005}};
   const auto losses = log_losses(rows, 1, bins);
@@ -81,7 +86,7 @@ TEST_CASE("a small fit finds what a record was made with, for any number of thre
   const Reduction reduction = reduced("made", made::measured(heavy(), {.noise = 0.02, .seed = 8}));
   const std::vector<LossBin> bins = loss_bins(reduction);
   SceneInUnits scene = heavy();
-  scene.secondary_mass = 3, scene.restitution = 0.6;
+  scene.damper().secondary_mass = 3, scene.damper().restitution = 0.6;
   FitOptions options;
   options.parameters = {FitParameter::restitution, FitParameter::secondary_mass};
   options.runs = 120;
@@ -157,8 +162,7 @@ TEST_CASE("a fit for which an option is out of range, or of a list of dampers, i
   options.parameters.clear();
   CHECK(fields(heavy(), options) == Names{"parameters"});
   SceneInUnits list = heavy();
-  list.secondary_mass.reset(), list.clearance.reset(), list.restitution.reset();
-  list.dampers = {{.secondary_mass = 4, .clearance = 8}};
+  list.dampers.push_back({.secondary_mass = 4, .clearance = 8});
   CHECK(fields(list, {}) == Names{"dampers"});
 
   // The same before a comparison begins.

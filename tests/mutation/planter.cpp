@@ -122,10 +122,13 @@ void each_entry(Run& run, Visit all) {
   all("stop_reason", run.stop_reason);
   all("end_time", run.end_time);
   const auto scene = under("scene"), engine = under("engine");
-  for (const SceneField& field : scene_fields) scene(field.name, run.scene.*field.member);
-  each_damper(run.scene.dampers, scene, [](SceneDamper& damper, auto visit) {
-    for (const SceneDamperField& field : scene_damper_fields) visit(field.name, damper.*field.member);
-  });
+  const bool one = has_one_damper(run.scene);
+  for (const SceneField& field : scene_fields)
+    if (one || field.number.own) scene(field.name, field.number.in(run.scene));
+  if (!one)
+    each_damper(run.scene.dampers, scene, [](SceneDamper& damper, auto visit) {
+      for (const SceneField& field : scene_damper_fields) visit(field.name, damper.*field.number.of_damper);
+    });
   scene("until_time", run.scene.until_time);
   scene("until_amplitude", run.scene.until_amplitude);
   for_each_option(run.engine, [&](const OptionInfo& option, auto& value) { engine(option.name, value); });
@@ -244,17 +247,17 @@ Result with_fault(std::string_view where, Result result, const std::string& abov
   RESULT with_fault_##NAME(__VA_ARGS__)
 
 WRAPPED(Run, simulate, SIMULATE, const Scene& scene, const Engine& engine, const Record& record) {
-  return with_fault(std::string(name_of(engine)) + (scene.dampers.empty() ? "" : "-dampers"),
+  return with_fault(std::string(name_of(engine)) + (has_one_damper(scene) ? "" : "-dampers"),
                     real_simulate(scene, engine, record));
 }
 WRAPPED(std::string, run_text, RUN_TEXT, const Run& run, const std::optional<Scales>& scales) {
   return with_fault("file", real_run_text(run, scales));
 }
-WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file, DamperList dampers) {
-  return with_fault("read", real_read_run(file, dampers));
+WRAPPED(Run, read_run, READ_RUN, const std::filesystem::path& file) {
+  return with_fault("read", real_read_run(file));
 }
-WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& text, DamperList dampers) {
-  return with_fault("read", real_parse_run(name, text, dampers));
+WRAPPED(Run, parse_run, PARSE_RUN, const std::string& name, const std::string& text) {
+  return with_fault("read", real_parse_run(name, text));
 }
 WRAPPED(Table, figure_table, FIGURE_TABLE, const Figure& figure, const FigureRuns& runs,
         const FigureResponses& responses, const FigureSweeps& sweeps) {

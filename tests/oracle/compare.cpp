@@ -26,11 +26,12 @@ struct Accuracy {
 constexpr Accuracy closed_forms{0x1p-53, 4 * 0x1p-53, 1e-7, operations};
 // Central differences with a hundred steps for each contact or period: (2 pi / 200)^2 / 24 and more.
 constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3, true};
-// The first step is a hundredth of half a contact, as the engine's own default is; it is divided by these where
-// that is not short enough, and each of them by 4 for the order.
+// The first step is a hundredth of half a contact, as the engine's own default is; it is divided by these
+// where that is not short enough, and each of them by 4 for the order.
 constexpr std::array<double, 3> finer_steps{1, 4, 16};
 double first_step(const Scene& scene) {
-  const double contact = std::sqrt(scene.mass_ratio / (scene.wall_stiffness * (1 + scene.mass_ratio)));
+  const double contact = std::sqrt(scene.damper().mass_ratio /
+                                   (scene.damper().wall_stiffness * (1 + scene.damper().mass_ratio)));
   const double shortest =
       std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
   return std::numbers::pi / 100 * shortest;
@@ -315,8 +316,8 @@ Prediction predict(Question question, const Accuracy& accuracy) {
   result.samples.resize(question.samples.size());
 
   // Sizes so far, of each kind.
-  Quad x = magnitude(question.scene.x0), v = magnitude(question.scene.v0), y = magnitude(question.scene.y0),
-       w = magnitude(question.scene.w0);
+  Quad x = magnitude(question.scene.x0), v = magnitude(question.scene.v0),
+       y = magnitude(question.scene.damper().y0), w = magnitude(question.scene.damper().w0);
   for (std::size_t i = 0; i < plain.samples.size(); ++i) {
     const Sample& each = plain.samples[i];
     x = std::max(x, magnitude(each.x)), v = std::max(v, magnitude(each.v));
@@ -463,7 +464,8 @@ std::int64_t judge_run(const Run& run, Question question, const Prediction& pred
     const Quad omega_f = scene.force_frequency;
     const Quad force =
         std::abs(scene.force_amplitude) * std::min(Quad(1), omega_f * t) / std::max(Quad(1), omega_f);
-    const Quad given = scene.mass_ratio / (1 + scene.mass_ratio) * size(w_, t);  // by the secondary mass
+    const Quad given =
+        scene.damper().mass_ratio / (1 + scene.damper().mass_ratio) * size(w_, t);  // by the secondary mass
     return Quad(rounding) * (force + given + size(x_, t) + size(v_, t));
   };
   // Central differences take a step for an instant, at the release too.

@@ -30,7 +30,7 @@ Scene scene_until(double time) {
 
 TEST_CASE("a half cycle that begins inside a contact has its peak") {
   Scene scene = scene_until(20);
-  scene.mass_ratio = 0.1, scene.restitution = 0.3, scene.damping_ratio = 0.7;
+  scene.damper().mass_ratio = 0.1, scene.damper().restitution = 0.3, scene.damping_ratio = 0.7;
   agrees(scene, Exact{});
   scene.until_time.reset();
   scene.until_amplitude = 0.3;
@@ -39,9 +39,9 @@ TEST_CASE("a half cycle that begins inside a contact has its peak") {
 
 TEST_CASE("a mass that is struck just as it would be released is released at once") {
   Scene scene = scene_until(12);
-  scene.mass_ratio = 0.6, scene.restitution = 0, scene.x0 = 0.1, scene.y0 = 0.9;
+  scene.damper().mass_ratio = 0.6, scene.damper().restitution = 0, scene.x0 = 0.1, scene.damper().y0 = 0.9;
   agrees(scene, Restitution{});
-  scene.x0 = 0.25, scene.y0 = 0.75, scene.mass_ratio = 1;
+  scene.x0 = 0.25, scene.damper().y0 = 0.75, scene.damper().mass_ratio = 1;
   agrees(scene, Restitution{});
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("a crossing that coincides with an impact is there") {
 
 TEST_CASE("a crossing right after the release is there") {
   Scene scene = scene_until(8);
-  scene.x0 = 1e-16, scene.v0 = -0.3, scene.y0 = 0.5, scene.damping_ratio = 0.5;
+  scene.x0 = 1e-16, scene.v0 = -0.3, scene.damper().y0 = 0.5, scene.damping_ratio = 0.5;
   agrees(scene, Exact{});
   agrees(scene, Restitution{});
 }
@@ -64,12 +64,12 @@ TEST_CASE("a force at the undamped frequency is answered where successive terms 
        {0.8660254037844386, 0.7071067811865476, 0.8090169943749475, 0.30901699437494745, 0.5}) {
     CAPTURE(zeta);
     Scene scene = scene_until(0.499);
-    scene.damping_ratio = zeta, scene.force_amplitude = 1, scene.x0 = 0, scene.y0 = 0.5;
+    scene.damping_ratio = zeta, scene.force_amplitude = 1, scene.x0 = 0, scene.damper().y0 = 0.5;
     agrees(scene, Exact{});
     agrees(scene, Restitution{});
     // Stuck, from the start: the pair's undamped frequency, and its damping ratio.
     scene = scene_until(3);
-    scene.mass_ratio = 1, scene.x0 = -1, scene.y0 = 0;
+    scene.damper().mass_ratio = 1, scene.x0 = -1, scene.damper().y0 = 0;
     scene.force_frequency = std::sqrt(0.5), scene.damping_ratio = zeta * std::sqrt(2);
     scene.force_amplitude = 0.25;
     agrees(scene, Restitution{});
@@ -80,12 +80,12 @@ TEST_CASE("a contact whose two motions have one frequency and one damping keeps 
   for (const double nu : {4.0, 1.0, 0.25, 0.02}) {
     CAPTURE(nu);
     Scene scene = scene_until(20);
-    scene.mass_ratio = nu, scene.wall_stiffness = nu, scene.damping_ratio = std::sqrt(nu),
-    scene.restitution = 1;
+    scene.damper().mass_ratio = nu, scene.damper().wall_stiffness = nu, scene.damping_ratio = std::sqrt(nu),
+    scene.damper().restitution = 1;
     agrees(scene, Exact{});
     scene.damping_ratio = 0;
-    scene.wall_stiffness = nu / ((1 + nu) * (1 + nu));
-    scene.restitution = std::exp(-M_PI * std::sqrt(nu));
+    scene.damper().wall_stiffness = nu / ((1 + nu) * (1 + nu));
+    scene.damper().restitution = std::exp(-M_PI * std::sqrt(nu));
     agrees(scene, Exact{});
   }
 }
@@ -94,15 +94,16 @@ TEST_CASE("just below critical damping event times keep their digits") {
   for (const double zeta : {0.9999999999999999, 0.999999999999, 0.99999999, 1.0, 1.0000000000000002}) {
     CAPTURE(zeta);
     Scene scene = scene_until(20);
-    scene.damping_ratio = zeta, scene.x0 = 0.4, scene.v0 = -0.9, scene.y0 = 0.5, scene.mass_ratio = 1e-6;
+    scene.damping_ratio = zeta, scene.x0 = 0.4, scene.v0 = -0.9, scene.damper().y0 = 0.5,
+    scene.damper().mass_ratio = 1e-6;
     agrees(scene, Exact{});
     agrees(scene, Restitution{});
   }
   for (const double nu : {0.6, 0.02, 4.0}) {
     CAPTURE(nu);
     Scene scene = scene_until(12);
-    scene.mass_ratio = nu, scene.damping_ratio = std::sqrt(1 + nu), scene.restitution = 0, scene.x0 = -2,
-    scene.y0 = 1;
+    scene.damper().mass_ratio = nu, scene.damping_ratio = std::sqrt(1 + nu), scene.damper().restitution = 0,
+    scene.x0 = -2, scene.damper().y0 = 1;
     agrees(scene, Restitution{});
     scene.damping_ratio = std::nextafter(scene.damping_ratio, 0);
     agrees(scene, Restitution{});
@@ -121,45 +122,47 @@ TEST_CASE("a slow strong force costs no digits") {
 
 TEST_CASE("a primary mass that hardly moves keeps its digits beside a fast secondary mass") {
   Scene scene = scene_until(30);
-  scene.mass_ratio = 2.03876447225524e-06, scene.restitution = 0.08490110227207359;
-  scene.damping_ratio = 0.014532273441422536, scene.wall_stiffness = 259357231165.61456;
-  scene.x0 = 0, scene.y0 = 1.0000000991587372, scene.w0 = 0.03999293813379557;
+  scene.damper().mass_ratio = 2.03876447225524e-06, scene.damper().restitution = 0.08490110227207359;
+  scene.damping_ratio = 0.014532273441422536, scene.damper().wall_stiffness = 259357231165.61456;
+  scene.x0 = 0, scene.damper().y0 = 1.0000000991587372, scene.damper().w0 = 0.03999293813379557;
   agrees(scene, Exact{});
 }
 
 TEST_CASE("a peak right after the begin of a contact keeps its digits") {
   Scene scene = scene_until(1);
-  scene.mass_ratio = 1.7788661678010587, scene.restitution = 1, scene.wall_stiffness = 89.2598342685958;
-  scene.x0 = -3.687453826191783e-05, scene.y0 = 0.3651483031492725, scene.w0 = 70.34015778083854;
+  scene.damper().mass_ratio = 1.7788661678010587, scene.damper().restitution = 1,
+  scene.damper().wall_stiffness = 89.2598342685958;
+  scene.x0 = -3.687453826191783e-05, scene.damper().y0 = 0.3651483031492725,
+  scene.damper().w0 = 70.34015778083854;
   scene.force_amplitude = -0.004433160777043578, scene.force_frequency = 9.800182574312112;
   agrees(scene, Exact{});
 }
 
 TEST_CASE("what a force does early in a contact keeps its digits") {
   Scene scene = scene_until(1);
-  scene.mass_ratio = 0.11927822881077497, scene.restitution = 0.8165574348600294;
-  scene.damping_ratio = 0.9999849950532019, scene.wall_stiffness = 0.8947187854820589;
-  scene.x0 = 0, scene.y0 = -1.8643620120393543e-08;
+  scene.damper().mass_ratio = 0.11927822881077497, scene.damper().restitution = 0.8165574348600294;
+  scene.damping_ratio = 0.9999849950532019, scene.damper().wall_stiffness = 0.8947187854820589;
+  scene.x0 = 0, scene.damper().y0 = -1.8643620120393543e-08;
   scene.force_amplitude = 0.08479664183223828, scene.force_frequency = 3.9645981703335313;
   agrees(scene, Exact{});
 }
 
 TEST_CASE("a force moves a light primary mass and a heavy secondary mass in contact with all digits") {
   Scene scene = scene_until(5.278041916350764);
-  scene.mass_ratio = 395.4939628313421, scene.restitution = 0.5540917798383068;
-  scene.wall_stiffness = 64.41119708703405, scene.x0 = 0, scene.w0 = 2.2326822874498287e-06;
+  scene.damper().mass_ratio = 395.4939628313421, scene.damper().restitution = 0.5540917798383068;
+  scene.damper().wall_stiffness = 64.41119708703405, scene.x0 = 0, scene.damper().w0 = 2.2326822874498287e-06;
   scene.force_amplitude = 4.226940742030566, scene.force_frequency = 0.4245708274316824;
   agrees(scene, Exact{});
 }
 
 TEST_CASE("a peak within a complete chattering after a release from rest is where the impacts put it") {
   Scene scene = scene_until(30);
-  scene.mass_ratio = 0.01433155580774274, scene.restitution = 0.07766068056754194;
-  scene.x0 = 3.559547141860511, scene.y0 = 1, scene.w0 = 0.0008186218997506995;
+  scene.damper().mass_ratio = 0.01433155580774274, scene.damper().restitution = 0.07766068056754194;
+  scene.x0 = 3.559547141860511, scene.damper().y0 = 1, scene.damper().w0 = 0.0008186218997506995;
   agrees(scene, Restitution{});
-  scene.mass_ratio = 0.507891951125465, scene.restitution = 0.7251151107590299;
+  scene.damper().mass_ratio = 0.507891951125465, scene.damper().restitution = 0.7251151107590299;
   scene.damping_ratio = 0.0003966002641233857, scene.x0 = 7.834065863578939,
-  scene.w0 = 1.4538479864120097e-06;
+  scene.damper().w0 = 1.4538479864120097e-06;
   agrees(scene, Restitution{});
 }
 
@@ -167,36 +170,38 @@ TEST_CASE("a turn is not taken for a zero, nor a nearest approach for an impact"
   // x' = sin t (t f0/2 - 1): the root of x's parabola, sqrt(2), is next to the turn at 2/f0, where Halley's
   // step vanishes, too.
   Scene scene = scene_until(6);
-  scene.x0 = 1, scene.y0 = 0.5, scene.force_amplitude = 1.41421356;
+  scene.x0 = 1, scene.damper().y0 = 0.5, scene.force_amplitude = 1.41421356;
   agrees(scene, Exact{});
   agrees(scene, Restitution{});
-  scene.y0 = 0, scene.force_amplitude = 1.414213562;
+  scene.damper().y0 = 0, scene.force_amplitude = 1.414213562;
   agrees(scene, Exact{});
   agrees(scene, Restitution{});
 }
 
 TEST_CASE("cem knows from the first step to which side a force moves a mass at rest") {
   Scene scene = scene_until(5);
-  scene.mass_ratio = 0.043395456923558985, scene.restitution = 0.4535579217697141;
-  scene.wall_stiffness = 415.90613257517964, scene.x0 = 0, scene.y0 = 1, scene.force_amplitude = -20;
+  scene.damper().mass_ratio = 0.043395456923558985, scene.damper().restitution = 0.4535579217697141;
+  scene.damper().wall_stiffness = 415.90613257517964, scene.x0 = 0, scene.damper().y0 = 1,
+  scene.force_amplitude = -20;
   agrees(scene, Cem{.locate = true});
-  scene.y0 = 0, scene.force_amplitude = 0.002282329681120003, scene.mass_ratio = 100;
-  scene.wall_stiffness = 24.87109110725685;
+  scene.damper().y0 = 0, scene.force_amplitude = 0.002282329681120003, scene.damper().mass_ratio = 100;
+  scene.damper().wall_stiffness = 24.87109110725685;
   agrees(scene, Cem{.locate = true});
   // Where an impact at once outweighs the force.
-  scene.mass_ratio = 0.8639750845521202, scene.wall_stiffness = 232.5304680212508;
-  scene.y0 = 1, scene.w0 = 0.5079995904720795, scene.force_amplitude = -0.023887365656086762;
+  scene.damper().mass_ratio = 0.8639750845521202, scene.damper().wall_stiffness = 232.5304680212508;
+  scene.damper().y0 = 1, scene.damper().w0 = 0.5079995904720795,
+  scene.force_amplitude = -0.023887365656086762;
   agrees(scene, Cem{.locate = true});
 }
 
 TEST_CASE("extreme mass ratios are rejected, or give finite numbers") {
   Scene least;
-  least.mass_ratio = 5e-324, least.until_time = 10;
+  least.damper().mass_ratio = 5e-324, least.until_time = 10;
   CHECK(!problems_of(least).empty());
   for (const double nu : {1e-9, 1e6}) {
     CAPTURE(nu);
     Scene scene = scene_until(10);
-    scene.mass_ratio = nu;
+    scene.damper().mass_ratio = nu;
     Record record;
     record.impacts = record.contacts = record.energy = true;
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
@@ -213,9 +218,10 @@ TEST_CASE("at rest on a wall with y'' = y''' = 0 the masses stick or part as the
         for (const double y0 : {0.0, 1.0})
           for (const bool rigid : {true, false}) {
             Scene scene;
-            scene.mass_ratio = 0.25, scene.restitution = f0 > 0 ? 0.5 : 0, scene.damping_ratio = zeta;
+            scene.damper().mass_ratio = 0.25, scene.damper().restitution = f0 > 0 ? 0.5 : 0,
+            scene.damping_ratio = zeta;
             scene.force_amplitude = f0, scene.force_frequency = omega;
-            scene.v0 = f0 * omega, scene.x0 = -2 * zeta * scene.v0, scene.y0 = y0;
+            scene.v0 = f0 * omega, scene.x0 = -2 * zeta * scene.v0, scene.damper().y0 = y0;
             scene.until_time = 6;
             oracle::Question question;
             question.scene = scene;

@@ -196,7 +196,7 @@ int run(const std::vector<std::string>& words) {
     } else if (word == "--until-amplitude" && number) {
       scene.until_amplitude = number, options.one = true;
     } else if (known != scene_fields.end() && number) {
-      scene.*known->member = *number, options.one = true;
+      known->number.in(scene) = *number, options.one = true;
     } else {
       return usage("unknown option or value: " + word + " " + value);
     }

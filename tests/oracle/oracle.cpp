@@ -115,11 +115,11 @@ class Integrator {
 
   void prepare() {
     const auto& scene = question_.scene;
-    p_.nu = noisy(scene.mass_ratio);
-    p_.e = noisy(scene.restitution);
-    if (scene.restitution == 1) p_.e = 1;
+    p_.nu = noisy(scene.damper().mass_ratio);
+    p_.e = noisy(scene.damper().restitution);
+    if (scene.damper().restitution == 1) p_.e = 1;
     p_.zeta = noisy(scene.damping_ratio);
-    p_.k = noisy(scene.wall_stiffness);
+    p_.k = noisy(scene.damper().wall_stiffness);
     p_.f0 = noisy(scene.force_amplitude);
     p_.omega_f = noisy(scene.force_frequency);
     const Quad pi = acosq(-1);
@@ -135,10 +135,10 @@ class Integrator {
 
     state_.x = noisy(scene.x0);
     state_.v = noisy(scene.v0);
-    state_.w = noisy(scene.w0);
-    mirrored_ = scene.y0 > 0.5;
+    state_.w = noisy(scene.damper().w0);
+    mirrored_ = scene.damper().y0 > 0.5;
     // The distance from the nearer wall: 1 - y0 has no rounding in quadruple precision.
-    state_.q = noisy(mirrored_ ? 1 - Quad(scene.y0) : Quad(scene.y0));
+    state_.q = noisy(mirrored_ ? 1 - Quad(scene.damper().y0) : Quad(scene.damper().y0));
     if (mirrored_) state_.x = -state_.x, state_.v = -state_.v, state_.w = -state_.w;
     until_ = scene.until_time ? Quad(*scene.until_time) : Quad(1e30L);
   }

@@ -36,8 +36,8 @@ Question flight(double end) {
   Question question;
   question.scene.x0 = 0.25;
   question.scene.v0 = 0.125;
-  question.scene.y0 = 0.5;
-  question.scene.w0 = -0.125;  // the secondary mass at rest
+  question.scene.damper().y0 = 0.5;
+  question.scene.damper().w0 = -0.125;  // the secondary mass at rest
   question.scene.until_time = end;
   return question;
 }
@@ -52,7 +52,7 @@ Quad residual(const Answer& answer) {
 
 TEST_CASE("an undamped flight is a cosine, with its crossings and peaks where they are known") {
   Question question = flight(40);
-  question.scene.v0 = question.scene.w0 = 0;
+  question.scene.v0 = question.scene.damper().w0 = 0;
   question.samples = {0, 1, 17.5, 40};
   const Answer answer = answer_to(question);
   CHECK(answer.impacts.empty());
@@ -110,7 +110,8 @@ TEST_CASE("a rigid wall gives back e times the relative velocity and keeps the m
   Question question;
   question.walls = Walls::rigid;
   Scene& scene = question.scene;
-  scene.x0 = 0, scene.v0 = 0, scene.y0 = 0.5, scene.w0 = 2, scene.mass_ratio = 0.25, scene.restitution = 0.5;
+  scene.x0 = 0, scene.v0 = 0, scene.damper().y0 = 0.5, scene.damper().w0 = 2,
+  scene.damper().mass_ratio = 0.25, scene.damper().restitution = 0.5;
   scene.until_time = 0.3;
   question.samples = {0.3};
   const Answer answer = answer_to(question);
@@ -128,8 +129,9 @@ TEST_CASE("a rigid wall gives back e times the relative velocity and keeps the m
 TEST_CASE("a compliant wall that is held by a heavy primary mass gives back e, half a period later") {
   Question question;
   Scene& scene = question.scene;
-  scene.x0 = 0, scene.y0 = 0.5, scene.w0 = 1, scene.mass_ratio = 1e-30, scene.restitution = 0.5;
-  scene.wall_stiffness = 1e-26;  // omega_m = 100
+  scene.x0 = 0, scene.damper().y0 = 0.5, scene.damper().w0 = 1, scene.damper().mass_ratio = 1e-30,
+  scene.damper().restitution = 0.5;
+  scene.damper().wall_stiffness = 1e-26;  // omega_m = 100
   scene.until_time = 1;
   question.samples = {1};
   const Answer answer = answer_to(question);
@@ -146,7 +148,7 @@ TEST_CASE("a plastic impact sticks until the pair's acceleration changes its sig
   Question question;
   question.walls = Walls::rigid;
   Scene& scene = question.scene;
-  scene.x0 = 0, scene.y0 = 0, scene.restitution = 0, scene.mass_ratio = 0.5;
+  scene.x0 = 0, scene.damper().y0 = 0, scene.damper().restitution = 0, scene.damper().mass_ratio = 0.5;
   scene.force_amplitude = 1, scene.force_frequency = 0.5;
   scene.until_time = 10;
   question.samples = {0.5, 1};
@@ -172,7 +174,8 @@ TEST_CASE("a complete chattering ends where the sum of its bounces does") {
   Question question;
   question.walls = Walls::rigid;
   Scene& scene = question.scene;
-  scene.x0 = -1, scene.y0 = 0, scene.w0 = 1e-6, scene.mass_ratio = 1e-9, scene.restitution = 0.5;
+  scene.x0 = -1, scene.damper().y0 = 0, scene.damper().w0 = 1e-6, scene.damper().mass_ratio = 1e-9,
+  scene.damper().restitution = 0.5;
   scene.until_time = 1;
   const Answer answer = answer_to(question);
   REQUIRE(!answer.contacts.empty());
@@ -186,8 +189,9 @@ TEST_CASE("a chattering whose bounces become slower than rounding is complete") 
   Question question;
   question.walls = Walls::rigid;
   Scene& scene = question.scene;
-  scene.mass_ratio = 0.1, scene.restitution = 0.3702936918017719, scene.damping_ratio = 0.999999999999;
-  scene.x0 = -2, scene.v0 = 1, scene.y0 = 1, scene.force_amplitude = -0.5;
+  scene.damper().mass_ratio = 0.1, scene.damper().restitution = 0.3702936918017719,
+  scene.damping_ratio = 0.999999999999;
+  scene.x0 = -2, scene.v0 = 1, scene.damper().y0 = 1, scene.force_amplitude = -0.5;
   scene.force_frequency = 33.166247903554, scene.until_time = 0.01;
   const Answer answer = answer_to(question);
   REQUIRE(answer.contacts.size() == 1);
@@ -220,13 +224,13 @@ TEST_CASE("the energy balance closes in decays with impacts, contacts, force and
 
 TEST_CASE("the mirrored scene has the mirrored run") {
   Question question, mirrored;
-  question.scene.y0 = 0.25;
-  question.scene.w0 = 0.5;
+  question.scene.damper().y0 = 0.25;
+  question.scene.damper().w0 = 0.5;
   question.scene.force_amplitude = 1;
   question.scene.until_time = 15;
   mirrored = question;
-  mirrored.scene.x0 *= -1, mirrored.scene.w0 *= -1, mirrored.scene.force_amplitude *= -1;
-  mirrored.scene.y0 = 0.75;
+  mirrored.scene.x0 *= -1, mirrored.scene.damper().w0 *= -1, mirrored.scene.force_amplitude *= -1;
+  mirrored.scene.damper().y0 = 0.75;
   const Answer a = answer_to(question), b = answer_to(mirrored);
   REQUIRE(a.impacts.size() == b.impacts.size());
   for (std::size_t i = 0; i < a.impacts.size(); ++i) {

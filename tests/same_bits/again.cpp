@@ -1,10 +1,12 @@
-// Simulates again what run and response files hold, by the library alone: the engines of another build are compared
-// without compiling the whole program.
+// Simulates again what run and response files hold, by the library alone: the engines of another build are
+// compared without compiling the whole program.
 //
 //   again < JOBS     each line: FILE TO SCENE WINDOW..., with tabs between
 //
-// Writes to TO what the scene, the engine and the sections of FILE give. SCENE is the scene file whose units TO has, or
-// "-". The windows are those of --history, T0:T1:N, or of --history-below, below:A:LENGTH:N: FILE does not hold them.
+// Writes to TO what the scene, the engine and the sections of FILE give. SCENE is the scene file whose units
+// TO has, or
+// "-". The windows are those of --history, T0:T1:N, or of --history-below, below:A:LENGTH:N: FILE does not
+// hold them.
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -44,7 +46,7 @@ std::string again(const std::string& name, const std::string& text, const std::s
                   std::istream& windows) {
   if (text.find('"' + std::string(response_schema) + '"') != std::string::npos)
     return response_text(found_for(parse_response(name, text), Threads{}));
-  const Run run = parse_run(name, text, DamperList::allowed);
+  const Run run = parse_run(name, text);
   Record record{.half_cycles = run.half_cycles.has_value(),
                 .impacts = run.impacts.has_value(),
                 .contacts = run.contacts.has_value(),
@@ -53,7 +55,7 @@ std::string again(const std::string& name, const std::string& text, const std::s
                 .history_below = {}};
   for (std::string window; std::getline(windows, window, '\t');) add_window(record, window);
   return run_text(simulate(run.scene, run.engine, record),
-                  scene == "-" ? std::nullopt : read_scene_file(scene, DamperList::allowed).scales);
+                  scene == "-" ? std::nullopt : read_scene_file(scene).scales);
 }
 
 }  // namespace

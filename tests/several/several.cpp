@@ -135,7 +135,7 @@ int run(const std::vector<std::string>& words) {
     else if (word == "--verbose" && whole)
       options.verbose = *whole != 0;
     else if (word == "--scene")
-      options.scene = read_scene(value, DamperList::allowed);
+      options.scene = read_scene(value);
     else
       return usage("unknown option or value: " + word + " " + value);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "impact_damper/simulate.hpp"
+#include "list_of_one.hpp"
 #include "print.hpp"
 
 namespace several {
@@ -491,6 +492,11 @@ Record everything(double end) {
 }  // namespace
 
 Run simulated(const Scene& scene, Walls walls) {
+  if (has_one_damper(scene)) {
+    Run run = in_its_own_units(simulated(list_of_one(scene), walls));
+    run.scene = scene;
+    return run;
+  }
   if (walls == Walls::compliant) return simulate(scene, Exact{}, everything(*scene.until_time));
   Restitution engine;
   engine.max_steps = 1'000'000;  // far more than any of these scenes needs

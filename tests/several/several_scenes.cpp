@@ -25,6 +25,7 @@ Scene random_scene(std::uint64_t seed) {
   }
   scene.until_time = random.uniform(5, 40);
   const int count = 1 + int(random.bits() % 6);
+  scene.dampers.clear();
   for (int i = 0; i < count; ++i) {
     SceneDamper damper;
     // Some begin as the one before.
@@ -59,6 +60,7 @@ Scene round_scene(std::uint64_t seed) {
   }
   scene.until_time = one_of({3, 10, 20, 4 * std::acos(-1.0)});
   const int count = 1 + int(random.bits() % 6);
+  scene.dampers.clear();
   const bool one_clearance = random.chance(0.5), one_start = random.chance(0.5);
   for (int i = 0; i < count; ++i) {
     SceneDamper damper;
@@ -156,6 +158,7 @@ Scene quiet_scene(reference::Random& random) {
     scene.damping_ratio = 0;
     scene.x0 = random.uniform(-0.5, 0.5), scene.v0 = random.chance(0.5) ? 0 : random.uniform(-0.5, 0.5);
   }
+  scene.dampers.clear();
   for (int i = 1 + int(random.bits() % 4); i > 0; --i) {
     SceneDamper damper;
     damper.mass_ratio = random.log_uniform(1e-4, 0.5);
@@ -177,6 +180,7 @@ Scene pressing_scene(reference::Random& random) {
   if (random.chance(0.3)) scene.v0 = random.log_uniform(1e-6, 0.1) * random.sign();
   scene.damping_ratio = random.chance(0.4) ? 0 : random.log_uniform(1e-3, 2);
   const int count = 2 + int(random.bits() % 3);
+  scene.dampers.clear();
   for (int i = 0; i < count; ++i) {
     SceneDamper damper;
     damper.clearance = random.log_uniform(0.3, 3);

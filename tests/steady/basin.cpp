@@ -17,12 +17,11 @@ const Engine rigid = Restitution{}, compliant = Exact{};
 constexpr auto no_progress = [](std::int64_t) {};
 
 Scene scene_at(double frequency) {
-  return {.mass_ratio = 0.1,
-          .damping_ratio = 0.01,
+  return {.damping_ratio = 0.01,
           .x0 = 0,
-          .y0 = 0.5,
           .force_amplitude = 0.05,
-          .force_frequency = frequency};
+          .force_frequency = frequency,
+          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
 }
 
 // Four motions coexist here: two of two periods and two of four, mirror images of each other.
@@ -167,7 +166,7 @@ TEST_CASE("idle is where a direct run has no impact") {
   for (const double zeta : {0.0, 0.01}) {
     Scene damped = scene;
     damped.damping_ratio = zeta;
-    const Axis x0{&Scene::x0, -1, 1, 41}, y0{&Scene::y0, 0, 1, 11};
+    const Axis x0{&Scene::x0, -1, 1, 41}, y0{&SceneDamper::y0, 0, 1, 11};
     const Basin map =
         basin(damped, rigid, x0, y0, {.steady = {.tolerance = 1e-6, .max_periods = 30}}, 2, no_progress);
     int idle = 0, struck = 0;

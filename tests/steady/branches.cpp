@@ -196,8 +196,8 @@ TEST_CASE("branches do not depend on the number of threads, and more than were a
 TEST_CASE("where the orbit that a branch joins is not found, the branch goes on") {
   // The secant method for a junction leads to where no orbit is found.
   Scene scene;
-  scene.mass_ratio = 0.0375, scene.restitution = 0.469, scene.damping_ratio = 0.0475;
-  scene.wall_stiffness = 216, scene.x0 = 0, scene.y0 = 0.577;
+  scene.damper().mass_ratio = 0.0375, scene.damper().restitution = 0.469, scene.damping_ratio = 0.0475;
+  scene.damper().wall_stiffness = 216, scene.x0 = 0, scene.damper().y0 = 0.577;
   scene.force_amplitude = 0.1074;
   scene.until_time = 1;
   const Branches found = found_from(scene, {Parameter::force_frequency, 1.09, 0.8176}, {{0, 0, 0.577, 0}},

@@ -8,7 +8,7 @@ namespace impact_damper {
 // mass_ratio, damping_ratio, force_frequency, force_amplitude.
 inline Scene forced_scene(double nu, double zeta, double frequency, double amplitude) {
   Scene scene;
-  scene.mass_ratio = nu;
+  scene.damper().mass_ratio = nu;
   scene.damping_ratio = zeta;
   scene.force_frequency = frequency;
   scene.force_amplitude = amplitude;

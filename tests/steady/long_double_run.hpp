@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 
 #include "engines/observed.hpp"
 
@@ -32,7 +33,7 @@ struct Difference {
   std::array<int, 2> impacts{};
 };
 // change(scene, by): changes one number of the scene.
-template <class Change>
+template <std::invocable<Scene&, double> Change>
 Difference difference(const Scene& scene, const Engine& engine, double h, Change&& change) {
   const auto at = [&](double by) {
     Scene changed = scene;
@@ -49,8 +50,8 @@ Difference difference(const Scene& scene, const Engine& engine, double h, Change
   all.impacts = {c.impacts, d.impacts};
   return all;
 }
-inline Difference difference(const Scene& scene, const Engine& engine, double h, double Scene::*number) {
-  return difference(scene, engine, h, [&](Scene& changed, double by) { changed.*number += by; });
+inline Difference difference(const Scene& scene, const Engine& engine, double h, const SceneNumber& number) {
+  return difference(scene, engine, h, [&](Scene& changed, double by) { number.in(changed) += by; });
 }
 
 }  // namespace long_double_run

@@ -19,26 +19,26 @@ namespace {
 Scene forced(double nu, double zeta, double frequency, double amplitude) {
   Scene scene = forced_scene(nu, zeta, frequency, amplitude);
   scene.x0 = 0.3;
-  scene.y0 = 0.4;
-  scene.w0 = 0.2;
+  scene.damper().y0 = 0.4;
+  scene.damper().w0 = 0.2;
   return scene;
 }
 
 // Minus the mean divergence over periods that are each begun at phase 0, as the exponents' are.
 double mean_loss(Scene scene, const Engine& engine, int periods) {
   const PoincareMap map(scene, engine, 2);
-  State<double> s{scene.x0, scene.v0, scene.y0, scene.w0};
+  State<double> s{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
   double loss = 0;
   for (int i = 0; i < periods; ++i) {
     Scene period = map.scene();
-    period.x0 = s.x, period.v0 = s.v, period.y0 = s.y, period.w0 = s.w;
+    period.x0 = s.x, period.v0 = s.v, period.damper().y0 = s.y, period.damper().w0 = s.w;
     const Run run = simulate(period, engine, {.half_cycles = false, .impacts = true, .contacts = true});
     loss += 2 * scene.damping_ratio * map.duration();
     if (has_rigid_walls(engine)) {
-      loss -= 2 * double(run.impacts->time.size()) * std::log(scene.restitution);
+      loss -= 2 * double(run.impacts->time.size()) * std::log(scene.damper().restitution);
     } else {
-      const double k = scene.wall_stiffness, nu = scene.mass_ratio;
-      const double damping = 2 * std::sqrt(k / nu) * zeta_m<double>(scene, Calibration::fixed_wall);
+      const double k = scene.damper().wall_stiffness, nu = scene.damper().mass_ratio;
+      const double damping = 2 * std::sqrt(k / nu) * zeta_m<double>(scene.damper(), Calibration::fixed_wall);
       for (std::size_t n = 0; n < run.contacts->begin.size(); ++n)
         loss += (1 + nu) * damping * (run.contacts->end[n] - run.contacts->begin[n]);
     }
@@ -58,7 +58,7 @@ double sum_of(const std::vector<double>& all) {
 TEST_CASE("the exponents add up to the mean divergence") {
   const Scene chaotic = forced(0.05, 0.01, 0.9, 0.3), regular = forced(0.02, 0.05, 0.9, 0.1);
   Scene soft = chaotic;
-  soft.wall_stiffness = 20;
+  soft.damper().wall_stiffness = 20;
   const Scene sustained = forced(0.1, 0.02, 0.95, 0.3);  // contacts that damp the fast mode by exp(-200)
   int compared = 0;
   for (const Scene& scene : {chaotic, regular, soft, sustained}) {
@@ -109,7 +109,7 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
   REQUIRE(found.stop_reason == StopReason::time);
   const PoincareMap map(scene, Restitution{}, 2);
   const double distance = 1e-9;
-  State<double> one{scene.x0, scene.v0, scene.y0, scene.w0}, other = one;
+  State<double> one{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0}, other = one;
   other.x += distance;
   double stretch = 0;
   for (int i = 0; i < periods; ++i) {
@@ -171,7 +171,7 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
 TEST_CASE("sticking leaves two exponents") {
   Scene scene = forced(0.1, 0.02, 0.95, 0.3);
   const State<double> s = two_impact_orbits(scene).at(0).state;
-  scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
+  scene.x0 = s.x, scene.v0 = s.v, scene.damper().y0 = s.y, scene.damper().w0 = s.w;
   const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, 100, 100);
   REQUIRE(found.exponents.size() == 2);
   CHECK(found.exponents[0] < 0);

@@ -20,7 +20,9 @@ double linear_amplitude(const Scene& scene) {
   const double w = scene.force_frequency;
   return std::fabs(scene.force_amplitude) / std::hypot(1 - w * w, 2 * scene.damping_ratio * w);
 }
-State<double> state_of_scene(const Scene& scene) { return {scene.x0, scene.v0, scene.y0, scene.w0}; }
+State<double> state_of_scene(const Scene& scene) {
+  return {scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
+}
 double apart(const State<double>& a, const State<double>& b) {
   return std::max({std::fabs(a.x - b.x), std::fabs(a.v - b.v), std::fabs(a.y - b.y), std::fabs(a.w - b.w)});
 }
@@ -56,7 +58,7 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
     reference::Random random(seed);
     Scene scene = forced_scene(random.log_uniform(1e-4, 1), random.log_uniform(5e-3, 0.5),
                                random.uniform(0.5, 1.6), random.log_uniform(0.05, 1));
-    scene.restitution = random.uniform(0.2, 0.9);
+    scene.damper().restitution = random.uniform(0.2, 0.9);
     for (const TwoImpactOrbit& expected : two_impact_orbits(scene)) {
       State<double> guess = expected.state;
       if (!(guess.y > 0.01 && guess.y < 0.99) || expected.impact_speed < 0.05) continue;
@@ -269,7 +271,7 @@ TEST_CASE("compliant walls tend to rigid ones, with the root of the stiffness") 
   const TwoImpactOrbit rigid = two_impact_orbits(scene).at(0);
   double before = 0;
   for (const double stiffness : {1e6, 1e8, 1e10}) {
-    scene.wall_stiffness = stiffness;
+    scene.damper().wall_stiffness = stiffness;
     const Orbit orbit = *find_orbit(scene, Exact{.calibration = Calibration::two_body}, 1, rigid.state);
     CHECK(orbit.symmetric);
     const double off = apart(state_of_scene(orbit.scene), rigid.state);
@@ -287,7 +289,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
   };
   const Scene light = forced_scene(0.02, 0.05, 0.9, 0.1);
   Scene strong = forced_scene(0.1, 0.02, 0.95, 0.3);
-  strong.wall_stiffness = 1e5;
+  strong.damper().wall_stiffness = 1e5;
   const std::vector<Kind> kinds{{light, Restitution{}, two_impact_orbits(light).at(0).state},
                                 {light, Exact{}, two_impact_orbits(light).at(0).state},
                                 {strong, Restitution{}, two_impact_orbits(strong).at(0).state},
@@ -316,7 +318,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
     // The force's phase is known to 2^-52 omega_f t, by which all else is late; 1/(1 - |multiplier|) periods
     // of such errors add up.
     const double rate =
-        1 + std::fabs(scene.x0) + std::fabs(scene.w0) + 10 * std::fabs(orbit.impacts[0].speed);
+        1 + std::fabs(scene.x0) + std::fabs(scene.damper().w0) + 10 * std::fabs(orbit.impacts[0].speed);
     CHECK(apart(then, state_of_scene(orbit.scene)) <
           0x1p-52 * end * rate / (1 - orbit.multipliers[0].modulus()));
   }

@@ -11,6 +11,7 @@
 #include "forced_scene.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/branches.hpp"
+#include "list_of_one.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;
@@ -19,18 +20,21 @@ namespace {
 
 constexpr auto with_parameters = PoincareMap::Derivatives::by_state_and_parameters;
 
-// The same with the damper in a list.
-Scene as_list(Scene scene) {
-  scene.dampers = {{.mass_ratio = scene.mass_ratio,
-                    .restitution = scene.restitution,
-                    .clearance = 1,
-                    .wall_stiffness = scene.wall_stiffness}};
-  return scene;
-}
-SceneState as_list(const State<double>& s) {
-  SceneState state(s.x, s.v, 0, 0);
-  state.dampers = {{s.y, s.w}};
+// The same state in half the unit of length, for list_of_one(), and the list's image in the scene's own
+// units.
+SceneState in_half_units(const State<double>& s) {
+  SceneState state(2 * s.x, 2 * s.v, 0, 0);
+  state.dampers = {{2 * s.y, 2 * s.w}};
   return state;
+}
+PoincareImage in_own_units(PoincareImage image) {
+  SceneState& state = image.state;
+  state.x /= 2, state.v /= 2, state.dampers[0].y /= 2, state.dampers[0].w /= 2;
+  for (double& each : image.by_frequency) each /= 2;
+  for (OrbitImpact& each : image.impacts) each.speed /= 2;
+  if (image.slowest_impact) *image.slowest_impact /= 2;
+  if (image.nearest_miss) *image.nearest_miss /= 2;
+  return image;
 }
 
 // Two dampers that a force near resonance keeps striking.
@@ -78,7 +82,7 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
     reference::Random random(seed);
     Scene scene = forced_scene(random.log_uniform(1e-3, 1), random.log_uniform(1e-3, 0.5),
                                random.uniform(0.4, 2), random.log_uniform(0.1, 3));
-    scene.restitution = random.uniform(0.2, 0.9);
+    scene.damper().restitution = random.uniform(0.2, 0.9);
     const bool rigid = seed % 2 == 0;
     const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
     const int half_periods = 1 + int(seed % 3);
@@ -86,8 +90,8 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
                         random.uniform(-1, 1)};
     if (rigid && random.chance(0.2)) start.y = start.w = 0;
     const PoincareImage one = *PoincareMap(scene, engine, half_periods)(start, with_parameters),
-                        list = *PoincareMap(as_list(scene), engine, half_periods)(as_list(start),
-                                                                                  with_parameters);
+                        list = in_own_units(*PoincareMap(list_of_one(scene), engine, half_periods)(
+                            in_half_units(start), with_parameters));
     double scale = 1;
     for (const StateVector& row : one.by_state)
       for (const double entry : row) scale = std::max(scale, std::fabs(entry));
@@ -229,8 +233,8 @@ TEST_CASE("a damper that is not struck leaves the branches of the other as they 
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
     Scene alone = forced_scene(0.06, 0.05, 0.9, 0.05);
     alone.x0 = 0.5;
-    alone.y0 = 0.4;
-    alone.w0 = 0.2;
+    alone.damper().y0 = 0.4;
+    alone.damper().w0 = 0.2;
     Scene both = alone;
     both.dampers = {{.mass_ratio = 0.06, .y0 = 0.4, .w0 = 0.2},
                     {.mass_ratio = 0.04, .clearance = 5, .y0 = 2.2}};
@@ -333,13 +337,13 @@ TEST_CASE("no grazing is told where an impact is slow all along a branch") {
 
 TEST_CASE("a mass that sticks while phase 0 passes comes to stick once") {
   Scene scene = forced_scene(0.06, 0.3, 0.3, 3);
-  scene.restitution = 0.2;
+  scene.damper().restitution = 0.2;
   scene.x0 = 0.5;
-  scene.y0 = 0.4;
+  scene.damper().y0 = 0.4;
   const SteadyState steady = settled(scene, Restitution{});
   REQUIRE(steady.period == 1);
   const Orbit orbit = *find_orbit(scene, Restitution{}, 1, steady.state);
-  CHECK(orbit.scene.y0 * (1 - orbit.scene.y0) == 0);
+  CHECK(orbit.scene.damper().y0 * (1 - orbit.scene.damper().y0) == 0);
   CHECK(orbit.sticking == 2);
 }
 

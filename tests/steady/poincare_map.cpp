@@ -19,7 +19,7 @@ namespace {
 constexpr auto with_parameters = PoincareMap::Derivatives::by_state_and_parameters;
 
 Scene begun_at(Scene scene, const State<double>& s) {
-  scene.x0 = s.x, scene.v0 = s.v, scene.y0 = s.y, scene.w0 = s.w;
+  scene.x0 = s.x, scene.v0 = s.v, scene.damper().y0 = s.y, scene.damper().w0 = s.w;
   return scene;
 }
 
@@ -60,10 +60,10 @@ Case random_case(std::uint64_t seed) {
   reference::Random random(seed);
   Case all;
   Scene& scene = all.scene;
-  scene.mass_ratio = random.log_uniform(1e-3, 3);
-  scene.restitution = random.uniform(0.2, 0.95);
+  scene.damper().mass_ratio = random.log_uniform(1e-3, 3);
+  scene.damper().restitution = random.uniform(0.2, 0.95);
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 1.5);
-  scene.wall_stiffness = random.log_uniform(1, 1e5);
+  scene.damper().wall_stiffness = random.log_uniform(1, 1e5);
   scene.force_amplitude = coarse(random.log_uniform(0.1, 8));
   scene.force_frequency = coarse(random.log_uniform(0.3, 3));
   all.start = {coarse(random.uniform(-3, 3)), coarse(random.uniform(-2, 2)), coarse(random.uniform(0.1, 0.9)),
@@ -79,7 +79,8 @@ Case random_case(std::uint64_t seed) {
 }
 
 constexpr double step = 0x1p-24;
-constexpr std::array<double Scene::*, 4> numbers_of_state{&Scene::x0, &Scene::v0, &Scene::y0, &Scene::w0};
+constexpr std::array<SceneNumber, 4> numbers_of_state{&Scene::x0, &Scene::v0, &SceneDamper::y0,
+                                                      &SceneDamper::w0};
 
 }  // namespace
 
@@ -155,7 +156,7 @@ TEST_CASE("a mass that is pressed against its wall at phase 0 only adds to the m
     c.start = {-std::fabs(c.start.x) - 0.5, c.start.v, 0, 0};
     if (!(-2 * c.scene.damping_ratio * c.start.v - c.start.x > 0)) continue;
     const PoincareImage image = *PoincareMap(c.scene, Restitution{}, 1 + int(seed % 2))(c.start);
-    const double share = c.scene.mass_ratio / (1 + c.scene.mass_ratio);
+    const double share = c.scene.damper().mass_ratio / (1 + c.scene.damper().mass_ratio);
     for (const StateVector& row : image.by_state) {
       CHECK(row[2] == doctest::Approx(share * row[0]).epsilon(1e-9).scale(1e-3));
       CHECK(row[3] == doctest::Approx(share * row[1]).epsilon(1e-9).scale(1e-3));
@@ -204,10 +205,11 @@ TEST_CASE("volumes contract as the divergence and the impacts tell") {
     if (sticks || image.slowest_impact.value_or(1) < 1e-3) continue;
     double loss = 2 * c.scene.damping_ratio * map.duration();
     if (has_rigid_walls(c.engine)) {
-      loss -= 2 * double(run.impacts->time.size()) * std::log(c.scene.restitution);
+      loss -= 2 * double(run.impacts->time.size()) * std::log(c.scene.damper().restitution);
     } else {
-      const double k = c.scene.wall_stiffness, nu = c.scene.mass_ratio;
-      const double damping = 2 * std::sqrt(k / nu) * zeta_m<double>(c.scene, Calibration::fixed_wall);
+      const double k = c.scene.damper().wall_stiffness, nu = c.scene.damper().mass_ratio;
+      const double damping =
+          2 * std::sqrt(k / nu) * zeta_m<double>(c.scene.damper(), Calibration::fixed_wall);
       for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
         loss += (1 + nu) * damping * (run.contacts->end[i] - run.contacts->begin[i]);
     }
@@ -284,6 +286,6 @@ TEST_CASE("what is no map is rejected, with its fields") {
   CHECK_THROWS_AS(PoincareMap(scene, Cem{}, 1), InvalidArguments);
   CHECK_THROWS_AS(PoincareMap(scene, Exact{}, 0), InvalidArguments);
   CHECK_THROWS_AS(PoincareMap(Scene{}, Exact{}, 1), InvalidArguments);
-  scene.mass_ratio = -1;
+  scene.damper().mass_ratio = -1;
   CHECK_THROWS_AS(PoincareMap(scene, Exact{}, 1), InvalidArguments);
 }

@@ -18,12 +18,11 @@ using namespace impact_damper;
 
 // Its release strikes at once.
 Scene active_scene() {
-  return {.mass_ratio = 0.1,
-          .damping_ratio = 0.01,
+  return {.damping_ratio = 0.01,
           .x0 = 1,
-          .y0 = 0.5,
           .force_amplitude = 0.05,
-          .force_frequency = 0.9};
+          .force_frequency = 0.9,
+          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
 }
 
 SweepResponse asked_sweep() {
@@ -65,7 +64,7 @@ OrbitsResponse asked_orbits() {
                         .starts = {{{}, 0, {}, {6, 0, 0, 0}}},
                         .complete = true,
                         .branches = {}};
-  orbits.scene.mass_ratio = 0.02;
+  orbits.scene.damper().mass_ratio = 0.02;
   orbits.scene.damping_ratio = 0.02;
   return orbits;
 }
@@ -280,7 +279,7 @@ TEST_CASE("what is asked for differs in each part that is another") {
   };
   CHECK(differences(asked).empty());
   SweepResponse other = asked;
-  other.scene.restitution = 0.7;
+  other.scene.damper().restitution = 0.7;
   CHECK(differences(other) == "/scene/restitution ");
   other = asked;
   other.engine = Exact{};

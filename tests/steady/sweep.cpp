@@ -10,6 +10,7 @@
 
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/response_file.hpp"
+#include "list_of_one.hpp"
 
 namespace {
 
@@ -42,20 +43,22 @@ State<double> state_at(const History& history, std::size_t i) {
 
 // The release makes the mass strike at once.
 Scene active_scene(double frequency) {
-  return {.mass_ratio = 0.1,
-          .damping_ratio = 0.01,
+  return {.damping_ratio = 0.01,
           .x0 = 1,
-          .y0 = 0.5,
           .force_amplitude = 0.05,
-          .force_frequency = frequency};
+          .force_frequency = frequency,
+          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
 }
 
 TEST_CASE("a mass that is never struck leaves the closed form of the empty box") {
   for (const Engine& engine : {rigid, compliant}) {
     for (const double frequency : {0.3, 0.9, 1.0, 1.7}) {
       for (const auto& [f0, y0] : {std::pair{0.01, 0.5}, {-0.01, 0.5}, {0.01, 0.4}}) {
-        const Scene scene{
-            .damping_ratio = 0.05, .x0 = 0, .y0 = y0, .force_amplitude = f0, .force_frequency = frequency};
+        const Scene scene{.damping_ratio = 0.05,
+                          .x0 = 0,
+                          .force_amplitude = f0,
+                          .force_frequency = frequency,
+                          .dampers = {{.y0 = y0}}};
         const std::complex<double> h(1 - frequency * frequency, 2 * scene.damping_ratio * frequency);
         const SteadyState steady = settled(scene, engine);
         REQUIRE(steady.means);
@@ -80,12 +83,11 @@ TEST_CASE("a mass that is never struck leaves the closed form of the empty box")
 // y, of size 1, changes x by the order of nu, relative to an amplitude of 1e6.
 TEST_CASE("a mass that sticks nearly all the time is as if locked in") {
   for (const double frequency : {0.6, 1.1}) {
-    const Scene scene{.mass_ratio = 0.2,
-                      .restitution = 0,
-                      .damping_ratio = 0.05,
+    const Scene scene{.damping_ratio = 0.05,
                       .x0 = 0,
                       .force_amplitude = 1e6,
-                      .force_frequency = frequency};
+                      .force_frequency = frequency,
+                      .dampers = {{.mass_ratio = 0.2, .restitution = 0}}};
     const std::complex<double> h(1 - 1.2 * frequency * frequency, 2 * scene.damping_ratio * frequency);
     const SteadyState steady = settled(scene, rigid);
     REQUIRE(steady.means);
@@ -101,8 +103,8 @@ TEST_CASE("a mass that sticks nearly all the time is as if locked in") {
 // without damping: the mass leaves the left wall at t = 0, the force is f0 sin(omega t + tau).
 struct SymmetricPair {
   double nu, omega, c, v, tau;
-  SymmetricPair(const Scene& scene) : nu(scene.mass_ratio), omega(scene.force_frequency) {
-    const double e = scene.restitution, a = pi / omega + 2 * nu * std::tan(pi / (2 * omega)),
+  SymmetricPair(const Scene& scene) : nu(scene.damper().mass_ratio), omega(scene.force_frequency) {
+    const double e = scene.damper().restitution, a = pi / omega + 2 * nu * std::tan(pi / (2 * omega)),
                  q = (1 - e) / (1 + e) * (1 + nu) / omega;
     c = scene.force_amplitude / (1 - omega * omega);
     v = (a + std::sqrt(a * a - (a * a + 4 * q * q) * (1 - 4 * c * c))) / (a * a + 4 * q * q);
@@ -159,8 +161,8 @@ TEST_CASE("two symmetric impacts in a period are those of the closed form") {
     CHECK(std::abs(steady.means->amplitude - pair.amplitude()) < 1e-10);
     CHECK(steady.means->viscous_power == 0);
     // At an impact the relative speed w is V less that of the wall, -e w the one after it.
-    const double w = (pair.v - pair.x_and_velocity(0)[1]) / scene.restitution;
-    const double nu = scene.mass_ratio, e = scene.restitution;
+    const double w = (pair.v - pair.x_and_velocity(0)[1]) / scene.damper().restitution;
+    const double nu = scene.damper().mass_ratio, e = scene.damper().restitution;
     CHECK(steady.means->impact_power ==
           doctest::Approx(2 * nu * (1 - e * e) * w * w / (2 * (1 + nu)) / period_of(scene)).epsilon(1e-9));
   }
@@ -293,22 +295,23 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
 TEST_CASE("a list of one damper, and the halves of one, have the steady states of that damper") {
   for (const Engine& engine : {rigid, compliant}) {
     const Scene scene = active_scene(1.01);
-    Scene list = scene, halves = scene;
-    list.dampers = {{.mass_ratio = scene.mass_ratio, .y0 = scene.y0}};
-    halves.dampers.assign(2, {.mass_ratio = scene.mass_ratio / 2, .wall_stiffness = 5e3, .y0 = scene.y0});
+    Scene halves = scene;
+    halves.dampers.assign(
+        2, {.mass_ratio = scene.damper().mass_ratio / 2, .wall_stiffness = 5e3, .y0 = scene.damper().y0});
     const SteadyState one = settled(scene, engine);
     REQUIRE(one.period == 1);
-    for (const Scene& several : {list, halves}) {
+    for (const Scene& several : {list_of_one(scene), halves}) {
       const SteadyState same = settled(several, engine);
+      const double unit = several.damper().clearance;
       CHECK(same.period == one.period);
-      CHECK(std::abs(same.means->amplitude - one.means->amplitude) < 1e-9);
-      CHECK(std::abs(same.means->power - one.means->power) < 1e-9);
-      CHECK(std::abs(same.means->impact_power - one.means->impact_power) < 1e-9);
+      CHECK(std::abs(same.means->amplitude / unit - one.means->amplitude) < 1e-9);
+      CHECK(std::abs(same.means->power / (unit * unit) - one.means->power) < 1e-9);
+      CHECK(std::abs(same.means->impact_power / (unit * unit) - one.means->impact_power) < 1e-9);
       CHECK(same.symmetric == one.symmetric);
       REQUIRE(same.state.dampers.size() == several.dampers.size());
       for (const PlaceInCavity& each : same.state.dampers) {
-        CHECK(std::abs(each.y - one.state.y) < 1e-8);
-        CHECK(std::abs(each.w - one.state.w) < 1e-8);
+        CHECK(std::abs(each.y / unit - one.state.y) < 1e-8);
+        CHECK(std::abs(each.w / unit - one.state.w) < 1e-8);
       }
       for (const ImpactCounts& each : same.impacts_by_damper) CHECK(each == one.impacts);
       CHECK(same.impacts[0] == one.impacts[0] * std::int64_t(several.dampers.size()));
@@ -340,9 +343,9 @@ TEST_CASE("a steady motion of several dampers is that of one run, and carries it
     CHECK(again.state.x == both.up[2].state.x);
     CHECK(again.state.dampers[1].y == both.up[2].state.dampers[1].y);
   }
-  CHECK_THROWS_AS(
-      sweep(scene, rigid, {&Scene::mass_ratio, 0.1, 0.2, 2}, {}, {release_of(scene)}, 1, [](std::int64_t) {}),
-      InvalidArguments);
+  CHECK_THROWS_AS(sweep(scene, rigid, {&SceneDamper::mass_ratio, 0.1, 0.2, 2}, {}, {release_of(scene)}, 1,
+                        [](std::int64_t) {}),
+                  InvalidArguments);
 }
 
 TEST_CASE("a state that rounding has put beyond a rigid wall is on it") {
@@ -418,7 +421,7 @@ TEST_CASE("the n-th start has n nudges") {
 
 TEST_CASE("a nudge parts sweeps that a stable motion has brought to one state") {
   Scene scene = active_scene(1);
-  scene.mass_ratio = 0.02;
+  scene.damper().mass_ratio = 0.02;
   scene.damping_ratio = 0;
   scene.force_amplitude = 0.008;
   // Periodic and strongly stable down to the last, where the motion is irregular.
@@ -507,7 +510,7 @@ TEST_CASE("states from period to period are those of one run") {
 // a straight line through those within 4 % of A. Where A falls regularly, with one or two or three impacts in
 // each half cycle.
 TEST_CASE("the largest steady amplitude is where the free decay loses what the force can feed") {
-  Scene decay{.mass_ratio = 0.02, .until_amplitude = 0.5};
+  Scene decay{.until_amplitude = 0.5, .dampers = {{.mass_ratio = 0.02}}};
   const HalfCycles half_cycles = *simulate(decay, rigid, Record{}).half_cycles;
   const auto lost_at = [&](double a) {  // A eta = -2 dA/dt
     double n = 0, t = 0, h = 0, tt = 0, th = 0;
@@ -520,7 +523,7 @@ TEST_CASE("the largest steady amplitude is where the free decay loses what the f
     return -2 * (n * th - t * h) / (n * tt - t * t);
   };
   for (const double ratio : {0.35, 0.40}) {
-    Scene scene{.mass_ratio = 0.02, .x0 = 0, .force_amplitude = ratio * 0.02};
+    Scene scene{.x0 = 0, .force_amplitude = ratio * 0.02, .dampers = {{.mass_ratio = 0.02}}};
     const Axis axis{&Scene::force_frequency, 0.98725, 0.98975, 11};
     double largest = 0;
     for (const Sweep& each : sweep(scene, rigid, axis, {.max_periods = 2000, .mean_periods = 100},
@@ -646,7 +649,7 @@ TEST_CASE("what is not valid is rejected") {
   CHECK(fields([&] { ForcedScene(scene, Cem{}); }) == "engine ");
   CHECK(fields([&] { ForcedScene(scene, rigid); }).empty());
   Scene outside = scene;
-  outside.y0 = -0.1;
+  outside.damper().y0 = -0.1;
   CHECK(fields([&] { ForcedScene(outside, rigid); }) == "y0 ");
   CHECK(fields([&] { ForcedScene(outside, compliant); }).empty());
   CHECK(fields([&] {

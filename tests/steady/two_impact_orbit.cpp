@@ -18,8 +18,8 @@ namespace {
 Scene random_scene(std::uint64_t seed) {
   reference::Random random(seed);
   Scene scene;
-  scene.mass_ratio = random.log_uniform(1e-4, 2);
-  scene.restitution = random.uniform(0, 1);
+  scene.damper().mass_ratio = random.log_uniform(1e-4, 2);
+  scene.damper().restitution = random.uniform(0, 1);
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 1.5);
   scene.force_amplitude = random.log_uniform(0.02, 2) * random.sign();
   scene.force_frequency = random.uniform(0.4, 1.8);
@@ -72,8 +72,8 @@ TEST_CASE("a light secondary mass at resonance impacts as in the theory without 
   for (const double e : {0.3, 0.6, 0.9}) {
     for (const double amplitude : {0.2, 0.35, 0.5}) {
       Scene scene;
-      scene.mass_ratio = 1e-9;
-      scene.restitution = e;
+      scene.damper().mass_ratio = 1e-9;
+      scene.damper().restitution = e;
       scene.damping_ratio = 0.02;
       scene.force_frequency = 1;
       scene.force_amplitude = amplitude * 2 * scene.damping_ratio;
@@ -89,7 +89,7 @@ TEST_CASE("a light secondary mass at resonance impacts as in the theory without 
 
 TEST_CASE("against a heavy secondary mass the box is stopped at 1/2 on either side") {
   Scene scene;
-  scene.mass_ratio = 1e6;
+  scene.damper().mass_ratio = 1e6;
   scene.damping_ratio = 0.05;
   scene.force_amplitude = 1;
   scene.force_frequency = 1.5;
@@ -97,7 +97,8 @@ TEST_CASE("against a heavy secondary mass the box is stopped at 1/2 on either si
   REQUIRE(!all.empty());
   const Run run = [&] {
     Scene from = scene;
-    from.x0 = all[0].state.x, from.v0 = all[0].state.v, from.y0 = all[0].state.y, from.w0 = all[0].state.w;
+    from.x0 = all[0].state.x, from.v0 = all[0].state.v, from.damper().y0 = all[0].state.y,
+    from.damper().w0 = all[0].state.w;
     from.until_time = 20;
     return simulate(from, Restitution{}, {.half_cycles = false, .impacts = true});
   }();

@@ -74,22 +74,22 @@ Check grazing(const Options& options) {
     reference::Random random(seed);
     Scene scene;
     scene.x0 = random.uniform(1.5, 50);
-    scene.y0 = 0.5;
-    scene.restitution = random.uniform(0, 1);
+    scene.damper().y0 = 0.5;
+    scene.damper().restitution = random.uniform(0, 1);
     scene.until_time = 1.2;
     for (const Engine& engine : both) {
       const auto met = [&](double w0) {
-        scene.w0 = w0;
+        scene.damper().w0 = w0;
         const Impacts impacts = *simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts;
         return !impacts.wall.empty() && impacts.wall[0] == Wall::left;
       };
       const double edge = last_bit(0, -2 * scene.x0, met);
       for (int ulps = -16; ulps <= 16; ++ulps) {
-        scene.w0 = steps_from(edge, ulps);
+        scene.damper().w0 = steps_from(edge, ulps);
         const std::string which = "--seed " + std::to_string(seed);
         keep_promises(check, which, scene, engine);
-        const long double a = scene.x0, t = std::asin(-(long double)scene.w0 / a);
-        const long double dip = 0.5L + scene.w0 * t + a * (1 - std::cos(t));
+        const long double a = scene.x0, t = std::asin(-(long double)scene.damper().w0 / a);
+        const long double dip = 0.5L + scene.damper().w0 * t + a * (1 - std::cos(t));
         const double by_rounding = double(std::abs(dip)) / (epsilon * (1 + scene.x0));
         if (met(steps_from(edge, ulps)) == (dip < 0)) continue;
         wrong_side.take(by_rounding);
@@ -120,8 +120,8 @@ Check on_a_wall() {
               if (y0 == 1 && std::abs(w0) == epsilon) continue;
               for (const Engine& engine : both) {
                 Scene scene;
-                scene.x0 = x0, scene.v0 = v0, scene.y0 = y0, scene.w0 = w0;
-                scene.restitution = e, scene.force_amplitude = f0;
+                scene.x0 = x0, scene.v0 = v0, scene.damper().y0 = y0, scene.damper().w0 = w0;
+                scene.damper().restitution = e, scene.force_amplitude = f0;
                 // A lossless wall rings for ever, which is long to follow.
                 scene.until_time = std::abs(w0) > 1 ? 1e-6 : e == 1 ? 0.03 : 2;
                 if (!keep_promises(check, "case", scene, engine)) continue;
@@ -150,9 +150,9 @@ Check within_a_rounding(const Options& options) {
   for (const double e : {0.3, 0.5}) {
     for (const bool rigid : {true, false}) {
       Scene scene;
-      scene.mass_ratio = 1e-8;
-      scene.wall_stiffness = 1e15;
-      scene.restitution = e;
+      scene.damper().mass_ratio = 1e-8;
+      scene.damper().wall_stiffness = 1e15;
+      scene.damper().restitution = e;
       scene.until_time = options.brief ? 3e3 : 1e5;
       const Budget enough{.max_impacts = 5'000'000};
       Engine engine = Exact{.budget = enough};
@@ -188,8 +188,8 @@ Check accumulation_at_a_crossing() {
   for (const double e : {0.2, 0.4, 0.6, 0.8}) {
     for (const double nu : {1e-8, 0.02, 1.0}) {
       Scene scene;
-      scene.restitution = e;
-      scene.mass_ratio = nu;
+      scene.damper().restitution = e;
+      scene.damper().mass_ratio = nu;
       scene.until_time = 3;
       const double edge = last_bit(0.6, 1000, [&](double x0) {
         scene.x0 = x0;
@@ -199,7 +199,7 @@ Check accumulation_at_a_crossing() {
       for (int ulps = -16; ulps <= 16; ++ulps) {
         scene.x0 = steps_from(edge, ulps);
         for (const double k : {1e4, 1e8, 1e12}) {
-          scene.wall_stiffness = k;
+          scene.damper().wall_stiffness = k;
           for (const Engine& engine : both) keep_promises(check, "case", scene, engine);
         }
       }
@@ -219,9 +219,9 @@ Check lossless(const Options& options, const Engine& engine) {
   Worst worst;
   for (const double x0 : {6.0, 0.4}) {
     Scene scene;
-    scene.restitution = 1;
+    scene.damper().restitution = 1;
     scene.x0 = x0;
-    scene.w0 = 0.3;
+    scene.damper().w0 = 0.3;
     scene.until_time = 1e12;
     ++check.cases;
     std::fprintf(stderr, "stress: %s\n", check.what.c_str());
@@ -255,7 +255,7 @@ std::vector<Check> no_wall(const Options& options) {
         Flight{1e-8, 0, 1e-10, 0, 1, 1e9}, Flight{0.1, 0, 0, 0.1, 2, forced_end},
         Flight{0, 0.01, 0, 0.002, 1, forced_end}, Flight{0, 0, 0, 1e-3, 0.5, forced_end}}) {
     Scene scene;
-    scene.x0 = f.x0, scene.damping_ratio = f.zeta, scene.y0 = 0.5 - f.x0, scene.w0 = f.w0;
+    scene.x0 = f.x0, scene.damping_ratio = f.zeta, scene.damper().y0 = 0.5 - f.x0, scene.damper().w0 = f.w0;
     scene.force_amplitude = f.f0, scene.force_frequency = f.omega, scene.until_time = f.end;
     for (const Engine& engine : both) {
       ++none.cases;
@@ -302,7 +302,8 @@ Check crawling() {
                         Hard{-6, 0, 0, 0, 1, 0.1}, Hard{6, 0, 1, 0, 1, 0.1}, Hard{6, 0, 1, 0, 0, 3},
                         Hard{6, 0, 1e-15, -1e-14, 0.6, 3}, Hard{1, 0, 0, 0, 0.999999, 3}}) {
     Scene scene;
-    scene.x0 = h.x0, scene.v0 = h.v0, scene.y0 = h.y0, scene.w0 = h.w0, scene.restitution = h.e;
+    scene.x0 = h.x0, scene.v0 = h.v0, scene.damper().y0 = h.y0, scene.damper().w0 = h.w0,
+    scene.damper().restitution = h.e;
     scene.until_time = h.end;
     ++check.cases;
     const bench::Counts counts = bench::count(scene, Exact{.budget = few_impacts}).counts;
@@ -330,7 +331,8 @@ Check long_times() {
                         Slow{0.3, 0.5, 1e-9, 1, 0}, Slow{0, -0.3, 0, 0, 0}, Slow{1, -0.3, 0, 0, 0.1},
                         Slow{0, 1.2, 0, 0.6, 1e-9}, Slow{1e-9, 0.5, 1e-9, 0.6, 2}, Slow{6, 0, 0, 0.6, 3}}) {
     Scene scene;
-    scene.x0 = s.x0, scene.y0 = s.y0, scene.w0 = s.w0, scene.restitution = s.e, scene.damping_ratio = s.zeta;
+    scene.x0 = s.x0, scene.damper().y0 = s.y0, scene.damper().w0 = s.w0, scene.damper().restitution = s.e,
+    scene.damping_ratio = s.zeta;
     scene.until_time = 1e9;
     for (const Engine& engine : both) {
       if (std::holds_alternative<Restitution>(engine) && !(s.y0 >= 0 && s.y0 <= 1)) continue;

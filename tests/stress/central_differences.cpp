@@ -99,7 +99,7 @@ Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
   Scene scene;
   scene.damping_ratio = zeta;
   scene.x0 = 1e-9;
-  scene.y0 = 0.5;
+  scene.damper().y0 = 0.5;
   Cem cem{.damper = damper, .unstable = true};
   cem.time_step = 2 * by_limit;
   const double closed_form = closed_form_growth(Damper::centred, zeta, 2 * by_limit);
@@ -111,9 +111,9 @@ Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
 
 Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit_error) {
   Scene scene;
-  scene.restitution = e;
-  scene.wall_stiffness = 1e10;
-  const double nu = scene.mass_ratio, k = scene.wall_stiffness;
+  scene.damper().restitution = e;
+  scene.damper().wall_stiffness = 1e10;
+  const double nu = scene.damper().mass_ratio, k = scene.damper().wall_stiffness;
   const double omega = std::sqrt(k * (1 + nu) / nu), z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
   const double limit = closed_form_limit(damper, z);
   limit_error = stability_limit(scene, damper, Calibration::fixed_wall) * omega / limit - 1;
@@ -124,7 +124,7 @@ Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit
   Cem cem{.damper = damper, .unstable = true};
   cem.time_step = by_limit * limit / omega;
   const double closed_form = closed_form_growth(damper, z, by_limit * limit);
-  scene.y0 = pressed * (1 + (closed_form > 1 ? 1e-9 : 1e-2));
+  scene.damper().y0 = pressed * (1 + (closed_form > 1 ? 1e-9 : 1e-2));
   scene.until_time = *cem.time_step * (steps_for(closed_form) + 0.5);
   Watch watch = every_step(*cem.time_step);
   observed(scene, cem, watch);
@@ -174,7 +174,7 @@ std::vector<Check> growth_checks(const Options& options) {
           [&](double f) { return growth_in_flight(damper, zeta, f); });
     for (const double e : {1.0, 0.6, 0.1}) {
       Worst limit_error;
-      const double z = zeta_m_closed_form(e) * std::sqrt(1 + Scene{}.mass_ratio);
+      const double z = zeta_m_closed_form(e) * std::sqrt(1 + SceneDamper{}.mass_ratio);
       block(
           name + "-contact-" + rounded(e),
           name + ", in contact, e = " + rounded(e) + ": growth per step, relative error of its logarithm",
@@ -210,19 +210,19 @@ constexpr std::array<Scheme, 4> schemes{{{"centred", Damper::centred, false, 1, 
                                          {"lagged, located", Damper::lagged, true, 1, 0.1}}};
 
 double delivered_restitution(Scene scene, Cem cem, double part_of_step) {
-  const double tau = nominal_contact_time(scene);
+  const double tau = nominal_contact_time(scene.damper());
   scene.x0 = 0;
-  scene.w0 = -1;
+  scene.damper().w0 = -1;
   // Touch after 3 steps and a part of one.
-  scene.y0 = (3 + part_of_step) * *cem.time_step;
-  scene.until_time = scene.y0 + 3 * tau;
+  scene.damper().y0 = (3 + part_of_step) * *cem.time_step;
+  scene.until_time = scene.damper().y0 + 3 * tau;
   const Run run = simulate(scene, cem, {.half_cycles = false, .history = {{0, *scene.until_time, 2}}});
   return run.history->dampers[0].w.back();
 }
 
 std::vector<Check> restitution_checks(const Options& options) {
   Scene scene;
-  scene.wall_stiffness = 1e10;
+  scene.damper().wall_stiffness = 1e10;
   std::string table = "# Error of the delivered restitution, e = 0.6, by steps per contact.\n";
   std::vector<Check> checks;
   for (const Scheme& scheme : schemes) {
@@ -234,10 +234,11 @@ std::vector<Check> restitution_checks(const Options& options) {
     int points = 0;
     for (int steps = 16; steps <= 4096; steps *= 2) {
       Cem cem{.damper = scheme.damper, .locate = scheme.locate, .calibration = Calibration::two_body};
-      cem.time_step = nominal_contact_time(scene) / steps;
+      cem.time_step = nominal_contact_time(scene.damper()) / steps;
       Worst error;
       for (int part = 0; part < 16; ++part)
-        error.take(std::abs(delivered_restitution(scene, cem, (part + 0.37) / 16) - scene.restitution));
+        error.take(
+            std::abs(delivered_restitution(scene, cem, (part + 0.37) / 16) - scene.damper().restitution));
       table += std::to_string(steps) + " " + rounded(error, 6) + "\n";
       last = error;
       if (steps < 64) continue;  // where the order is not yet the leading one's

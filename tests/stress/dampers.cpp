@@ -44,6 +44,7 @@ Scene list_of(std::uint64_t seed) {
     scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 10);
   }
   scene.until_time = random.uniform(1, 6);
+  scene.dampers.clear();
   const int count = 1 + int(random.bits() % (random.chance(0.05) ? 40 : 6));
   for (int i = 0; i < count; ++i) {
     SceneDamper damper;
@@ -233,6 +234,7 @@ Check a_thousand(const Options& options) {
   Worst residual, outside;
   Scene scene;
   scene.x0 = 6, scene.until_time = options.brief ? 0.04 : 3;
+  scene.dampers.clear();
   for (int i = 0; i < int(most_dampers); ++i)
     scene.dampers.push_back({.mass_ratio = 2e-5,
                              .restitution = 0.2 + 0.0006 * i,

@@ -61,7 +61,8 @@ void check_bounds(const Run& run, std::string& broken) {
   const Impacts& impacts = *run.impacts;
   const std::size_t dampers = std::max<std::size_t>(1, run.scene.dampers.size());
   for (std::size_t n = 0; n < dampers; ++n) {
-    if ((run.scene.dampers.empty() ? run.scene.restitution : run.scene.dampers[n].restitution) == 1) continue;
+    if ((has_one_damper(run.scene) ? run.scene.damper().restitution : run.scene.dampers[n].restitution) == 1)
+      continue;
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < impacts.time.size(); ++i)
       if (impacts.damper.empty() || impacts.damper[i] == std::int32_t(n)) rows.push_back(i);
@@ -104,14 +105,14 @@ void take_outside(const Run& run, std::size_t damper, double clearance, const st
 double outside(const Run& run) {
   Worst worst;
   const History& history = *run.history;
-  if (run.scene.dampers.empty()) take_outside(run, 0, 1, history.dampers[0].y, history.dampers[0].w, worst);
+  if (has_one_damper(run.scene)) take_outside(run, 0, 1, history.dampers[0].y, history.dampers[0].w, worst);
   for (std::size_t n = 0; n < run.scene.dampers.size(); ++n)
     take_outside(run, n, run.scene.dampers[n].clearance, history.dampers[n].y, history.dampers[n].w, worst);
   return worst;
 }
 
 void check_end(const Run& run, std::string& broken) {
-  if (!run.scene.dampers.empty()) return;             // which contact is whose inconsistencies_of() knows
+  if (!has_one_damper(run.scene)) return;             // which contact is whose inconsistencies_of() knows
   const double y = run.history->dampers[0].y.back();  // at the end, if the run came so far
   const bool cut = run.stop_reason == StopReason::time && (y < 0 || y > 1);
   if (cut && std::holds_alternative<Exact>(run.engine) && !run.contacts->end.empty() &&

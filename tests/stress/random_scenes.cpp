@@ -45,11 +45,11 @@ constexpr double least_ratio = 9, most_ratio = 11;
 
 Agreement agreement(Scene scene) {
   Agreement result;
-  scene.y0 = std::fmin(std::fmax(scene.y0, 0), 1);
+  scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
   // e -> 0 prolongs a contact without end; and an elastic wall, pressed at rest, rings where a rigid one
   // holds.
-  const bool at_rest_on_a_wall = (scene.y0 == 0 || scene.y0 == 1) && scene.w0 == 0;
-  if (!(scene.restitution >= 0.05) || at_rest_on_a_wall) return result;
+  const bool at_rest_on_a_wall = (scene.damper().y0 == 0 || scene.damper().y0 == 1) && scene.damper().w0 == 0;
+  if (!(scene.damper().restitution >= 0.05) || at_rest_on_a_wall) return result;
   Restitution rigid;
   rigid.budget.max_impacts = compared_impacts + 1;  // the last found may lie at the very end: not compared
   const Impacts reference = first_impacts(scene, rigid);
@@ -73,12 +73,12 @@ Agreement agreement(Scene scene) {
   compliant.calibration = Calibration::two_body;
   compliant.budget.max_impacts = std::int64_t(count);
   const auto stiffness = [&](double tau) {
-    const double z = zeta_m_closed_form(scene.restitution);
+    const double z = zeta_m_closed_form(scene.damper().restitution);
     const double omega = half_turn<double>() / tau / std::sqrt(1 - z * z);
-    return omega * omega * scene.mass_ratio / (1 + scene.mass_ratio);
+    return omega * omega * scene.damper().mass_ratio / (1 + scene.damper().mass_ratio);
   };
   const auto distance = [&](double tau) {
-    scene.wall_stiffness = stiffness(tau);
+    scene.damper().wall_stiffness = stiffness(tau);
     const Impacts ours = first_impacts(scene, compliant);
     Worst worst;
     if (ours.time.size() != count) return std::nan("");
@@ -134,7 +134,7 @@ Case run(std::uint64_t seed) {
   result.agreement = agreement(scene);
   Restitution rigid;
   rigid.budget.max_impacts = impacts;
-  scene.y0 = std::fmin(std::fmax(scene.y0, 0), 1);
+  scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
   result.examined[1] = examine(scene, rigid);
   result.seconds = seconds() - begin;
   return result;

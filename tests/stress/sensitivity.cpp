@@ -75,7 +75,7 @@ std::vector<HalfCycle> half_cycles_of(const Scene& scene, const Exact& options =
 
 // Where a half cycle takes a state.
 Section next(Scene scene, const Section& from) {
-  scene.x0 = 0, scene.v0 = from[0], scene.y0 = from[1], scene.w0 = from[2];
+  scene.x0 = 0, scene.v0 = from[0], scene.damper().y0 = from[1], scene.damper().w0 = from[2];
   scene.until_time = 1e3;
   scene.until_amplitude.reset();
   const std::vector<HalfCycle> rows = half_cycles_of(scene, {.budget = {.max_half_cycles = 1}});
@@ -131,7 +131,7 @@ Check free_flight() {
   Check check =
       about("free flight: a perturbation neither grows nor shrinks, exponent per half cycle", "1e-3");
   Scene scene;
-  scene.x0 = 0.2, scene.y0 = 0.3, scene.until_time = 1000;
+  scene.x0 = 0.2, scene.damper().y0 = 0.3, scene.until_time = 1000;
   const std::vector<HalfCycle> rows = half_cycles_of(scene);
   Worst worst;
   for (const Section& direction : {Section{1, 0, -1}, Section{0, 1, 0}}) {  // those in which nothing drifts
@@ -168,11 +168,11 @@ std::vector<Check> one_impact() {
       const auto motion = single_impact(e, amplitude);
       if (!motion) continue;
       Scene scene;
-      scene.mass_ratio = 1e-9, scene.restitution = e, scene.wall_stiffness = 1e6;
+      scene.damper().mass_ratio = 1e-9, scene.damper().restitution = e, scene.damper().wall_stiffness = 1e6;
       // Left at the phase at which the closed form leaves the left wall, with its speed; then settled.
       const double b = (1 - e) / (1 + e), v = motion->speed;
       const double x = -(std::numbers::pi * v - 1) / 2;  // A cos(theta) of the other wall, mirrored
-      scene.x0 = x, scene.v0 = b * v, scene.y0 = 0, scene.w0 = v - scene.v0;
+      scene.x0 = x, scene.v0 = b * v, scene.damper().y0 = 0, scene.damper().w0 = v - scene.v0;
       scene.until_time = 500;
       const Section settled = half_cycles_of(scene).back().state;
       const auto [t, d] = trace_and_determinant(scene, settled);

@@ -38,7 +38,7 @@ double only(const KeptNumbers& numbers) {
 // Viscous damping and next to nothing else: x = 6 exp(-zeta t) (cos omega t + ...).
 Scene viscous_decay(double zeta) {
   Scene scene;
-  scene.mass_ratio = 1e-9;
+  scene.damper().mass_ratio = 1e-9;
   scene.damping_ratio = zeta;
   scene.until_amplitude = 0.5;
   return scene;
@@ -54,8 +54,8 @@ Scene paper_decay() {
 
 TEST_CASE("without viscous damping the best damping is what it is with next to none") {
   Scene scene;
-  scene.mass_ratio = 0.3;
-  scene.restitution = 0.2;
+  scene.damper().mass_ratio = 0.3;
+  scene.damper().restitution = 0.2;
   scene.x0 = 2;
   scene.until_amplitude = 0.02;
   Exact engine;
@@ -109,7 +109,7 @@ TEST_CASE("of a motion that creeps the time to an amplitude is the last at which
   scene.x0 = 3;
   scene.until_amplitude.reset();
   scene.until_time = 200;
-  scene.mass_ratio = 1e-9;
+  scene.damper().mass_ratio = 1e-9;
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
     for (const double zeta : {0.7, 0.9, 0.99, 1.0, 1.1, 2.0}) {
       CAPTURE(zeta);
@@ -124,10 +124,10 @@ TEST_CASE("of a motion that creeps the time to an amplitude is the last at which
 TEST_CASE("with impacts a motion that creeps stays below the amplitude from that time on") {
   Scene scene;
   scene.x0 = 3;
-  scene.mass_ratio = 0.1;
+  scene.damper().mass_ratio = 0.1;
   scene.until_time = 40;
   Scene of_two = scene;
-  of_two.dampers.resize(2);
+  of_two.dampers = {{}, {}};
   of_two.dampers[0].mass_ratio = 0.05;
   of_two.dampers[1].clearance = 0.7;
   for (Scene* const each : {&scene, &of_two})
@@ -164,7 +164,8 @@ TEST_CASE("what is not reached is absent") {
 TEST_CASE("with one impact in each half cycle the loss factor is that of the closed form") {
   const Scene scene = paper_decay();
   for (const double amplitude : {0.15, 0.2, 0.25}) {
-    const double loss = scene.mass_ratio * single_impact(scene.restitution, amplitude)->loss;
+    const double loss =
+        scene.damper().mass_ratio * single_impact(scene.damper().restitution, amplitude)->loss;
     const auto at = "loss_factor_at=" + std::to_string(amplitude);
     CHECK(only(kept(scene, {at})) == doctest::Approx(loss).epsilon(0.02));
     // Where the bound is that loss, the amplitudes above it end there, on the side of the large ones.
@@ -176,7 +177,7 @@ TEST_CASE("with one impact in each half cycle the loss factor is that of the clo
   const double lowest = only(kept(scene, {"lowest_amplitude_above_loss=0.06"}));
   const double best = only(kept(scene, {"amplitude_of_largest_loss_factor"}));
   CHECK(lowest <= best);
-  CHECK(best == doctest::Approx(fold_amplitude(scene.restitution)).epsilon(0.25));
+  CHECK(best == doctest::Approx(fold_amplitude(scene.damper().restitution)).epsilon(0.25));
   CHECK(only(kept(scene, {"largest_loss_factor"})) > only(kept(scene, {"loss_factor_at=0.15"})));
 }
 
@@ -219,23 +220,23 @@ TEST_CASE("impacts, their speed and the wall's force are those of the recorded r
   CHECK(only(kept(scene, {"impacts"})) == double(run.impacts->time.size()));
   CHECK(only(kept(scene, {"largest_impact_speed"})) == speed);
   CHECK(only(kept(scene, {"largest_wall_force"})) ==
-        short_contact(scene, Calibration::fixed_wall, speed).force);
+        short_contact(scene.damper(), Calibration::fixed_wall, speed).force);
   // The release alone: the secondary mass presses the wall together by 0.01 and never comes back as fast.
   Scene pressed = scene;
   pressed.x0 = 0.01;
-  pressed.y0 = -0.01;
+  pressed.damper().y0 = -0.01;
   pressed.until_amplitude.reset();
   pressed.until_time = 0.01;
   CHECK(only(kept(pressed, {"largest_wall_force"})) == doctest::Approx(1e4 * 0.01));
   CHECK_FALSE(kept(scene, {"largest_wall_force"}, Restitution{}).numbers[0]);
   Scene soft = scene;
-  soft.wall_stiffness = 1;
+  soft.damper().wall_stiffness = 1;
   CHECK_FALSE(kept(soft, {"largest_wall_force"}).numbers[0]);
 }
 
 TEST_CASE("steady motions of a light secondary mass are those of the oscillator alone") {
   Scene scene;
-  scene.mass_ratio = 1e-8;
+  scene.damper().mass_ratio = 1e-8;
   scene.damping_ratio = 0.05;
   scene.force_amplitude = 0.3;
   scene.force_frequency = 0.8;
@@ -257,12 +258,12 @@ TEST_CASE("steady motions of a light secondary mass are those of the oscillator 
 TEST_CASE(
     "a periodic motion has its period, and its impacts in it; exponents are those of lyapunov_exponents") {
   Scene scene;
-  scene.mass_ratio = 0.1;
+  scene.damper().mass_ratio = 0.1;
   scene.damping_ratio = 0.1;
   scene.force_amplitude = 0.01;
   scene.force_frequency = 0.5;
   scene.x0 = 0;
-  scene.y0 = 0.5;
+  scene.damper().y0 = 0.5;
   scene.until_time = 1;
   ForcedRules rules;
   rules.lyapunov_periods = 20;
@@ -278,8 +279,7 @@ TEST_CASE(
   CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
 
   Scene list = scene;
-  list.mass_ratio = Scene{}.mass_ratio, list.y0 = Scene{}.y0;
-  list.dampers.resize(2);
+  list.dampers = {{}, {}};
   list.force_amplitude = 0.2;
   list.dampers[1].clearance = 0.7;
   CHECK(*kept(list, {"lyapunov_exponent"}, Exact{}, scales, rules).numbers[0] ==
@@ -289,7 +289,7 @@ TEST_CASE(
 TEST_CASE("a motion that still grows has no steady amplitude, alone or among others, and says so") {
   Scene
       scene;  // at resonance, with next to no secondary mass: after 20 periods at an eighth of its amplitude
-  scene.mass_ratio = 1e-6;
+  scene.damper().mass_ratio = 1e-6;
   scene.damping_ratio = 0.001;
   scene.force_amplitude = 0.01;
   scene.force_frequency = 1;
@@ -321,7 +321,7 @@ TEST_CASE("of several dampers the largest wall force is that of the one that has
   const Run run = simulate(list, Exact{}, Record{.impacts = true});
   double largest = 0;
   for (std::size_t i = 0; i < run.impacts->time.size(); ++i)
-    largest = std::max(largest, short_contact(with_alone(list, list.dampers[run.impacts->damper[i]]),
+    largest = std::max(largest, short_contact(list.dampers[std::size_t(run.impacts->damper[i])],
                                               Calibration::fixed_wall, run.impacts->relative_velocity[i])
                                     .force);
   CHECK(only(kept(list, {"largest_wall_force"})) == largest);
@@ -333,7 +333,7 @@ TEST_CASE("of several dampers the largest wall force is that of the one that has
 
 TEST_CASE("without losses there is no loss factor") {
   Scene scene;
-  scene.restitution = 1;
+  scene.damper().restitution = 1;
   scene.until_time = 100;
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
     CHECK_FALSE(kept(scene, {"largest_loss_factor"}, engine).numbers[0]);

@@ -81,8 +81,8 @@ Drawn drawn_of(const DesignQuestion& question, double mass, double clearance, st
   for (std::int64_t i = 0; i < runs_of(plan) && found.late <= most; ++i) {
     SceneInUnits scene = *scene_of_design(question, {mass, clearance}, 2 * question.time).in_units;
     const std::vector<double> drawn = run_of(plan, i).values;  // both axes, then the tolerances
-    scene.restitution = drawn[2];
-    scene.clearance = drawn[3];
+    scene.damper().restitution = drawn[2];
+    scene.damper().clearance = drawn[3];
     const Run run = simulate(dimensionless(scene), Exact{}, {});
     const HalfCycles& rows = *run.half_cycles;
     const Scales scales = scales_of(scene);
@@ -179,13 +179,13 @@ TEST_CASE("masses are looked for between round numbers") {
 
 TEST_CASE("a scene with unit scales is the dimensionless scene") {
   Scene scene;
-  scene.mass_ratio = 0.037;
-  scene.restitution = 0.45;
+  scene.damper().mass_ratio = 0.037;
+  scene.damper().restitution = 0.45;
   scene.damping_ratio = 0.01;
-  scene.wall_stiffness = 12345;
+  scene.damper().wall_stiffness = 12345;
   scene.x0 = 5.7;
   scene.v0 = -0.3;
-  scene.w0 = 0.7;
+  scene.damper().w0 = 0.7;
   scene.until_time = 1;
   SceneInUnits units = with_unit_scales(scene);
   units.until_seconds = 1;
@@ -204,7 +204,7 @@ TEST_CASE("the check has other draws than the search, on both sides of the desig
     CHECK(searched.count(run.values[0]) == 0);
     restitution.insert(run.values[0]);
     clearance.insert(run.values[1]);
-    CHECK(run.scene.mass_ratio == 2.0 / 40);
+    CHECK(run.scene.damper().mass_ratio == 2.0 / 40);
   }
   // 400 uniform draws: all miss the outer tenth of one side with a probability of 0.95^400 = 1e-9.
   CHECK(*restitution.begin() > 0.5);

@@ -53,8 +53,8 @@ TEST_CASE("the last axis of a grid varies fastest, and both ends are exact") {
     const PlannedRun run = run_of(plan, i);
     CHECK(run.values[0] == doctest::Approx(expected[std::size_t(i)][0]).epsilon(1e-15));
     CHECK(run.values[1] == expected[std::size_t(i)][1]);
-    CHECK(run.scene.mass_ratio == run.values[0]);
-    CHECK(run.scene.restitution == run.values[1]);
+    CHECK(run.scene.damper().mass_ratio == run.values[0]);
+    CHECK(run.scene.damper().restitution == run.values[1]);
   }
   CHECK(run_of(plan, 4).values[0] == 0.09);
   CHECK(header_of(plan) == "run,mass_ratio,restitution,impacts,end,problem");
@@ -82,7 +82,7 @@ TEST_CASE("every point of the grid is given the same deviations") {
     const PlannedRun a = run_of(plan, i), b = run_of(plan, i + 50);
     CHECK(a.values[1] - 0.4 == doctest::Approx(b.values[1] - 0.6).epsilon(1e-12));
     CHECK(a.values[2] == b.values[2]);
-    CHECK(a.scene.restitution == a.values[1]);
+    CHECK(a.scene.damper().restitution == a.values[1]);
     low = std::min(low, a.values[1]);
     high = std::max(high, a.values[1]);
     square += std::pow(a.values[2] / 0.02 - 1, 2) / 50;
@@ -116,7 +116,7 @@ TEST_CASE("in units what scales the scene may vary, too") {
       R"("grid": [{"number": "clearance", "values": [10, 20]}, {"number": "mass", "values": [40, 80]}])");
   const PlannedRun last = run_of(plan, 3);
   CHECK(last.scene.x0 == 3);
-  CHECK(last.scene.mass_ratio == 0.02);
+  CHECK(last.scene.damper().mass_ratio == 0.02);
   CHECK(last.scales == Scales{80, 16000, 20});
   const auto columns = columns_of(plan);
   CHECK(columns[1].unit == "mm");
@@ -133,7 +133,7 @@ TEST_CASE("each of several dampers has numbers of its own that may vary") {
   scene.dampers[1].clearance = 4, scene.dampers[0].restitution = 0.5, scene.x0 = 5;
   CHECK(run_of(plan, 2).scene == scene);
   CHECK(written(parse_plan("plan.json", written(plan))) == written(plan));
-  CHECK(problem_of(R"("scene": {"until_amplitude": 5, "dampers": [{}]},
+  CHECK(problem_of(R"("scene": {"until_amplitude": 5, "dampers": [{}, {}]},
                       "grid": [{"number": "mass_ratio", "values": [0.1]}])")
             .find("did you mean \"mass_ratio_1\"?") != std::string::npos);
 

@@ -39,15 +39,13 @@ std::vector<std::string> cautions_of(const Scene& scene, const std::optional<Sca
       cautions.push_back(
           begins_outside(mass, y0, clearance, wall_stiffness, scene.x0, scales, unit_of_depth));
   };
+  const bool one = has_one_damper(scene);
   for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
     const SceneDamper& damper = scene.dampers[i];
-    const std::string mass = "the secondary mass of damper " + std::to_string(i + 1);
-    outside(mass, damper.y0, damper.clearance, damper.wall_stiffness, "");
+    const std::string mass = "the secondary mass" + (one ? "" : " of damper " + std::to_string(i + 1));
+    outside(mass, damper.y0, damper.clearance, damper.wall_stiffness, one ? " times the clearance" : "");
     heavy(mass, damper.mass_ratio);
   }
-  if (!scene.dampers.empty()) return cautions;
-  outside("the secondary mass", scene.y0, 1, scene.wall_stiffness, " times the clearance");
-  heavy("the secondary mass", scene.mass_ratio);
   return cautions;
 }
 

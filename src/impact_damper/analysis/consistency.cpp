@@ -19,15 +19,8 @@ class Examination {
   explicit Examination(const Run& run)
       : run_(run),
         scene_(run.scene),
-        several_(!run.scene.dampers.empty()),
-        dampers_(run.scene.dampers),
+        several_(!has_one_damper(run.scene)),
         cem_(std::get_if<Cem>(&run.engine)) {
-    if (!several_)
-      dampers_ = {{.mass_ratio = scene_.mass_ratio,
-                   .restitution = scene_.restitution,
-                   .wall_stiffness = scene_.wall_stiffness,
-                   .y0 = scene_.y0,
-                   .w0 = scene_.w0}};
     std::visit([&](const auto& engine) { budget_ = engine.budget; }, run.engine);
     if (cem_) step_ = cem_->large_step.value_or(cem_->time_step.value_or(0));
   }
@@ -75,7 +68,7 @@ class Examination {
   // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0.
   double fastest() const {
     double twice_energy = scene_.x0 * scene_.x0 + scene_.v0 * scene_.v0;
-    for (const SceneDamper& damper : dampers_)
+    for (const SceneDamper& damper : scene_.dampers)
       twice_energy += damper.mass_ratio * (scene_.v0 + damper.w0) * (scene_.v0 + damper.w0);
     twice_energy += 2 * energy_in_walls();
     return std::sqrt(twice_energy) + std::abs(scene_.force_amplitude) * run_.end_time;
@@ -83,7 +76,7 @@ class Examination {
 
   double energy_in_walls() const {  // at the release
     double energy = 0;
-    for (const SceneDamper& damper : dampers_) {
+    for (const SceneDamper& damper : scene_.dampers) {
       const double depth = is_rigid() ? 0 : std::max({0.0, -damper.y0, damper.y0 - damper.clearance});
       energy += damper.wall_stiffness * depth * depth / 2;
     }
@@ -98,7 +91,8 @@ class Examination {
   // walls make as large as k nu.
   double blur(double time, double scale) const {
     double curvature = 1;
-    for (const SceneDamper& damper : dampers_) curvature += damper.wall_stiffness * damper.mass_ratio * step_;
+    for (const SceneDamper& damper : scene_.dampers)
+      curvature += damper.wall_stiffness * damper.mass_ratio * step_;
     return rounding * (1 + time) * scale + step_ * step_ * curvature * (1 + scale);
   }
 
@@ -147,7 +141,7 @@ class Examination {
       const auto impacts = static_cast<std::int64_t>(run_.impacts->time.size());
       const bool used_up = run_.stop_reason == StopReason::impact_budget;
       // Of several impacts at one instant all are recorded, or none.
-      const auto at_once = static_cast<std::int64_t>(dampers_.size());
+      const auto at_once = static_cast<std::int64_t>(scene_.dampers.size());
       require(impacts <= budget_.max_impacts && (!used_up || impacts > budget_.max_impacts - at_once),
               "/impacts/time",
               std::string("must hold ") + (used_up ? "" : "at most ") + "max_impacts, " +
@@ -257,7 +251,7 @@ class Examination {
     for (std::size_t row = 0; row < rows.impacts.size(); ++row) {
       const double begin = row > 0 ? rows.zero_crossing[row - 1] : 0, end = rows.zero_crossing[row];
       const double amplitude = rows.amplitude[row];
-      std::vector<std::int64_t> by_damper(dampers_.size());
+      std::vector<std::int64_t> by_damper(scene_.dampers.size());
       for (std::int64_t n = 0; n < rows.impacts[row]; ++n, ++i) {
         const double time = impacts.time[i];
         ++by_damper[impacts.damper[i]];
@@ -306,7 +300,7 @@ class Examination {
 
   void examine_contacts(const Contacts& contacts) {
     const std::string section = "/contacts/";
-    std::vector<std::vector<std::size_t>> of(dampers_.size());  // each damper
+    std::vector<std::vector<std::size_t>> of(scene_.dampers.size());  // each damper
     for (std::size_t i = 0; i < contacts.begin.size(); ++i) {
       std::vector<std::size_t>& before = of[contacts.damper[i]];
       const double free_from = before.empty() ? 0 : contacts.end[before.back()];
@@ -323,7 +317,7 @@ class Examination {
     if (!run_.impacts) return;
     const Impacts& impacts = *run_.impacts;
     if (is_rigid()) {
-      std::vector<std::size_t> next(dampers_.size());
+      std::vector<std::size_t> next(scene_.dampers.size());
       for (std::size_t i = 0; i < impacts.time.size(); ++i) {
         const double time = impacts.time[i];
         const std::vector<std::size_t>& its = of[impacts.damper[i]];
@@ -337,9 +331,9 @@ class Examination {
       }
       return;
     }
-    std::vector<std::vector<std::size_t>> impacts_of(dampers_.size());
+    std::vector<std::vector<std::size_t>> impacts_of(scene_.dampers.size());
     for (std::size_t i = 0; i < impacts.time.size(); ++i) impacts_of[impacts.damper[i]].push_back(i);
-    for (std::size_t damper = 0; damper < dampers_.size(); ++damper) {
+    for (std::size_t damper = 0; damper < scene_.dampers.size(); ++damper) {
       const std::vector<std::size_t>&its = of[damper], &begun_by = impacts_of[damper];
       const std::size_t without = its.size() > begun_by.size() ? 1 : 0;
       if (!require(its.size() == begun_by.size() + without && (without == 0 || contacts.begin[its[0]] == 0),
@@ -365,21 +359,22 @@ class Examination {
     if (history.time.empty()) return;
     require(history.time.back() <= run_.end_time, "/history/time", history.time.size() - 1,
             got("<= end_time, " + number_text(run_.end_time), history.time.back()));
-    for (std::size_t i = 0; several_ && is_rigid() && i < dampers_.size(); ++i) examine_place(history, i);
+    for (std::size_t i = 0; several_ && is_rigid() && i < scene_.dampers.size(); ++i)
+      examine_place(history, i);
     if (history.time[0] != 0) return;
     const double size = std::abs(scene_.x0) + std::abs(scene_.v0) + f0;
     if (!equal("/history/x/0", scene_.x0, history.x[0], rounding * size, ", x0")) return;
-    for (std::size_t i = 0; i < dampers_.size(); ++i) {
-      const double y0 = dampers_[i].y0;
+    for (std::size_t i = 0; i < scene_.dampers.size(); ++i) {
+      const double y0 = scene_.dampers[i].y0;
       if (!equal(of_damper("/history/", i) + "y/0", y0, history.dampers[i].y[0],
-                 rounding * (1 + size + std::abs(y0) + std::abs(dampers_[i].w0)), ", y0"))
+                 rounding * (1 + size + std::abs(y0) + std::abs(scene_.dampers[i].w0)), ", y0"))
         return;
     }
   }
 
   // Checks that a mass lies between its rigid walls, to within the rounding of its flight.
   void examine_place(const History& history, std::size_t damper) {
-    const double clearance = dampers_[damper].clearance, near = rounding * (clearance + 2 * fastest());
+    const double clearance = scene_.dampers[damper].clearance, near = rounding * (clearance + 2 * fastest());
     const std::vector<double>& y = history.dampers[damper].y;
     for (std::size_t i = 0; i < y.size(); ++i) {
       if (!require(-near <= y[i] && y[i] <= clearance + near, of_damper("/history/", damper) + "y", i,
@@ -395,7 +390,7 @@ class Examination {
     // rounding of time. With central differences, which see a crossing late, only the energy at the release
     // and the work of the force bound |x'| between samples. Where recorded numbers exceed that bound, x at
     // zero crossings is not checked.
-    double fastest = std::max(f0, 2 * std::abs(scene_.w0));  // as after an impact at the release
+    double fastest = std::max(f0, 2 * std::abs(scene_.damper().w0));  // as after an impact at the release
     if (several_) fastest = std::max(f0, this->fastest());
     for (const auto* column : {&rows.amplitude, &history.x, &history.v})
       for (const double value : *column) fastest = std::max(fastest, std::abs(value));
@@ -445,7 +440,7 @@ class Examination {
 
   void examine_energy(const EnergyBalance& balance) {
     std::vector<double> w;
-    for (const SceneDamper& damper : dampers_) w.push_back(damper.w0);
+    for (const SceneDamper& damper : scene_.dampers) w.push_back(damper.w0);
     examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, w, energy_in_walls(),
                       rounding);
     examine_kinetic("initial_kinetic", &DamperEnergy::initial_kinetic, scene_.v0, w, rounding);
@@ -483,7 +478,7 @@ class Examination {
                          const std::vector<double>& w, double wall, double part) {
     double moving = v * v, kinetic = moving, paper = moving;
     for (std::size_t i = 0; i < w.size(); ++i) {
-      const double nu = dampers_[i].mass_ratio, most = std::abs(v) + std::abs(w[i]), z1 = v + w[i];
+      const double nu = scene_.dampers[i].mass_ratio, most = std::abs(v) + std::abs(w[i]), z1 = v + w[i];
       moving += nu * most * most;
       kinetic += nu * z1 * z1;
       paper += nu * (v * v + w[i] * w[i]);
@@ -499,7 +494,7 @@ class Examination {
   void examine_kinetic(const std::string& name, double DamperEnergy::*member, double v,
                        const std::vector<double>& w, double part) {
     for (std::size_t i = 0; several_ && i < w.size(); ++i) {
-      const double nu = dampers_[i].mass_ratio, z1 = v + w[i], most = std::abs(v) + std::abs(w[i]);
+      const double nu = scene_.dampers[i].mass_ratio, z1 = v + w[i], most = std::abs(v) + std::abs(w[i]);
       if (!equal(of_damper("/energy/", i) + name, nu * z1 * z1 / 2, run_.energy->dampers[i].*member,
                  part * nu * most * most, ", that of its state"))
         break;
@@ -511,9 +506,9 @@ class Examination {
   // Of several impacts at the same time only the sign is checked.
   void examine_losses(const Impacts& impacts, const std::vector<double>& losses) {
     double all = 1;
-    for (const SceneDamper& damper : dampers_) all += damper.mass_ratio;
+    for (const SceneDamper& damper : scene_.dampers) all += damper.mass_ratio;
     for (std::size_t i = 0; i < losses.size(); ++i) {
-      const SceneDamper& damper = dampers_[impacts.damper[i]];
+      const SceneDamper& damper = scene_.dampers[impacts.damper[i]];
       const double nu = damper.mass_ratio, e = damper.restitution, w = impacts.relative_velocity[i];
       const double least = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
       const std::string field = "/energy/impact_loss/" + std::to_string(i);
@@ -600,7 +595,6 @@ class Examination {
   const Run& run_;
   const Scene& scene_;
   const bool several_;
-  std::vector<SceneDamper> dampers_;  // the list, or the one damper of the scene
   const Cem* const cem_;
   Budget budget_;
   double step_ = 0;  // the longest step of the component element method, else 0

@@ -89,7 +89,7 @@ double LossAlone::at(double amplitude) const {
 LossAlone loss_alone(const std::vector<Run>& runs) {
   if (runs.empty()) throw std::invalid_argument("loss_alone: no run");
   const Scene& scene = runs.front().scene;
-  if (!scene.dampers.empty()) throw std::invalid_argument("loss_alone: a run of several dampers");
+  if (!has_one_damper(scene)) throw std::invalid_argument("loss_alone: a run of several dampers");
   if (!scene.until_amplitude) throw std::invalid_argument("loss_alone: a run without until_amplitude");
   double from = std::numeric_limits<double>::infinity();
   for (const Run& run : runs)
@@ -97,7 +97,7 @@ LossAlone loss_alone(const std::vector<Run>& runs) {
       from = std::min(from, run.half_cycles->amplitude.front());
   LossAlone alone{descending_amplitudes(from, *scene.until_amplitude, 48), {}};
   alone.specific = losses_between(runs, alone.edges).mean;
-  for (double& loss : alone.specific) loss /= scene.mass_ratio;
+  for (double& loss : alone.specific) loss /= scene.damper().mass_ratio;
   return alone;
 }
 

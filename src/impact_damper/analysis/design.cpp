@@ -35,10 +35,10 @@ ClearanceRule clearance_rule(double restitution, const Tolerances& tolerances) {
   return rule;
 }
 
-ShortContact short_contact(const Scene& scene, Calibration calibration, double speed) {
-  const double nu = scene.mass_ratio;
-  const double z = zeta_m(scene, calibration) * std::sqrt(1 + nu);
-  const double rate = omega_m(scene) * std::sqrt(1 + nu);
+ShortContact short_contact(const SceneDamper& damper, Calibration calibration, double speed) {
+  const double nu = damper.mass_ratio;
+  const double z = zeta_m(damper, calibration) * std::sqrt(1 + nu);
+  const double rate = omega_m(damper) * std::sqrt(1 + nu);
   double largest = 2 * z;  // the damper's, at touch
   if (z < 0.5) {
     const double omega = std::sqrt((1 - z) * (1 + z));
@@ -52,11 +52,11 @@ ShortContact short_contact(const Scene& scene, Calibration calibration, double s
   return contact;
 }
 
-double initial_wall_force(const Scene& scene, Calibration calibration) {
-  const double q = scene.y0 < 0 ? scene.y0 : scene.y0 > 1 ? scene.y0 - 1 : 0;
+double initial_wall_force(const SceneDamper& damper, Calibration calibration) {
+  const double q = damper.y0 < 0 ? damper.y0 : std::max(0.0, damper.y0 - damper.clearance);
   if (q == 0) return 0;
-  const double damping = 2 * scene.mass_ratio * omega_m(scene) * zeta_m(scene, calibration);
-  return std::abs(scene.wall_stiffness * q + damping * scene.w0);
+  const double damping = 2 * damper.mass_ratio * omega_m(damper) * zeta_m(damper, calibration);
+  return std::abs(damper.wall_stiffness * q + damping * damper.w0);
 }
 
 double linear_response(double force, double mass, double damping_ratio, double frequency) {

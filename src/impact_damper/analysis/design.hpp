@@ -42,12 +42,12 @@ struct ShortContact {
   // Until the wall is back in its place; absent without a rebound (damping ratio of the contact >= 1).
   std::optional<double> duration;
 };
-ShortContact short_contact(const Scene& scene, Calibration calibration, double speed);
+ShortContact short_contact(const SceneDamper& damper, Calibration calibration, double speed);
 // The longest contact, in units of 1/Omega_n, that is short compared with the primary mass's period.
 inline constexpr double longest_short_contact = 0.15;
 
 // Magnitude of the wall's force at the release; 0 if y0 is in the cavity.
-double initial_wall_force(const Scene& scene, Calibration calibration);
+double initial_wall_force(const SceneDamper& damper, Calibration calibration);
 
 // --- Forced motion ----------------------------------------------------------------------------------------
 // Amplitude of the steady motion of mass * x'' + 2 zeta x' + x = f sin(omega t), with `mass` = 1 for the

@@ -21,11 +21,12 @@ std::uint64_t draw(std::uint64_t& state) {
 // The scene with all that sets it moving multiplied by `factor`: a change of a small part alone may be lost
 // in the rounding of others.
 Scene scaled(Scene scene, double factor) {
-  for (double Scene::*const part : {&Scene::x0, &Scene::v0, &Scene::w0, &Scene::force_amplitude})
-    scene.*part *= factor;
+  for (double Scene::*const part : {&Scene::x0, &Scene::v0, &Scene::force_amplitude}) scene.*part *= factor;
   for (SceneDamper& damper : scene.dampers) damper.w0 *= factor;
-  if (scene.y0 < 0) scene.y0 *= factor;
-  if (scene.y0 > 1) scene.y0 = 1 + (scene.y0 - 1) * factor;
+  if (!has_one_damper(scene)) return scene;
+  double& y0 = scene.damper().y0;
+  if (y0 < 0) y0 *= factor;
+  if (y0 > 1) y0 = 1 + (y0 - 1) * factor;
   return scene;
 }
 
@@ -43,8 +44,7 @@ std::vector<Scene> ensemble_of(const Scene& scene, const EnsembleOptions& option
     const double shift = options.step * (drawn & 1 ? steps : -steps);
     const Scene shifted = scaled(scene, 1 + shift);
     // Where a number would exceed the largest that a scene allows, the other sign is taken.
-    const bool is_beyond =
-        problems_of(shifted, DamperList::allowed).size() > problems_of(scene, DamperList::allowed).size();
+    const bool is_beyond = problems_of(shifted).size() > problems_of(scene).size();
     scenes.push_back(is_beyond ? scaled(scene, 1 - shift) : shifted);
   }
   return scenes;

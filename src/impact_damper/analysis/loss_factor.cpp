@@ -146,7 +146,8 @@ std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrd
   std::vector<double> column;
   column.reserve(loss.eta.size());
   for (std::size_t i = 0; i < loss.eta.size(); ++i) {
-    const double specific = specific_secondary_loss(loss.eta[i], scene.damping_ratio, scene.mass_ratio);
+    const double specific =
+        specific_secondary_loss(loss.eta[i], scene.damping_ratio, scene.damper().mass_ratio);
     const double product = amplitude_times_loss(loss.amplitude[i], specific);
     double y = 0;
     switch (which) {
@@ -154,7 +155,7 @@ std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrd
         y = loss.eta[i];
         break;
       case LossOrdinate::specific:
-        y = specific_loss(loss.eta[i], scene.mass_ratio);
+        y = specific_loss(loss.eta[i], scene.damper().mass_ratio);
         break;
       case LossOrdinate::specific_secondary:
         y = specific;
@@ -163,11 +164,11 @@ std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrd
         y = product;
         break;
       case LossOrdinate::by_restitution:
-        y = loss_by_restitution(product, scene.restitution);
+        y = loss_by_restitution(product, scene.damper().restitution);
         break;
       case LossOrdinate::carried:
-        y = amplitude_times_loss(loss.amplitude[i],
-                                 specific_carried_loss(loss.eta[i], scene.damping_ratio, scene.mass_ratio));
+        y = amplitude_times_loss(loss.amplitude[i], specific_carried_loss(loss.eta[i], scene.damping_ratio,
+                                                                          scene.damper().mass_ratio));
         break;
     }
     column.push_back(y);

@@ -9,15 +9,14 @@ std::vector<double> divided(std::vector<double> values, double by) {
 }
 
 Scene scene_of_damper(const Scene& scene, const SceneDamper& damper) {
-  Scene alone = with_alone(scene, damper);
   const double c = damper.clearance;
-  alone.x0 = scene.x0 / c;
-  alone.v0 = scene.v0 / c;
-  alone.y0 = damper.y0 > c ? 1 + (damper.y0 - c) / c : damper.y0 / c;
-  alone.w0 = damper.w0 / c;
-  alone.force_amplitude /= c;
-  alone.until_time = scene.until_time;
-  if (scene.until_amplitude) alone.until_amplitude = *scene.until_amplitude / c;
+  Scene alone = scene;
+  for (double Scene::*const length : {&Scene::x0, &Scene::v0, &Scene::force_amplitude}) alone.*length /= c;
+  if (alone.until_amplitude) *alone.until_amplitude /= c;
+  alone.dampers = {damper};
+  alone.damper().clearance = 1;
+  alone.damper().y0 = damper.y0 > c ? 1 + (damper.y0 - c) / c : damper.y0 / c;
+  alone.damper().w0 /= c;
   return alone;
 }
 

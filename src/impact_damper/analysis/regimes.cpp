@@ -31,7 +31,7 @@ void for_each_stuck_part(const Run& run, const RegimeOptions& options, Visit vis
 Contacts stuck_contacts(const Run& run, const RegimeOptions& options) {
   if (!run.contacts) throw std::invalid_argument("contacts: the run did not record them");
   if (has_rigid_walls(run.engine)) return *run.contacts;
-  const double least = options.stuck_contact_times * nominal_contact_time(run.scene);
+  const double least = options.stuck_contact_times * nominal_contact_time(run.scene.damper());
   const Contacts& all = *run.contacts;
   Contacts stuck;
   for (std::size_t i = 0; i < all.begin.size(); ++i) {

@@ -21,8 +21,6 @@ double bound_of_square(const Run& run, std::size_t row) {
     const double depth = rigid ? 0 : std::max({0.0, -y, y - clearance});
     twice_energy += mass_ratio * (v + w) * (v + w) + stiffness * depth * depth;
   };
-  if (scene.dampers.empty())
-    add(scene.mass_ratio, scene.wall_stiffness, 1, history.dampers[0].y[row], history.dampers[0].w[row]);
   for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
     const SceneDamper& damper = scene.dampers[n];
     add(damper.mass_ratio, damper.wall_stiffness, damper.clearance, history.dampers[n].y[row],
@@ -36,7 +34,7 @@ double bound_of_square(const Run& run, std::size_t row) {
 std::optional<double> last_time_at(const Run& run, double begin, double end, double amplitude, bool ends) {
   constexpr double close = 0.01;  // samples: |x| does not rise and fall again between two of them
   constexpr int coarse_passes = 4;
-  const auto count = std::int64_t(std::max<std::size_t>(1, run.scene.dampers.size()));
+  const auto count = std::int64_t(run.scene.dampers.size());
   Record record;
   record.half_cycles = false;
   for (int pass = 0;; ++pass) {

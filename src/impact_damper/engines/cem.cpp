@@ -18,8 +18,7 @@ Cem resolved(const Scene& scene, Cem options) {
   if (!options.time_step) {
     double half_period = std::numbers::pi;
     for (const SceneDamper& damper : scene.dampers)
-      half_period = std::min(half_period, nominal_contact_time(with_alone(scene, damper)));
-    if (scene.dampers.empty()) half_period = std::min(half_period, nominal_contact_time(scene));
+      half_period = std::min(half_period, nominal_contact_time(damper));
     if (scene.force_amplitude != 0)
       half_period = std::min(half_period, std::numbers::pi / scene.force_frequency);
     options.time_step = half_period / 100;

@@ -974,26 +974,13 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
       zeta_(scene.damping_ratio),
       force_{Real(scene.force_amplitude), Real(scene.force_frequency)},
       energy_balance_(observer.wants_energy()),
-      is_list_(!scene.dampers.empty()),
+      is_list_(!has_one_damper(scene)),
       start_{scene.x0, scene.v0, {}, {}},
       steps_left_(options.max_steps),
       looks_left_(std::max<std::int64_t>(options.max_steps / 32, 10'000'000)),
       half_cycles_(Real(scene.x0)) {
   const Real h = *options.time_step;
-  const auto keep = [&](std::int32_t number, std::size_t i, const Scene& its, Real clearance, Real y0,
-                        Real w0) {
-    const auto wall = regime_equations<Real>(its, options.calibration, Regime::contact);
-    masses_[i] = {number,
-                  wall.nu,
-                  its.wall_stiffness,
-                  clearance,
-                  wall.c,
-                  wall.omega_2,
-                  whole_steps(nominal_contact_time(its) / double(h))};
-    start_.q[i] = y0;
-    start_.w[i] = w0;
-  };
-  const std::size_t count = is_list_ ? scene.dampers.size() : 1;
+  const std::size_t count = scene.dampers.size();
   if constexpr (!one) {
     masses_.resize(count);
     start_.q.resize(count);
@@ -1001,14 +988,20 @@ CemEngine<Real, Observer, ForEach>::CemEngine(const Scene& scene, const Cem& opt
   }
   energy_.resize(count);
   places_.resize(count);
-  if (is_list_) {
-    std::size_t i = 0;
-    for (const std::int32_t number : damper_order(scene.dampers)) {
-      const SceneDamper& d = scene.dampers[number];
-      keep(number, i++, with_alone(scene, d), d.clearance, d.y0, d.w0);
-    }
-  } else {
-    keep(0, 0, scene, 1, scene.y0, scene.w0);
+  std::size_t place = 0;
+  for (const std::int32_t number : damper_order(scene.dampers)) {
+    const SceneDamper& its = scene.dampers[number];
+    const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
+    masses_[place] = {number,
+                      wall.nu,
+                      its.wall_stiffness,
+                      its.clearance,
+                      wall.c,
+                      wall.omega_2,
+                      whole_steps(nominal_contact_time(its) / double(h))};
+    start_.q[place] = its.y0;
+    start_.w[place] = its.w0;
+    ++place;
   }
   small_ = pace_ = pace_of(h);
   if (options.large_step) {

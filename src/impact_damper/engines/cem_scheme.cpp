@@ -33,7 +33,7 @@ double last_of(double most, Semidefinite&& semidefinite) {
 double stability_limit_of_list(const Scene& scene, Damper damper, Calibration calibration) {
   std::vector<RegimeEquations<double>> walls;
   for (const SceneDamper& each : scene.dampers)
-    walls.push_back(regime_equations<double>(with_alone(scene, each), calibration, Regime::contact));
+    walls.push_back(regime_equations<double>(scene, each, calibration, Regime::contact));
   return last_of(2, [&](double h) {
     double all = 0;
     for (const auto& [nu, zeta, c, omega_2] : walls) {
@@ -47,24 +47,21 @@ double stability_limit_of_list(const Scene& scene, Damper damper, Calibration ca
 }  // namespace
 
 double fastest_contact_frequency(const Scene& scene) {
-  if (scene.dampers.size() == 1) return fastest_contact_frequency(with_alone(scene, scene.dampers.front()));
-  if (!scene.dampers.empty()) return 2 / stability_limit_of_list(scene, Damper::centred, {});
-  const double nu = scene.mass_ratio, k_by_nu = scene.wall_stiffness / nu;
+  if (scene.dampers.size() > 1) return 2 / stability_limit_of_list(scene, Damper::centred, {});
+  const double nu = scene.damper().mass_ratio, k_by_nu = scene.damper().wall_stiffness / nu;
   // (1 + K (1 + nu))^2 - 4 K as a sum of squares: no cancellation for heavy or light secondary masses.
   const double difference = hypotenuse(1 - k_by_nu * (1 - nu), 2 * k_by_nu * std::sqrt(nu));
   return std::sqrt((1 + k_by_nu * (1 + nu) + difference) / 2);
 }
 
 double stability_limit(const Scene& scene, Damper damper, Calibration calibration) {
-  if (scene.dampers.size() == 1)
-    return stability_limit(with_alone(scene, scene.dampers.front()), damper, calibration);
-  if (!scene.dampers.empty()) return stability_limit_of_list(scene, damper, calibration);
+  if (scene.dampers.size() > 1) return stability_limit_of_list(scene, damper, calibration);
   const double centred = 2 / fastest_contact_frequency(scene);
   if (damper == Damper::centred) return centred;
 
   // 4 M - 2 h C'' - h^2 K in absolute coordinates, the row and the column of z divided by sqrt(nu).
-  const double nu = scene.mass_ratio, k = scene.wall_stiffness;
-  const double c = 2 * omega_m(scene) * zeta_m(scene, calibration);
+  const double nu = scene.damper().mass_ratio, k = scene.damper().wall_stiffness;
+  const double c = 2 * omega_m(scene.damper()) * zeta_m(scene.damper(), calibration);
   const auto semidefinite = [&](double h) {
     const double wall = h * (2 * c + h * k / nu);  // damper and spring of the wall, by nu
     const double primary = 4 - h * h - nu * wall, secondary = 4 - wall;

@@ -43,11 +43,12 @@ struct RegimeEquations {
 };
 
 template <class Real>
-RegimeEquations<Real> regime_equations(const Scene& scene, Calibration calibration, Regime regime) {
-  RegimeEquations<Real> equations{.nu = scene.mass_ratio, .zeta = scene.damping_ratio, .c = 0, .omega_2 = 0};
+RegimeEquations<Real> regime_equations(const Scene& scene, const SceneDamper& damper, Calibration calibration,
+                                       Regime regime) {
+  RegimeEquations<Real> equations{.nu = damper.mass_ratio, .zeta = scene.damping_ratio, .c = 0, .omega_2 = 0};
   if (regime == Regime::flight) return equations;
-  equations.omega_2 = Real(scene.wall_stiffness) / equations.nu;
-  equations.c = 2 * square_root(equations.omega_2) * zeta_m<Real>(scene, calibration);
+  equations.omega_2 = Real(damper.wall_stiffness) / equations.nu;
+  equations.c = 2 * square_root(equations.omega_2) * zeta_m<Real>(damper, calibration);
   return equations;
 }
 

@@ -30,7 +30,7 @@ template <class Real, class Force, class Observer>
 Outcome run_exact(const System<Real, Force>& system, const Scene& scene, const Exact& options,
                   Observer& observer) {
   require_arithmetic();
-  const ContactModes<Real, Force> walls(system, zeta_m<Real>(scene, options.calibration));
+  const ContactModes<Real, Force> walls(system, zeta_m<Real>(scene.damper(), options.calibration));
   return walls.coupled ? run_exact<ContactWithoutModes<Real, Force>>(walls, system, scene, options, observer)
                        : run_exact<Contact<Real, Force>>(walls, system, scene, options, observer);
 }
@@ -41,7 +41,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
                   const Scene& scene, const Exact& options, Observer& observer) {
   RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
 
-  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
+  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.damper().y0), Real(scene.damper().w0)};
   const auto depth_of = [](const State<Real>& s) {
     return s.y < 0 ? Real(-s.y) : s.y > 1 ? Real(s.y - 1) : Real(0);
   };

@@ -39,9 +39,9 @@ using ModesOfDampers = std::vector<std::shared_ptr<const ContactModes<Real, Forc
 template <class Real, class Force>
 std::shared_ptr<const ContactModes<Real, Force>> modes_of_damper(const Scene& scene, std::size_t number,
                                                                  const Exact& options) {
-  const Scene alone = with_alone(scene, scene.dampers[number]);
-  return std::make_shared<const ContactModes<Real, Force>>(System<Real, Force>(alone),
-                                                           zeta_m<Real>(alone, options.calibration));
+  const SceneDamper& damper = scene.dampers[number];
+  return std::make_shared<const ContactModes<Real, Force>>(System<Real, Force>(scene, damper),
+                                                           zeta_m<Real>(damper, options.calibration));
 }
 
 template <class Real, class Force, class Observer>
@@ -62,9 +62,9 @@ class ExactOfDampers {
         energy_(scene.dampers.size()),
         places_(scene.dampers.size()) {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Scene alone = with_alone(scene, scene.dampers[masses_.number[i]]);
-      walls_[i].stiffness = Real(alone.wall_stiffness) / Real(alone.mass_ratio);
-      walls_[i].damping = 2 * zeta_m<Real>(alone, options.calibration) * square_root(walls_[i].stiffness);
+      const SceneDamper& damper = scene.dampers[masses_.number[i]];
+      walls_[i].stiffness = Real(damper.wall_stiffness) / Real(damper.mass_ratio);
+      walls_[i].damping = 2 * zeta_m<Real>(damper, options.calibration) * square_root(walls_[i].stiffness);
       if (!modes.empty()) walls_[i].modes = modes[masses_.number[i]];
     }
   }

@@ -39,7 +39,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
   RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
   const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
 
-  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.y0), Real(scene.w0)};
+  State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.damper().y0), Real(scene.damper().w0)};
   tracker.begin(state, Real(0));
   Real losses{0};
 

@@ -148,7 +148,7 @@ concept PartsOfDampers =
     HasRunColumns<typename Type::value_type> && std::same_as<Type, std::vector<typename Type::value_type>>;
 
 // Whether a run has the columns of a list of dampers.
-inline bool has_list(const Run& run) { return !run.scene.dampers.empty(); }
+inline bool has_list(const Run& run) { return !has_one_damper(run.scene); }
 
 // Calls visit(info, value) for each entry of the table of `owner`; a sum is a value without an address.
 // of_list: whether the run is one of a scene with a list of dampers.

@@ -9,8 +9,7 @@
 //
 // Where the scene has a list of dampers, impacts and contacts have a column "damper", the number of the
 // damper from 1, and half cycles, history and energy an array "dampers" with an object for each: its
-// "impacts" in each half cycle, its "y" and "w", the fields of DamperEnergy. A reader without
-// DamperList::allowed rejects such a run.
+// "impacts" in each half cycle, its "y" and "w", the fields of DamperEnergy.
 #pragma once
 
 #include <filesystem>
@@ -55,8 +54,8 @@ std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
 // the digest is that of the content. The result is dimensionless; "units" is for other programs. Throws
 // IoError if `file` cannot be read, InputError, with a line for each of the first 50 problems; these lines
 // begin with the name of the file, or with `name`.
-Run read_run(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
-Run parse_run(const std::string& name, const std::string& text, DamperList dampers = DamperList::rejected);
+Run read_run(const std::filesystem::path& file);
+Run parse_run(const std::string& name, const std::string& text);
 
 // Reads the engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given;
 // other options have their defaults. Throws InputError as above.

@@ -184,7 +184,7 @@ void read_section(ObjectReader& object, std::string_view name, std::size_t dampe
 
 // Reports what the engine would reject of the scene: no run of it can exist.
 void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
-  if (!problems_of(run.scene, DamperList::allowed).empty()) return;
+  if (!problems_of(run.scene).empty()) return;
   for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
     const bool of_scene =
         problem.field.starts_with("dampers") ||
@@ -193,17 +193,18 @@ void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   }
 }
 
-Run read_whole(JsonDocument document, bool sealed, DamperList list) {
+Run read_whole(JsonDocument document, bool sealed) {
   Run run;
   ObjectReader object = document.root();
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
-  run.scene = read_scene_fields(scene, list, MissingFields::are_problems);
-  if (scene.holds("dampers") && run.scene.dampers.empty()) {
+  run.scene = read_scene_fields(scene, MissingFields::are_problems);
+  if (run.scene.dampers.empty()) {
     for (ObjectReader* each : {&object, &engine}) each->keys();  // the columns would be of unknown dampers
     document.finish();
   }
-  const std::size_t dampers = run.scene.dampers.size();
+  // Files of earlier versions list one damper as they list several.
+  const std::size_t dampers = scene.holds("dampers") ? run.scene.dampers.size() : 0;
   if (const std::optional<Engine> whole = read_engine(engine, Lacking::nothing)) {
     run.engine = *whole;
     check_together(scene, engine, run);
@@ -224,16 +225,16 @@ Run read_whole(JsonDocument document, bool sealed, DamperList list) {
 
 }  // namespace
 
-Run read_run(const std::filesystem::path& file, DamperList dampers) {
+Run read_run(const std::filesystem::path& file) {
   std::string text = read_text(file, run_kind);
   const bool sealed = is_sealed(text);
   JsonDocument document = JsonDocument::parse(file.string(), text);
   std::string().swap(text);  // its memory is as large as that of the columns
-  return read_whole(std::move(document), sealed, dampers);
+  return read_whole(std::move(document), sealed);
 }
 
-Run parse_run(const std::string& name, const std::string& text, DamperList dampers) {
-  return read_whole(JsonDocument::parse(name, text), is_sealed(text), dampers);
+Run parse_run(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
 }
 
 std::optional<Engine> read_engine_of_response(ObjectReader& engine) {

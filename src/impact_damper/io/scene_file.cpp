@@ -34,49 +34,61 @@ GivenKeys given_keys(const ObjectReader& object) {
   return given;
 }
 
-// Whether a list of dampers is rejected because one damper is required; it is then the only problem reported.
-bool rejects_dampers(ObjectReader& object, DamperList dampers) {
-  if (dampers == DamperList::allowed || !object.holds("dampers")) return false;
-  object.keys();
-  Scene scene;
-  scene.dampers.resize(1);
-  for (const Problem& problem : problems_of(scene)) object.reject(problem);
-  return true;
+// The object of each damper of a list.
+std::vector<ObjectReader> damper_objects(ObjectReader& object) {
+  return object.optional_objects("dampers", most_dampers, 1);
+}
+
+// The field of a damper, which problems_of() names, where it stands in a file: one damper may be a list, too.
+Problem in_file(Problem problem, const ObjectReader& object) {
+  const auto* const field = std::ranges::find(scene_damper_fields, problem.field, &SceneField::name);
+  const auto* const in_units = std::ranges::find(unit_fields, problem.field, &UnitField::name);
+  const bool of_damper =
+      field != scene_damper_fields.end() || (in_units != unit_fields.end() && in_units->number.of_damper);
+  if (of_damper && object.holds("dampers")) problem.field = damper_field(0, problem.field);
+  return problem;
 }
 
 SceneInUnits read_unit_fields(ObjectReader& object) {
   SceneInUnits scene;
   std::vector<std::string> unreadable;
-  const auto read = [&](ObjectReader& from, std::string_view key, const std::string& field,
+  const auto read = [&](ObjectReader& from, const UnitField& field, const std::string& name,
                         std::optional<double>& target) {
-    if (!from.has(key)) return;
+    if (!from.has(field.name)) return;
     // A field that cannot be read is neither missing nor usable.
     double value = std::numeric_limits<double>::quiet_NaN();
-    if (!from.optional(key, value)) unreadable.push_back(field);
+    if (!from.optional(field.name, value)) unreadable.push_back(name);
     target = value;
   };
-  for (const UnitField& field : unit_fields)
-    read(object, field.name, std::string(field.name), scene.*field.member);
-  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
-    const std::size_t i = scene.dampers.size();
-    scene.dampers.emplace_back();
-    for (const DamperUnitField& field : damper_unit_fields) {
-      read(damper, field.name, damper_field(i, field.name), scene.dampers[i].*field.member);
-      if (!damper.is_object()) unreadable.push_back(damper_field(i, field.name));
+  const bool list = object.holds("dampers");
+  for (const UnitField& field : unit_fields) {
+    if (field.number.own || !list)
+      read(object, field, std::string(field.name), field.number.in(scene));
+    else if (object.has(field.name))
+      object.reject(field.name, beside_dampers);
+  }
+  std::vector<ObjectReader> dampers = damper_objects(object);
+  if (!dampers.empty()) scene.dampers.resize(dampers.size());
+  for (std::size_t i = 0; list && i < scene.dampers.size(); ++i) {
+    for (const UnitField& field : unit_fields) {
+      if (!field.number.of_damper) continue;
+      const std::string name = damper_field(i, field.name);
+      if (i < dampers.size() && dampers[i].is_object())
+        read(dampers[i], field, name, scene.dampers[i].*field.number.of_damper);
+      else
+        unreadable.push_back(name);  // as has been reported
     }
   }
-  if (object.holds("dampers") && scene.dampers.empty()) {  // its problems have been reported
-    scene.dampers.emplace_back();
-    for (const DamperUnitField& field : damper_unit_fields) unreadable.push_back(damper_field(0, field.name));
-  }
-  for (const Problem& problem : problems_of(scene, DamperList::allowed))
+  for (const Problem& each : problems_of(scene)) {
+    const Problem problem = in_file(each, object);
     if (std::ranges::find(unreadable, problem.field) == unreadable.end()) object.reject(problem);
+  }
   return scene;
 }
 
-SceneFile read_whole(JsonDocument document, DamperList dampers) {
+SceneFile read_whole(JsonDocument document) {
   ObjectReader object = document.root();
-  SceneFile file = read_scene_object(object, dampers);
+  SceneFile file = read_scene_object(object);
   document.finish();
   return file;
 }
@@ -96,45 +108,45 @@ void reject_run(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene read_scene_fields(ObjectReader& object, DamperList dampers, MissingFields missing) {
+Scene read_scene_fields(ObjectReader& object, MissingFields missing) {
   Scene scene;
-  if (rejects_dampers(object, dampers)) return scene;
-  const bool several = object.has("dampers"), all = missing == MissingFields::are_problems;
-  const auto read = [&](ObjectReader& from, const auto& field, auto& target) {
+  const bool list = object.has("dampers"), all = missing == MissingFields::are_problems;
+  const auto read = [&](ObjectReader& from, const SceneField& field, double& target) {
     if (all) from.require(field.name);
-    from.optional(field.name, target.*field.member);
+    from.optional(field.name, target);
   };
   for (const SceneField& field : scene_fields) {
-    if (!several || !is_of_one_damper(field))
-      read(object, field, scene);
+    if (field.number.own || !list)
+      read(object, field, field.number.in(scene));
     else if (object.has(field.name))
       object.reject(field.name, beside_dampers);
   }
-  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
-    SceneDamper& its = scene.dampers.emplace_back();
-    for (const SceneDamperField& field : scene_damper_fields) read(damper, field, its);
-  }
+  std::vector<ObjectReader> dampers = damper_objects(object);
+  if (list) scene.dampers.resize(dampers.size());
+  for (std::size_t i = 0; i < dampers.size(); ++i)
+    for (const SceneField& field : scene_damper_fields)
+      read(dampers[i], field, scene.dampers[i].*field.number.of_damper);
   for (const std::string_view stop : {"until_time", "until_amplitude"})
     if (all) object.require(stop);
   const bool time_is_read = object.optional("until_time", scene.until_time);
   const bool amplitude_is_read = object.optional("until_amplitude", scene.until_amplitude);
-  for (const Problem& problem : problems_of(scene, dampers)) {
+  for (const Problem& problem : problems_of(scene)) {
     // A stop that was given but could not be read is not missing as well.
     const bool given = problem.field == "until_time" && !(time_is_read && amplitude_is_read);
-    if (!given) object.reject(problem);
+    const bool no_dampers = list && dampers.empty();  // as has been reported
+    if (!given && !no_dampers) object.reject(in_file(problem, object));
   }
   return scene;
 }
 
-SceneFile read_scene_object(ObjectReader& object, DamperList dampers) {
+SceneFile read_scene_object(ObjectReader& object) {
   SceneFile file;
-  if (rejects_dampers(object, dampers)) return file;
   object.optional("description", file.description);
   for (const UnitField& field : unit_fields) object.suggest(field.name);
   for (const SceneField& field : scene_fields) object.suggest(field.name);
   const auto [in_units, without_units] = given_keys(object);
   if (in_units.empty()) {
-    file.scene = read_scene_fields(object, dampers);
+    file.scene = read_scene_fields(object);
     return file;
   }
   file.in_units = read_unit_fields(object);
@@ -144,41 +156,40 @@ SceneFile read_scene_object(ObjectReader& object, DamperList dampers) {
     object.reject("",
                   "must be either in units or dimensionless, got " + in_units + " beside " + without_units);
   }
-  if (problems_of(*file.in_units, dampers).empty()) {
+  if (problems_of(*file.in_units).empty()) {
     file.scene = dimensionless(*file.in_units);
     file.scales = scales_of(*file.in_units);
   }
   return file;
 }
 
-SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers) {
+SceneFile read_scene_file(const std::filesystem::path& file) {
   reject_run(file);
-  return read_whole(JsonDocument::read(file, scene_kind), dampers);
+  return read_whole(JsonDocument::read(file, scene_kind));
 }
 
-Scene read_scene(const std::filesystem::path& file, DamperList dampers) {
-  return read_scene_file(file, dampers).scene;
+Scene read_scene(const std::filesystem::path& file) { return read_scene_file(file).scene; }
+
+SceneFile parse_scene_file(const std::string& name, const std::string& text) {
+  return read_whole(JsonDocument::parse(name, text));
 }
 
-SceneFile parse_scene_file(const std::string& name, const std::string& text, DamperList dampers) {
-  return read_whole(JsonDocument::parse(name, text), dampers);
-}
-
-Scene parse_scene(const std::string& name, const std::string& text, DamperList dampers) {
-  return parse_scene_file(name, text, dampers).scene;
+Scene parse_scene(const std::string& name, const std::string& text) {
+  return parse_scene_file(name, text).scene;
 }
 
 void write_scene_numbers(JsonWriter& out, const Scene& scene) {
-  const bool several = !scene.dampers.empty();
+  const bool one = has_one_damper(scene);
   for (const SceneField& each : scene_fields)
-    if (!several || !is_of_one_damper(each)) out.field(each.name, scene.*each.member);
-  if (several) out.open_array("dampers", JsonWriter::Layout::one_line);
+    if (one || each.number.own) out.field(each.name, each.number.in(scene));
+  if (one) return;
+  out.open_array("dampers", JsonWriter::Layout::one_line);
   for (const SceneDamper& damper : scene.dampers) {
     out.open_object(JsonWriter::Layout::one_line);
-    for (const SceneDamperField& each : scene_damper_fields) out.field(each.name, damper.*each.member);
+    for (const SceneField& each : scene_damper_fields) out.field(each.name, damper.*each.number.of_damper);
     out.close();
   }
-  if (several) out.close();
+  out.close();
 }
 
 void write_scene_fields(JsonWriter& out, const Scene& scene) {
@@ -188,14 +199,18 @@ void write_scene_fields(JsonWriter& out, const Scene& scene) {
 }
 
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
+  const auto write = [&](const UnitField& field, const std::optional<double>& value) {
+    if (value) out.field(field.name, value);
+  };
+  const bool one = scene.dampers.size() == 1;
   for (const UnitField& each : unit_fields)
-    if (scene.*each.member) out.field(each.name, scene.*each.member);
-  if (scene.dampers.empty()) return;
+    if (one || each.number.own) write(each, each.number.in(scene));
+  if (one) return;
   out.open_array("dampers", out.layout());
   for (const DamperInUnits& damper : scene.dampers) {
     out.open_object(JsonWriter::Layout::one_line);
-    for (const DamperUnitField& each : damper_unit_fields)
-      if (damper.*each.member) out.field(each.name, damper.*each.member);
+    for (const UnitField& each : unit_fields)
+      if (each.number.of_damper) write(each, damper.*each.number.of_damper);
     out.close();
   }
   out.close();

@@ -12,12 +12,10 @@
 // stiffness, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
 // file may have at most 1 MiB (scene_kind); a text given to parse_scene() may be longer.
 //
-// Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or
-// damper_unit_fields, in place of the scene's own fields for one damper:
+// Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or of the
+// unit_fields of a damper, in place of the keys of one damper beside the scene's own:
 //
 //   {"dampers": [{"mass_ratio": 0.02}, {"mass_ratio": 0.01, "clearance": 0.3}], "until_time": 100}
-//
-// A reader without DamperList::allowed rejects them.
 #pragma once
 
 #include <filesystem>
@@ -45,30 +43,28 @@ struct SceneFile {
 
 // Reads a scene. Throws IoError if `file` cannot be read, InputError, with a line for each of the first 50
 // problems in it. These lines begin with the name of the file, or with `name`.
-SceneFile read_scene_file(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
-SceneFile parse_scene_file(const std::string& name, const std::string& text,
-                           DamperList dampers = DamperList::rejected);
+SceneFile read_scene_file(const std::filesystem::path& file);
+SceneFile parse_scene_file(const std::string& name, const std::string& text);
 // Return its scene alone.
-Scene read_scene(const std::filesystem::path& file, DamperList dampers = DamperList::rejected);
-Scene parse_scene(const std::string& name, const std::string& text,
-                  DamperList dampers = DamperList::rejected);
+Scene read_scene(const std::filesystem::path& file);
+Scene parse_scene(const std::string& name, const std::string& text);
 
 // Reads the fields of a scene from an object, which may hold others and collects the problems, and writes
 // them into one. For the project's own readers and writers: neither class is part of the library's interface.
 // Where a run is read, every field must be there, absent stops as null.
 enum class MissingFields { have_defaults, are_problems };
-Scene read_scene_fields(ObjectReader& object, DamperList dampers = DamperList::rejected,
-                        MissingFields missing = MissingFields::have_defaults);
+Scene read_scene_fields(ObjectReader& object, MissingFields missing = MissingFields::have_defaults);
+// Returns a scene without dampers if their list cannot be read.
 // Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used.
-SceneFile read_scene_object(ObjectReader& object, DamperList dampers = DamperList::rejected);
+SceneFile read_scene_object(ObjectReader& object);
 void write_scene_fields(JsonWriter& out, const Scene& scene);
 // Writes the fields without the stops.
 void write_scene_numbers(JsonWriter& out, const Scene& scene);
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that are given
 
-// Returns the scene as JSON on one line, every field in the order of Scene, absent stops as null, several
-// dampers in place of the fields of one. It reads back as an equal scene, if the numbers of one damper were
-// not changed beside a list. Throws NumericalError if a number is not finite.
+// Returns the scene as JSON on one line, every field in the order of Scene, absent stops as null, a
+// list of dampers in place of the numbers of one. It reads back as an equal scene. Throws NumericalError if a
+// number is not finite.
 std::string scene_text(const Scene& scene);
 
 }  // namespace impact_damper

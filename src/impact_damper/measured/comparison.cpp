@@ -34,7 +34,7 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
         simulated_half_cycles(decay_scene(scene, reduction, until, options.fit.seed, i), engine);
   });
   const Scales scales = scales_of(scene);
-  const double time_unit = scales.time(), length = *scene.clearance;
+  const double time_unit = scales.time(), length = *scene.damper().clearance;
   std::vector<std::vector<double>> losses(bins.size());
   for (HalfCycles& rows : result.decays) {
     const std::vector<double> of_bins = log_losses(rows, length, bins);
@@ -131,7 +131,7 @@ void remark_on_fit(Comparison& c) {
 
 void remark_on_range(Comparison& c) {
   const SceneInUnits& scene = c.fitted ? c.fitted->scene : c.given.scene;
-  const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.clearance;
+  const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.damper().clearance;
   if (c.reduction.amplitude.back() > fold)
     c.remarks.push_back("The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " +
                         text_of(fold) +
@@ -168,7 +168,7 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   c.loss = loss_of(half_cycles_of(c.reduction, 1, 1), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
   c.highest_frequency = scales_of(scene).frequency();
-  c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).mass_ratio);
+  c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
   tell("simulating the scene");
   c.given = decays_of(scene, engine, c.reduction, c.bins, options);
   remark_on_frequency(c);
@@ -190,7 +190,7 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
     c.remarks.push_back(
         "Displacements are accelerations divided by the square of the local angular frequency; they may err "
         "by " +
-        text_of(100 * dimensionless(scene).mass_ratio) + " % (the mass ratio)" +
+        text_of(100 * dimensionless(scene).damper().mass_ratio) + " % (the mass ratio)" +
         (c.fit ? ", for which the intervals do not allow." : "."));
   return c;
 }

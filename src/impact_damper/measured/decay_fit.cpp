@@ -129,7 +129,7 @@ class Search {
         set_value(scene, axes[j].parameter, axes[j].value(place[j]));
       const Scene decay = decay_scene(scene, reduction_, bins_.back().lower, seed, i);
       const HalfCycles rows = simulated_half_cycles(decay, engine_);
-      losses[std::size_t(i)] = log_losses(rows, *scene.clearance, bins_);
+      losses[std::size_t(i)] = log_losses(rows, *scene.damper().clearance, bins_);
       constexpr std::int64_t often = 50;
       if (const std::int64_t all = ++done; all % often == 0)
         tell_("fitting, stage " + std::to_string(stage_) + ", " + std::to_string(all) + " of " +
@@ -539,30 +539,30 @@ double value_of(const SceneInUnits& scene, FitParameter parameter) {
   const Scene made = dimensionless(scene);
   switch (parameter) {
     case FitParameter::restitution:
-      return made.restitution;
+      return made.damper().restitution;
     case FitParameter::damping_ratio:
       return made.damping_ratio;
     case FitParameter::clearance:
-      return *scene.clearance;
+      return *scene.damper().clearance;
     case FitParameter::secondary_mass:
       break;
   }
-  return *scene.secondary_mass;
+  return *scene.damper().secondary_mass;
 }
 void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
   switch (parameter) {
     case FitParameter::restitution:
-      scene.restitution = value;
+      scene.damper().restitution = value;
       break;
     case FitParameter::damping_ratio:
       scene.damping.reset();
       scene.damping_ratio = value;
       break;
     case FitParameter::clearance:
-      scene.clearance = value;
+      scene.damper().clearance = value;
       break;
     case FitParameter::secondary_mass:
-      scene.secondary_mass = value;
+      scene.damper().secondary_mass = value;
       break;
   }
 }
@@ -574,12 +574,12 @@ Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double 
   SceneInUnits released = scene;
   released.initial_displacement = above * reduction.amplitude.front();
   released.initial_velocity.reset();
-  released.secondary_velocity.reset();
-  released.secondary_displacement.reset();
+  released.damper().secondary_velocity.reset();
+  released.damper().secondary_displacement.reset();
   released.until_millimetres = below * until;
   released.until_seconds = longer * (reduction.time.back() - reduction.time.front());
   Scene made = dimensionless(released);
-  made.y0 = uniform_draw({seed, place_in_cavity, draw});
+  made.damper().y0 = uniform_draw({seed, place_in_cavity, draw});
   return made;
 }
 
@@ -594,7 +594,7 @@ std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions
   if (options.runs < 1) problems.push_back({"runs", "must be >= 1, got " + std::to_string(options.runs)});
   if (!(options.level > 0))
     problems.push_back({"level", "must be a number > 0, got " + number_text(options.level)});
-  if (!scene.dampers.empty()) problems.push_back({"dampers", "must be one damper, without a list"});
+  if (scene.dampers.size() != 1) problems.push_back({"dampers", "must be one damper, without a list"});
   return problems;
 }
 

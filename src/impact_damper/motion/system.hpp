@@ -20,14 +20,15 @@ struct Driven<Real, NoForcing<Real>> : Oscillator<Real> {
   Driven(const Real& a, const Real& b, const NoForcing<Real>&) : Oscillator<Real>(a, b) {}
 };
 
-// The scene's numbers in the engine's scalar type.
+// The scene's numbers, and those of one of its dampers, in the engine's scalar type.
 template <class Real, ForceOf<Real> Force = Forcing<Real>>
 struct System {
-  explicit System(const Scene& scene)
-      : nu(scene.mass_ratio),
-        e(scene.restitution),
+  explicit System(const Scene& scene) : System(scene, scene.damper()) {}
+  System(const Scene& scene, const SceneDamper& damper)
+      : nu(damper.mass_ratio),
+        e(damper.restitution),
         zeta(scene.damping_ratio),
-        k(scene.wall_stiffness),
+        k(damper.wall_stiffness),
         forcing{Real(scene.force_amplitude), Real(scene.force_frequency)},
         free(zeta, Real(1), forcing),
         // NOLINTNEXTLINE(clang-analyzer-optin.cplusplus.UninitializedObject): it takes a rate for unknown

@@ -49,10 +49,10 @@ IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
   return found;
 }
 
-double omega_m(const Scene& scene) { return std::sqrt(scene.wall_stiffness / scene.mass_ratio); }
+double omega_m(const SceneDamper& damper) { return std::sqrt(damper.wall_stiffness / damper.mass_ratio); }
 
-double nominal_contact_time(const Scene& scene) {
-  return std::numbers::pi / (omega_m(scene) * std::sqrt(1 + scene.mass_ratio));
+double nominal_contact_time(const SceneDamper& damper) {
+  return std::numbers::pi / (omega_m(damper) * std::sqrt(1 + damper.mass_ratio));
 }
 
 }  // namespace impact_damper

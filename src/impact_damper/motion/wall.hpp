@@ -32,22 +32,22 @@ IterativeZeta zeta_m_iterative(double restitution, double tolerance = 1e-8);
 // zeta_m that an engine uses: fixed_wall as above; two_body divides by sqrt(1 + nu), so that the
 // delivered restitution between two free masses is e exactly.
 template <class Real = double>
-Real zeta_m(const Scene& scene, Calibration calibration) {
-  const Real fixed = zeta_m_closed_form(Real(scene.restitution));
+Real zeta_m(const SceneDamper& damper, Calibration calibration) {
+  const Real fixed = zeta_m_closed_form(Real(damper.restitution));
   switch (calibration) {
     case Calibration::fixed_wall:
       return fixed;
     case Calibration::two_body:
-      return fixed / square_root(Real(1 + Real(scene.mass_ratio)));
+      return fixed / square_root(Real(1 + Real(damper.mass_ratio)));
   }
   return fixed;
 }
 
 // omega_m = sqrt(k/nu). In a contact between two otherwise free masses the frequency is omega_c = omega_m
 // sqrt(1 + nu) and the damping ratio zeta_m sqrt(1 + nu).
-double omega_m(const Scene& scene);
+double omega_m(const SceneDamper& damper);
 
 // pi / omega_c: half a period of the contact, the nominal duration of one impact.
-double nominal_contact_time(const Scene& scene);
+double nominal_contact_time(const SceneDamper& damper);
 
 }  // namespace impact_damper

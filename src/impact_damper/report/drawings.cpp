@@ -55,7 +55,8 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
     parameters += std::to_string(subject.scene.dampers.size()) +
                   " dampers, together ν = " + ratio(secondary_mass(subject.scene));
   } else {
-    parameters += "ν = " + ratio(subject.scene.mass_ratio) + ", e = " + ratio(subject.scene.restitution);
+    parameters += "ν = " + ratio(subject.scene.damper().mass_ratio) +
+                  ", e = " + ratio(subject.scene.damper().restitution);
   }
   parameters += ", ζ = " + ratio(subject.scene.damping_ratio);
   if (findings.forced())
@@ -246,7 +247,7 @@ std::optional<Drawing> loss(const Findings& findings) {
     if (!folds.columns[0].values.empty()) drawing.table.blocks.push_back(std::move(folds));
     return drawing;
   }
-  if (const double e = findings.subject.scene.restitution; e > 0 && e < 1)
+  if (const double e = findings.subject.scene.damper().restitution; e > 0 && e < 1)
     drawing.table.blocks.push_back(
         {.name = "fold",
          .columns = {

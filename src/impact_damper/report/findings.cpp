@@ -59,8 +59,7 @@ void find_best_damping(Findings& findings) {
   const LossFactor& loss = findings.loss;
   const Scene& scene = findings.subject.scene;
   const auto keeps_speed = [](const auto& damper) { return damper.restitution == 1; };
-  const bool lossless =
-      scene.dampers.empty() ? keeps_speed(scene) : std::ranges::all_of(scene.dampers, keeps_speed);
+  const bool lossless = std::ranges::all_of(scene.dampers, keeps_speed);
   if (lossless && scene.damping_ratio == 0) return;  // no energy is lost
   if (findings.run.impacts->time.empty()) return;    // the same at every amplitude
   if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
@@ -92,10 +91,10 @@ std::optional<Loads> loads_of(const Run& run) {
   const double end = run.end_time, from = scene.force_amplitude != 0 ? 0.75 * end : 0;
   loads.impacts = static_cast<double>(impacts.time.end() - std::ranges::lower_bound(impacts.time, from));
   loads.time = end - from;
-  if (scene.dampers.empty() && !has_rigid_walls(engine)) {
-    loads.initial_force = initial_wall_force(scene, calibration_of(engine));
-    if (nominal_contact_time(scene) <= longest_short_contact)
-      loads.contact = short_contact(scene, calibration_of(engine), loads.speed);
+  if (has_one_damper(scene) && !has_rigid_walls(engine)) {
+    loads.initial_force = initial_wall_force(scene.damper(), calibration_of(engine));
+    if (nominal_contact_time(scene.damper()) <= longest_short_contact)
+      loads.contact = short_contact(scene.damper(), calibration_of(engine), loads.speed);
   }
   return loads;
 }

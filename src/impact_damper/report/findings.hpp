@@ -102,7 +102,7 @@ struct Findings {
   std::optional<MotionWindow> chosen;  // about the best damping; of a forced motion, its end
 
   bool forced() const { return subject.scene.force_amplitude != 0; }
-  bool several() const { return !subject.scene.dampers.empty(); }
+  bool several() const { return !has_one_damper(subject.scene); }
   Run run_of(std::size_t damper) const;  // of one of several, as it sees it (one_of_several.hpp); else `run`
   double energy_to_impacts()
       const;  // divided by K epsilon^2; includes contacts without an impact and bounce-downs

@@ -101,13 +101,13 @@ std::string best_sentences(const Findings& findings) {
 std::string theory_sentences(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
-  const double e = scene.restitution;
+  const double e = scene.damper().restitution;
   if (e == 1)
     return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the secondary mass and back.";
   if (e == 0)
     return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not "
            "hold.";
-  const double eta = peak_loss(e) * scene.mass_ratio + 2 * scene.damping_ratio;
+  const double eta = peak_loss(e) * scene.damper().mass_ratio + 2 * scene.damping_ratio;
   std::string text =
       "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
       "amplitude of " +
@@ -118,8 +118,8 @@ std::string theory_sentences(const Findings& findings) {
   if (const auto motion = single_impact(e, best.amplitude);
       motion && eta < far_too_much && best.amplitude < equal_spacing_amplitude(e))
     text += "Where this run is damped best it gives η = " +
-            number_html(motion->loss * scene.mass_ratio + 2 * scene.damping_ratio) + " in place of " +
-            number_html(best.eta) +
+            number_html(motion->loss * scene.damper().mass_ratio + 2 * scene.damping_ratio) +
+            " in place of " + number_html(best.eta) +
             ": it holds for a steady amplitude, behind which a heavier secondary mass lags. ";
   return text + "The best amplitude is " + percent_html(peak_loss_amplitude(e) / fold_amplitude(e) - 1) +
          " above " + quantities.length(fold_amplitude(e)) +
@@ -129,9 +129,9 @@ std::string theory_sentences(const Findings& findings) {
 std::string clearance_html(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
-  if (!(scene.restitution > 0 && scene.restitution < 1)) return "";
+  if (!(scene.damper().restitution > 0 && scene.damper().restitution < 1)) return "";
   const Tolerances tolerances;
-  const ClearanceRule rule = clearance_rule(scene.restitution, tolerances);
+  const ClearanceRule rule = clearance_rule(scene.damper().restitution, tolerances);
   const auto percent = [](double part) { return number_html(100 * part) + " %"; };
   const std::string text =
       "To damp a given amplitude choose a clearance of " + number_html(1 / rule.amplitude) +
@@ -144,13 +144,13 @@ std::string clearance_html(const Findings& findings) {
   HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
                   .heads = {"Clearance", "amplitude", "impacts fail at", "margin"},
                   .rows = {}};
-  const bool light = peak_loss(scene.restitution) * scene.mass_ratio < far_too_much;
+  const bool light = peak_loss(scene.damper().restitution) * scene.damper().mass_ratio < far_too_much;
   if (light) table.heads.emplace_back("η of the impacts");
   const auto row = [&](const std::string& what, double amplitude, double fold, double loss) {
     table.rows.push_back({what, number_html(amplitude), number_html(fold), number_html(amplitude / fold)});
-    if (light) table.rows.back().push_back(number_html(loss * scene.mass_ratio));
+    if (light) table.rows.back().push_back(number_html(loss * scene.damper().mass_ratio));
   };
-  const double e = scene.restitution;
+  const double e = scene.damper().restitution;
   row("for the best damping, without a margin", peak_loss_amplitude(e), rule.fold, peak_loss(e));
   row("recommended", rule.amplitude, rule.fold, rule.loss);
   row("recommended, all tolerances at their worst", rule.worst_amplitude, rule.worst_fold, rule.worst_loss);
@@ -218,7 +218,7 @@ std::string loss_html(const Findings& findings) {
         "impacts "
         "fail, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph_html(
-      !findings.several() && scene.restitution == 1
+      !findings.several() && scene.damper().restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
           : "The amplitude does not fall: there is no loss factor to speak of.");
 }
@@ -292,10 +292,10 @@ std::string loads_html(const Findings& findings) {
         "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
         "duration as "
         "1/√<i>k</i>; the speed and the number of impacts hardly do. ";
-    text += "Here <i>k</i> = " + number_html(scene.wall_stiffness) + " times the primary stiffness" +
-            (scales ? ", " + number_html(scene.wall_stiffness * scales->stiffness) + " N/m" : "");
+    text += "Here <i>k</i> = " + number_html(scene.damper().wall_stiffness) + " times the primary stiffness" +
+            (scales ? ", " + number_html(scene.damper().wall_stiffness * scales->stiffness) + " N/m" : "");
     text +=
-        scene.wall_stiffness == Scene{}.wall_stiffness
+        scene.damper().wall_stiffness == SceneDamper{}.wall_stiffness
             ? ": this is the program's default, an assumption. Give the stiffness of your own walls (<code>" +
                   std::string(scales ? "contact_stiffness" : "wall_stiffness") +
                   "</code>) before you use these two. "

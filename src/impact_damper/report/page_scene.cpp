@@ -52,21 +52,21 @@ std::string scene_table(const Subject& subject) {
   table.scale("Primary mass", "M", scales.mass, "kg");
   table.scale("Stiffness", "K", scales.stiffness, "N/m");
   table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
-  const bool several = !scene.dampers.empty();
+  const bool several = !has_one_damper(scene);
   table.scale(several ? "Clearance of the first damper" : "Clearance of the secondary mass", "ε",
               scales.length, "mm");
   if (!several) {
-    table.row("Secondary mass", "ν", scene.mass_ratio, scales.mass, "kg");
-    table.row("Restitution", "e", scene.restitution, 1, "");
+    table.row("Secondary mass", "ν", scene.damper().mass_ratio, scales.mass, "kg");
+    table.row("Restitution", "e", scene.damper().restitution, 1, "");
   }
   table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
   if (!several && !rigid)
-    table.row("Stiffness of the walls", "k", scene.wall_stiffness, scales.stiffness, "N/m");
+    table.row("Stiffness of the walls", "k", scene.damper().wall_stiffness, scales.stiffness, "N/m");
   table.row("Initial displacement", "x", scene.x0, scales.length, "mm");
   table.row("Initial velocity", "x′", scene.v0, scales.velocity(), "mm/s");
   if (!several) {
-    table.row("Secondary mass, from the left wall", "y", scene.y0, scales.length, "mm");
-    table.row("Its velocity in the cavity", "y′", scene.w0, scales.velocity(), "mm/s");
+    table.row("Secondary mass, from the left wall", "y", scene.damper().y0, scales.length, "mm");
+    table.row("Its velocity in the cavity", "y′", scene.damper().w0, scales.velocity(), "mm/s");
   }
   if (scene.force_amplitude != 0) {
     table.row("Exciting force, amplitude", "f", scene.force_amplitude, scales.force(), "N");
@@ -177,7 +177,7 @@ std::string warnings_html(const Findings& findings) {
   if (quantities.in_units() && reach > 0 && reach < 1e-3)
     looks.push_back("The clearance is " + number_html(1 / reach) +
                     " times as long as the first amplitude: is it given in millimetres?");
-  double softest = findings.several() ? scene.dampers.front().wall_stiffness : scene.wall_stiffness;
+  double softest = scene.damper().wall_stiffness;
   for (const SceneDamper& damper : scene.dampers) softest = std::min(softest, damper.wall_stiffness);
   if (softest < 100 && !has_rigid_walls(findings.subject.engine))
     looks.push_back(

@@ -21,7 +21,7 @@ Scene changed(const Changes& changes, Scene scene) {
   const auto change = [&](std::string_view name, auto& number) {
     if (const auto found = changes.find(name); found != changes.end()) number = found->second;
   };
-  for (const SceneField& field : scene_fields) change(field.name, scene.*field.member);
+  for (const SceneField& field : scene_fields) change(field.name, field.number.in(scene));
   change("until_time", scene.until_time);
   change("until_amplitude", scene.until_amplitude);
   return scene;

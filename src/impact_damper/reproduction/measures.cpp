@@ -43,7 +43,7 @@ const Run& Runs::file(const std::string& name) {
   if (found != ensembles_.end()) return found->second.front();
   Run run;
   if (folder_) {
-    run = read_run(*folder_ / (name + ".json"), DamperList::allowed);
+    run = read_run(*folder_ / (name + ".json"));
   } else {
     const CatalogueRun* const further = find_run(further_, name);
     if (!further) throw std::invalid_argument("there is no run of scene " + name);
@@ -137,7 +137,7 @@ Spread measure(Runs& runs, const MeasureCall& call) {
   for (const Measure& each : measures()) {
     if (each.name != call.name) continue;
     for (const std::string& scene : call.scenes)
-      if (!each.takes_dampers && !runs.file(scene).scene.dampers.empty())
+      if (!each.takes_dampers && !has_one_damper(runs.file(scene).scene))
         throw std::invalid_argument("measure " + call.name + ": is of one damper, run " + scene +
                                     " of a list of dampers");
     return each.find(runs, call);

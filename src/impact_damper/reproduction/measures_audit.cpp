@@ -18,7 +18,7 @@ HalfCycles viscous_decay(const Runs& runs, double damping_ratio) {
   Scene scene;
   scene.damping_ratio = damping_ratio;
   scene.x0 = 0.4;
-  scene.y0 = 0.1;
+  scene.damper().y0 = 0.1;
   scene.until_time = 200;
   return *runs.simulated(scene, Exact{}, Record{}).half_cycles;
 }
@@ -58,11 +58,11 @@ Spread energy_drift(Runs& runs, const MeasureCall& call) {
 Spread impact_energy(const Runs& runs, const MeasureCall& call, bool with_wall) {
   Scene scene;
   scene.x0 = 0;
-  scene.y0 = 0.5;
-  scene.w0 = -1;
-  scene.mass_ratio = number(call, "mass_ratio");
-  scene.restitution = 1;
-  scene.until_time = 0.5 + nominal_contact_time(scene) / 2;
+  scene.damper().y0 = 0.5;
+  scene.damper().w0 = -1;
+  scene.damper().mass_ratio = number(call, "mass_ratio");
+  scene.damper().restitution = 1;
+  scene.until_time = 0.5 + nominal_contact_time(scene.damper()) / 2;
   Record record;
   record.energy = true;
   const EnergyBalance balance = *runs.simulated(scene, Exact{}, record).energy;
@@ -80,9 +80,9 @@ Spread impact_energy_with_wall(Runs& runs, const MeasureCall& call) {
 // has no stuck motion: a mass that sticks is in sustained contact and obeys the equations of contact.
 Run stuck_run(const Runs& runs, const MeasureCall& call) {
   Scene scene;
-  scene.mass_ratio = number(call, "mass_ratio");
-  scene.restitution = 0;
-  scene.wall_stiffness = 1e6;
+  scene.damper().mass_ratio = number(call, "mass_ratio");
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e6;
   scene.x0 = 6;
   scene.force_amplitude = 2;
   scene.force_frequency = 0.4;
@@ -111,7 +111,7 @@ Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
     const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
     const double force = run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
-    products += force * (acceleration + h.x[i] / (1 + run.scene.mass_ratio));
+    products += force * (acceleration + h.x[i] / (1 + run.scene.damper().mass_ratio));
     squares += force * force;
   });
   return once(products / squares);
@@ -121,10 +121,10 @@ Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
 // motion by least squares: a mass at rest against its wall moves with it, in a sustained contact.
 Spread stuck_damping(Runs&, const MeasureCall& call) {
   Scene scene;
-  scene.mass_ratio = number(call, "mass_ratio");
+  scene.damper().mass_ratio = number(call, "mass_ratio");
   scene.damping_ratio = number(call, "damping_ratio");
-  scene.restitution = 0;
-  scene.wall_stiffness = 1e6;
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e6;
   scene.x0 = -6;
   scene.until_time = 1;
   Record record;
@@ -132,7 +132,7 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
   record.history = {{0, 1, 1001}};
   const Run run = simulate(scene, Exact{}, record);
   const History& h = *run.history;
-  const double omega_s = 1 / std::sqrt(1 + scene.mass_ratio);
+  const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
   double products = 0, squares = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
     const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);

@@ -54,7 +54,7 @@ Spread alike_range(Runs& runs, const MeasureCall& call) {
 Spread from_sum(Runs& runs, const MeasureCall& call) {
   const std::vector<double> edges = edges_of(call);
   const std::vector<Run>& together = runs.ensemble(call.scenes[0]);
-  if (together.front().scene.dampers.empty())
+  if (has_one_damper(together.front().scene))
     throw std::invalid_argument("measure from_sum: run " + call.scenes[0] + " is of one damper");
   const std::vector<double> losses = losses_between(together, edges).mean,
                             sum = sum_of_losses(together.front().scene.dampers,

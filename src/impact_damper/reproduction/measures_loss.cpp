@@ -194,8 +194,8 @@ Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
     for (const Run* run : group) {
       const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, runs.analysis().loss,
                                      number(call, "from"), number(call, "to"));
-      points.x.push_back(run->scene.mass_ratio);
-      points.y.push_back(run->scene.mass_ratio * mean(curve.y));
+      points.x.push_back(run->scene.damper().mass_ratio);
+      points.y.push_back(run->scene.damper().mass_ratio * mean(curve.y));
     }
     return log_slope(points);
   });

@@ -81,10 +81,10 @@ Spread zeta_difference(Runs&, const MeasureCall& call) {
 Scene single_impact_scene(const MeasureCall& call) {
   Scene scene;
   scene.x0 = 0;
-  scene.y0 = 0.5;
-  scene.w0 = -1;
-  scene.mass_ratio = number(call, "mass_ratio");
-  scene.restitution = number(call, "restitution");
+  scene.damper().y0 = 0.5;
+  scene.damper().w0 = -1;
+  scene.damper().mass_ratio = number(call, "mass_ratio");
+  scene.damper().restitution = number(call, "restitution");
   scene.until_time = 1;
   return scene;
 }
@@ -107,7 +107,7 @@ Spread contact_frequency(Runs& runs, const MeasureCall& call) {
   const Contacts contacts = *runs.simulated(scene, Exact{}, record).contacts;
   if (contacts.end.empty()) return once(std::nan(""));
   const double duration = contacts.end.front() - contacts.begin.front();
-  return once(half_turn<double>() / duration / std::sqrt(scene.wall_stiffness));
+  return once(half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness));
 }
 
 // Simulates each run again with its own engine, the wall sampled finely through the contact that its fastest
@@ -122,7 +122,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
     const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
     Scene scene = run.scene;
     scene.until_amplitude.reset();
-    scene.until_time = begin + nominal_contact_time(scene);
+    scene.until_time = begin + nominal_contact_time(scene.damper());
     Record record;
     record.history = {{begin, *scene.until_time, 201}};
     const Run again = runs.simulated(scene, run.engine, record);
@@ -137,7 +137,7 @@ Spread wall_overlap(Runs& runs, const MeasureCall& call) {
 bool is_stable(const Runs& runs, double h) {
   Scene scene;
   scene.x0 = 0.01;
-  scene.y0 = 0.5;
+  scene.damper().y0 = 0.5;
   scene.until_time = 10000 * h;
   Cem cem;
   cem.time_step = h;
@@ -183,7 +183,7 @@ Spread step_order(Runs& runs, const MeasureCall& call) {
       sum += std::abs(run.half_cycles->amplitude[row] - exact.half_cycles->amplitude[row]);
     return sum;
   };
-  const double coarse = nominal_contact_time(scene) / number(call, "steps_per_contact");
+  const double coarse = nominal_contact_time(scene.damper()) / number(call, "steps_per_contact");
   constexpr int steps = 32;
   Curve errors;
   for (int i = 0; i < steps; ++i) {

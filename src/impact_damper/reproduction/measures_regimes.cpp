@@ -175,7 +175,7 @@ Spread stuck_impacts_growth(Runs& runs, const MeasureCall& call) {
   Curve growth;
   for (const double e : {0.4, 0.6, 0.8, 0.9}) {
     Scene scene = base.scene;
-    scene.restitution = e;
+    scene.damper().restitution = e;
     scene.x0 = above * impact_damper::bounce_down_end(e);
     scene.until_amplitude.reset();
     scene.until_time = double(half_cycles + 1) * half_turn<double>();
@@ -327,7 +327,7 @@ Spread first_impact_place(Runs& runs, const MeasureCall& call) {
 // nothing else is lost between the first amplitude and the last.
 Spread impact_loss_error(Runs& runs, const MeasureCall& call) {
   return farthest_over_scenes(runs, call, 0, [](const Run& run) {
-    const double nu = run.scene.mass_ratio, e = run.scene.restitution;
+    const double nu = run.scene.damper().mass_ratio, e = run.scene.damper().restitution;
     double squares = 0;
     for (const double w : impacts_of(run).relative_velocity) squares += w * w;
     const double lost = nu * (1 - e * e) / (2 * (1 + nu)) * squares;

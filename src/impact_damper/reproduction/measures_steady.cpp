@@ -69,7 +69,7 @@ std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, Sweep
 Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
   Curve curve =
       loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
-  const double carried = square_root(1 + run.scene.mass_ratio);
+  const double carried = square_root(1 + run.scene.damper().mass_ratio);
   for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= carried * curve.x[i];
   const auto top = std::ranges::max_element(curve.y) - curve.y.begin();
   curve.x.erase(curve.x.begin(), curve.x.begin() + top);
@@ -191,7 +191,7 @@ Spread equally_spaced_share(Runs& runs, const MeasureCall& call) {
 // Returns the relative difference of the power lost in impacts from that of the closed form, of whose two
 // orbits the nearer counts. An impact with the relative speed w dissipates nu (1 - e^2) w^2 / (2 (1 + nu)).
 double power_error(const Scene& scene, double impact_power) {
-  const double nu = scene.mass_ratio, e = scene.restitution;
+  const double nu = scene.damper().mass_ratio, e = scene.damper().restitution;
   double least = std::numeric_limits<double>::infinity();
   for (const TwoImpactOrbit& orbit : two_impact_orbits(scene)) {
     const double w = orbit.impact_speed, frequency = scene.force_frequency / (2 * half_turn<double>());

@@ -61,44 +61,34 @@ void keep_valid(Trials& trials, const std::function<bool(double)>& is_valid) {
 }
 
 // A number of a scene; the two stops are numbers as well.
-struct SceneNumber {
-  std::string_view name;
-  double (*get)(const Scene&);
-  void (*set)(Scene&, double);
+struct Changeable {
+  std::string name;
+  SceneNumber number{};
+  std::optional<double> Scene::*stop = nullptr;
+
+  std::optional<double> of(const Scene& scene) const { return stop ? scene.*stop : number.in(scene); }
+  void set(Scene& scene, double value) const {
+    if (stop)
+      scene.*stop = value;
+    else
+      number.in(scene) = value;
+  }
 };
-template <auto member>
-constexpr SceneNumber scene_number(std::string_view name) {
-  return {name, [](const Scene& scene) { return double(scene.*member); },
-          [](Scene& scene, double value) { scene.*member = value; }};
+std::vector<Changeable> changeable(const Scene& scene) {
+  std::vector<Changeable> all;
+  for (const NamedSceneNumber& each : numbers_of(scene)) all.push_back({each.name, each.number});
+  all.push_back({.name = "until_time", .stop = &Scene::until_time});
+  all.push_back({.name = "until_amplitude", .stop = &Scene::until_amplitude});
+  return all;
 }
-template <auto member>
-constexpr SceneNumber stop_number(std::string_view name) {
-  return {name, [](const Scene& scene) { return (scene.*member).value_or(std::nan("")); },
-          [](Scene& scene, double value) { scene.*member = value; }};
-}
-constexpr std::array scene_numbers{
-    scene_number<&Scene::mass_ratio>("mass_ratio"),
-    scene_number<&Scene::restitution>("restitution"),
-    scene_number<&Scene::damping_ratio>("damping_ratio"),
-    scene_number<&Scene::wall_stiffness>("wall_stiffness"),
-    scene_number<&Scene::x0>("x0"),
-    scene_number<&Scene::v0>("v0"),
-    scene_number<&Scene::y0>("y0"),
-    scene_number<&Scene::w0>("w0"),
-    scene_number<&Scene::force_amplitude>("force_amplitude"),
-    scene_number<&Scene::force_frequency>("force_frequency"),
-    stop_number<&Scene::until_time>("until_time"),
-    stop_number<&Scene::until_amplitude>("until_amplitude"),
-};
 
 std::vector<PowerNumber> numbers_of(const std::string& name, const Scene& scene) {
   std::vector<PowerNumber> numbers;
-  for (const SceneNumber& each : scene_numbers) {
-    const double value = each.get(scene);
-    if (!(value == value)) continue;                                             // a stop that is not given
+  for (const Changeable& each : changeable(scene)) {
+    if (!each.of(scene)) continue;                                               // a stop that is not given
     if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
-    PowerNumber number{
-        .of = name, .name = std::string(each.name), .value = value, .noticed_by = from_reference};
+    const double value = *each.of(scene);
+    PowerNumber number{.of = name, .name = each.name, .value = value, .noticed_by = from_reference};
     const auto is_valid = [&](double becomes) {
       Scene changed = scene;
       each.set(changed, becomes);
@@ -313,7 +303,8 @@ Runs Power::changed(const PowerNumber& number, double value) const {
   Runs runs = unchanged_;
   const Run& run = input_.runs.at(number.of);
   Scene scene = run.scene;
-  by_name(scene_numbers, number.name).set(scene, value);
+  const std::vector<Changeable> numbers = changeable(scene);
+  by_name(numbers, number.name).set(scene, value);
   Record record;
   record.impacts = record.contacts = true;
   runs.put(number.of, simulate(scene, run.engine, record));

@@ -34,10 +34,10 @@ void require_scene(const Run& run, const fs::path& file, const Scene& scene, con
                                                            ", got " + text_of(given) +
                                                            ": a run of another scene"});
   };
+  const bool one = has_one_damper(scene) && has_one_damper(run.scene);
   for (const SceneField& field : scene_fields)
-    if (scene.dampers.empty() || !is_of_one_damper(field))
-      compare(field.name, scene.*field.member, run.scene.*field.member);
-  if (scene.dampers != run.scene.dampers)
+    if (one || field.number.own) compare(field.name, field.number.in(scene), field.number.in(run.scene));
+  if (!one && scene.dampers != run.scene.dampers)
     problems.push_back({"/scene/dampers", "must be as in " + source + ": a run of another scene"});
   compare("until_time", scene.until_time, run.scene.until_time);
   compare("until_amplitude", scene.until_amplitude, run.scene.until_amplitude);
@@ -53,8 +53,13 @@ void require_engine(const Run& run, const fs::path& file, const Engine& engine, 
                                     ": runs of several engines are not put together"}});
 }
 
-Run read_run_of_one_damper(const fs::path& file) { return read_run(file); }
-Run read_run_of_any(const fs::path& file) { return read_run(file, DamperList::allowed); }
+Run read_run_of_one_damper(const fs::path& file) {
+  Run run = read_run(file);
+  if (!has_one_damper(run.scene))
+    throw InputError(file.string(), {{"/scene/dampers", problem_of_several().message}});
+  return run;
+}
+Run read_run_of_any(const fs::path& file) { return read_run(file); }
 
 // Reads a file. If it is missing, the error names the command that makes it.
 template <class Content>
@@ -86,7 +91,7 @@ void require_consistent(const Response& response, const fs::path& file) {
 
 void require_scene(const Run& run, const std::filesystem::path& file,
                    const std::filesystem::path& scene_file) {
-  require_scene(run, file, read_scene(scene_file, DamperList::allowed), scene_file.string());
+  require_scene(run, file, read_scene(scene_file), scene_file.string());
 }
 
 void require_same_engine(const Run& run, const std::filesystem::path& file, const Run& other,
@@ -151,7 +156,7 @@ Run SceneRuns::read(const CatalogueRun& wanted) const {
                            "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                ", with what run " + wanted.name + " of the catalogue sets, and --members");
   const std::string source = "run " + wanted.name + " of the catalogue";
-  require_scene(run, file, changed_scene(wanted, read_scene(scene_file, DamperList::allowed)), source);
+  require_scene(run, file, changed_scene(wanted, read_scene(scene_file)), source);
   if (wanted.engine)
     require_engine(run, file, *wanted.engine, source);
   else

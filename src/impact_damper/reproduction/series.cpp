@@ -17,11 +17,11 @@ namespace {
 double of(const Scene& scene, Varied varied) {
   switch (varied) {
     case Varied::mass_ratio:
-      return scene.mass_ratio;
+      return scene.damper().mass_ratio;
     case Varied::damping_ratio:
       return scene.damping_ratio;
     case Varied::restitution:
-      return scene.restitution;
+      return scene.damper().restitution;
   }
   return 0;
 }
@@ -35,11 +35,11 @@ std::string percent(double ratio) {
 std::string equation(const Scene& scene, Varied varied) {
   switch (varied) {
     case Varied::mass_ratio:
-      return "ν = " + percent(scene.mass_ratio);
+      return "ν = " + percent(scene.damper().mass_ratio);
     case Varied::damping_ratio:
       return "ζ = " + percent(scene.damping_ratio);
     case Varied::restitution:
-      return "e = " + number_text(scene.restitution);
+      return "e = " + number_text(scene.damper().restitution);
   }
   return "";
 }
@@ -141,7 +141,7 @@ void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& s
         std::ranges::find_if(rows.amplitude, [&](double a) { return a <= *figure.down_to; }) -
         rows.amplitude.begin());
     if (end == 0) return;  // it begins there: no chord
-    const double nu = source->run.scene.mass_ratio;
+    const double nu = source->run.scene.damper().mass_ratio;
     law.columns[0].values.push_back(nu);
     law.columns[1].values.push_back((rows.amplitude[0] - rows.amplitude[end]) /
                                     (nu * (rows.peak_time[end] - rows.peak_time[0])));

@@ -18,12 +18,12 @@ std::vector<Run> releases_of(const FigureRun& source) {
 }
 
 void check_sources(const Figure& figure, const FigureRun& set, const FigureRun& alone) {
-  if (set.run.scene.dampers.empty())
+  if (has_one_damper(set.run.scene))
     throw unusable(figure, set.file, "must be of a scene with a list of dampers");
-  if (!alone.run.scene.dampers.empty()) throw unusable(figure, alone.file, "must be of a single damper");
+  if (!has_one_damper(alone.run.scene)) throw unusable(figure, alone.file, "must be of a single damper");
   if (!alone.run.scene.until_amplitude) throw unusable(figure, alone.file, "must stop at an amplitude");
   for (const SceneDamper& damper : set.run.scene.dampers)
-    if (damper.restitution != alone.run.scene.restitution)
+    if (damper.restitution != alone.run.scene.damper().restitution)
       throw unusable(figure, alone.file, "must have the restitution of the dampers of " + set.file.string());
 }
 

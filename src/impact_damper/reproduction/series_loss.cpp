@@ -100,7 +100,7 @@ struct ClosedForms {
 
 TableBlock theory_block(const std::string& name, const std::string& legend, LossFactor form,
                         const Scene& scene, LossOrdinate which) {
-  for (double& eta : form.eta) eta *= scene.mass_ratio;
+  for (double& eta : form.eta) eta *= scene.damper().mass_ratio;
   return {.name = name,
           .notes = {"closed form for nu -> 0, zeta = 0"},
           .columns = {{"amplitude", "peak amplitude A, divided by the clearance", form.amplitude},
@@ -235,10 +235,11 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Scene& scene = sources[i]->run.scene;
     // The closed forms are for zeta = 0 and for a rebound, 0 < e < 1.
-    if (scene.damping_ratio != 0 || !(scene.restitution > 0) || !(scene.restitution < 1)) continue;
+    if (scene.damping_ratio != 0 || !(scene.damper().restitution > 0) || !(scene.damper().restitution < 1))
+      continue;
     const double largest = largest_amplitude(sources[i]->run);
-    if (!forms || forms->restitution != scene.restitution || forms->largest != largest)
-      forms.emplace(scene.restitution, largest);
+    if (!forms || forms->restitution != scene.damper().restitution || forms->largest != largest)
+      forms.emplace(scene.damper().restitution, largest);
     const auto add = [&](const std::string& name, const std::string& legend, const LossFactor& form) {
       table.blocks.push_back(
           theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));

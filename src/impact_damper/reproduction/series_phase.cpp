@@ -83,7 +83,7 @@ void add_row(TableBlock& block, double amplitude, double phase) {
 
 void add_theory(const Run& run, Table& table) {
   const Scene& scene = run.scene;
-  const double e = scene.restitution;
+  const double e = scene.damper().restitution;
   if (scene.damping_ratio != 0 || scene.force_amplitude != 0 || !(e > 0) || e > 0.95) return;
   TableBlock one = theory_block("one-impact", "one impact, equally spaced");
   const double fold = fold_amplitude(e), unequal = equal_spacing_amplitude(e);

@@ -145,13 +145,13 @@ void add_response_blocks(const Figure& figure, const std::vector<const FigureRes
     panels.emplace_back().force = scene.force_amplitude;
     add_ways(panels.back(), sweep);
     const std::string panel = std::to_string(panels.size());
-    const double force = scene.force_amplitude / scene.mass_ratio;
+    const double force = scene.force_amplitude / scene.damper().mass_ratio;
     table.blocks.push_back({.name = "panel-" + panel,
                             .columns = {{"force", of_force, {force}},
                                         {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
     add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
     add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
-                     1 + scene.mass_ratio);
+                     1 + scene.damper().mass_ratio);
   }
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Panel& panel = panels[i];
@@ -169,7 +169,7 @@ void add_response_blocks(const Figure& figure, const std::vector<const FigureRes
 
 void add_largest_blocks(const Figure& figure, const FigureRun& decay,
                         const std::vector<const FigureResponse*>& sources, Table& table) {
-  const double nu = decay.run.scene.mass_ratio;
+  const double nu = decay.run.scene.damper().mass_ratio;
   std::vector<std::vector<const SweepResponse*>> along_the_same_forces;
   for (const FigureResponse* source : sources) {
     const SweepResponse& response = as<SweepResponse>(figure, *source);
@@ -233,7 +233,7 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
 
 void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& table) {
   const BasinResponse& response = as<BasinResponse>(figure, source);
-  const double nu = response.scene.mass_ratio;
+  const double nu = response.scene.damper().mass_ratio;
   const Basin& basin = response.basin;
   // Returns what a point of the map shows, in the order of the legend.
   const auto kind_at = [&](std::size_t i) -> std::pair<std::string, std::string> {

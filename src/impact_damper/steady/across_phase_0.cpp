@@ -27,15 +27,11 @@ struct Cavity {
 };
 std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
   std::vector<Cavity> all;
-  const auto add = [&](const Scene& alone, double clearance) {
-    const auto* const exact = std::get_if<Exact>(&engine);
-    const double damping = exact ? 2 * zeta_m<double>(alone, exact->calibration) *
-                                       std::sqrt(alone.wall_stiffness / alone.mass_ratio)
-                                 : 0;
-    all.push_back({all.size(), alone.mass_ratio, alone.restitution, clearance, damping});
-  };
-  if (scene.dampers.empty()) add(scene, 1);
-  for (const SceneDamper& each : scene.dampers) add(with_alone(scene, each), each.clearance);
+  const auto* const exact = std::get_if<Exact>(&engine);
+  for (const SceneDamper& each : scene.dampers) {
+    const double damping = exact ? 2 * zeta_m<double>(each, exact->calibration) * omega_m(each) : 0;
+    all.push_back({all.size(), each.mass_ratio, each.restitution, each.clearance, damping});
+  }
   return all;
 }
 

@@ -35,7 +35,7 @@ class Idle {
       const double z = s.x + y;
       return std::abs(s.v + w) <= at_rest && reach < z && z < clearance - reach;
     };
-    if (dampers_.empty()) return is_out_of_reach(s.y, s.w, 1);
+    if (s.dampers.empty()) return is_out_of_reach(s.y, s.w, 1);
     for (std::size_t i = 0; i < dampers_.size(); ++i)
       if (!is_out_of_reach(s.dampers[i].y, s.dampers[i].w, dampers_[i].clearance)) return false;
     return true;
@@ -240,8 +240,8 @@ class Map {
 }  // namespace
 
 bool is_initial_value(const SceneNumber& number) {
-  if (number.of_damper) return number.of_damper == &SceneDamper::y0 || number.of_damper == &SceneDamper::w0;
-  return number.is(&Scene::x0) || number.is(&Scene::v0) || number.is(&Scene::y0) || number.is(&Scene::w0);
+  return number.is(&Scene::x0) || number.is(&Scene::v0) || number.is(&SceneDamper::y0) ||
+         number.is(&SceneDamper::w0);
 }
 
 std::vector<Problem> problems_of(const BasinRule& rule) {

@@ -52,7 +52,7 @@ class BranchSearch {
         centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
     if (watched->impacts == ImpactCounts{}) {
       motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});
-    } else if (scene.dampers.empty()) {
+    } else if (has_one_damper(scene)) {
       motion.orbit = find_orbit(scene, engine_, periods, s);
     } else {
       motion.orbit = find_orbit(scene, engine_, periods, centred);
@@ -196,9 +196,9 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
     problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for orbits, got " + std::to_string(scene.dampers.size())});
   for (const SceneState& start : starts)
-    if (start.dampers.size() != scene.dampers.size())
+    if (start.dampers.size() != listed_dampers(scene))
       problems.push_back({"starts", "must be of as many dampers as the scene's list, " +
-                                        std::to_string(scene.dampers.size()) + ", got " +
+                                        std::to_string(listed_dampers(scene)) + ", got " +
                                         std::to_string(start.dampers.size())});
   require_none(problems);
   const BranchSearch search(engine, range, rule);

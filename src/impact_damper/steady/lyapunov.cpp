@@ -66,7 +66,7 @@ class OneDamper {
  public:
   OneDamper(const Scene& scene, const Engine& engine)
       : engine_(engine), period_(PoincareMap(scene, engine, 2).scene()) {
-    period_.x0 = scene.x0, period_.v0 = scene.v0, period_.y0 = scene.y0, period_.w0 = scene.w0;
+    period_ = released_from(std::move(period_), release_of(scene));
     require_none(incompatibilities_of(period_, engine));
   }
   double duration() const { return *period_.until_time; }
@@ -74,7 +74,8 @@ class OneDamper {
     const auto run = run_with_variation(period_, engine_, frame_, Kept::end);
     if (!run) return run.failure();
     const State<double>& end = run->end;
-    period_.x0 = end.x, period_.v0 = end.v, period_.y0 = end.y, period_.w0 = end.w;
+    period_.x0 = end.x, period_.v0 = end.v;
+    period_.damper().y0 = end.y, period_.damper().w0 = end.w;
     return StopReason::time;
   }
   void begin_to_average() { frame_.begin_to_average(); }
@@ -183,7 +184,7 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
     problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for exponents, got " + std::to_string(scene.dampers.size())});
   require_none(problems);
-  return scene.dampers.empty() ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)
+  return has_one_damper(scene) ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)
                                : exponents_of(SeveralDampers(scene, engine), periods, skipped, progress);
 }
 

@@ -64,7 +64,7 @@ struct Equation {
   // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
   bool allows(const Point& p) const {
     for (const SceneField& field : scene_fields)
-      if (field.member == member_of(parameter) &&
+      if (field.number.is(member_of(parameter)) &&
           !(p.back() > 0 && p.back() >= field.least && p.back() <= field.most))
         return false;
     return largest(state_at(p)) <= 1e12;
@@ -694,13 +694,13 @@ double Scene::*member_of(Parameter parameter) {
 
 Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, int periods,
                                     const SceneState& guess, const OrbitOptions& options) {
-  if (guess.dampers.size() != scene.dampers.size())
-    require_none(
-        {{"guess", "must be of as many dampers as the scene's list, " + std::to_string(scene.dampers.size()) +
-                       ", got " + std::to_string(guess.dampers.size())}});
+  if (guess.dampers.size() != listed_dampers(scene))
+    require_none({{"guess", "must be of as many dampers as the scene's list, " +
+                                std::to_string(listed_dampers(scene)) + ", got " +
+                                std::to_string(guess.dampers.size())}});
   Scene guessed = released_from(scene, guess);
   guessed.until_time = 1;
-  std::vector<Problem> problems = impact_damper::problems_of(guessed, DamperList::allowed);
+  std::vector<Problem> problems = impact_damper::problems_of(guessed);
   if (problems.empty()) problems = incompatibilities_of(guessed, engine);
   for (const Problem& problem : problems_of(options)) problems.push_back(problem);
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});

@@ -80,7 +80,7 @@ StateVector vector_of(const SceneState& s) {
   return all;
 }
 SceneState state_of(const StateVector& s, const Scene& scene) {
-  if (scene.dampers.empty()) return {s[0], s[1], s[2], s[3]};
+  if (has_one_damper(scene)) return {s[0], s[1], s[2], s[3]};
   SceneState state(s[0], s[1], 0, 0);
   for (std::size_t i = 2; i < s.size(); i += 2) state.dampers.push_back({s[i], s[i + 1]});
   return state;
@@ -88,12 +88,11 @@ SceneState state_of(const StateVector& s, const Scene& scene) {
 
 PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_periods)
     : scene_(scene), engine_(engine), half_periods_(half_periods) {
-  scene_.x0 = scene_.v0 = scene_.w0 = 0;
-  scene_.y0 = 0.5;
+  scene_.x0 = scene_.v0 = 0;
   for (SceneDamper& damper : scene_.dampers) damper.y0 = damper.clearance / 2, damper.w0 = 0;
   scene_.until_amplitude.reset();
   scene_.until_time = half_periods * (half_turn<double>() / scene.force_frequency);
-  std::vector<Problem> problems = problems_of(scene_, DamperList::allowed);
+  std::vector<Problem> problems = problems_of(scene_);
   for (const Problem& problem : problems_of(engine)) problems.push_back(problem);
   if (!(half_periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (scene.force_amplitude == 0)
@@ -101,7 +100,7 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
   if (std::holds_alternative<Cem>(engine))
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   require_none(problems);
-  if (!scene_.dampers.empty()) several_.emplace(scene_, engine_);
+  if (!has_one_damper(scene_)) several_.emplace(scene_, engine_);
 }
 
 Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {

@@ -36,8 +36,8 @@ UnitInSi unit_in_si_of(const SceneNumber& number) {
     if (its == &SceneDamper::y0 || its == &SceneDamper::clearance) return length;
     return its == &SceneDamper::w0 ? velocity : ratio;
   }
-  if (number.is(&Scene::x0) || number.is(&Scene::y0)) return length;
-  if (number.is(&Scene::v0) || number.is(&Scene::w0)) return velocity;
+  if (number.is(&Scene::x0) || number.is(&SceneDamper::y0)) return length;
+  if (number.is(&Scene::v0) || number.is(&SceneDamper::w0)) return velocity;
   if (number.is(&Scene::force_amplitude)) return force;
   if (number.is(&Scene::force_frequency)) return frequency;
   return ratio;

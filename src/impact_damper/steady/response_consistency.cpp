@@ -159,7 +159,7 @@ class Examination {
     const bool is_complete = found.stop_reason == StopReason::time;
     const std::size_t count = found.exponents.size();
     // Each mass that sticks takes two exponents away.
-    const std::size_t most = response.scene.dampers.empty() ? 4 : dimensions_of(response.scene);
+    const std::size_t most = dimensions_of(response.scene);
     const std::string allowed = !is_complete ? "none"
                                 : most == 4  ? "four or two"
                                              : "an even number of them, 2 to " + std::to_string(most);

@@ -22,7 +22,7 @@ class CsvTable {
   void add(const std::string& name, Words words) { columns_.push_back({name, std::move(words), {}}); }
   void add(const std::string& name, const UnitInSi& unit, Numbers numbers) {
     for (std::optional<double>& number : numbers)
-      if (number && units_) *number *= unit.size(*units_);
+      if (number && units_) number = *number * unit.size(*units_);
     columns_.push_back({name + std::string(units_ ? unit.suffix : ""), {}, std::move(numbers)});
   }
   template <class Row>
@@ -84,7 +84,7 @@ void add(CsvTable& table, const SweepResponse& response) {
     }
   }
   const Axis& axis = response.axis;
-  const std::size_t dampers = response.scene.dampers.size();
+  const std::size_t dampers = listed_dampers(response.scene);
   table.add("sweep", numbers);
   table.add("way", ways);
   table.add(axis.number.name(), unit_in_si_of(axis.number), numbers_of(axis.values()));
@@ -129,7 +129,7 @@ void add(CsvTable& table, const OrbitsResponse& response) {
     }
   }
   const Parameter parameter = response.range.parameter;
-  const std::size_t dampers = response.scene.dampers.size();
+  const std::size_t dampers = listed_dampers(response.scene);
   table.add("branch", numbers);
   table.add("event", events);
   table.add(std::string(name_of(parameter)), unit_in_si_of(member_of(parameter)), values);

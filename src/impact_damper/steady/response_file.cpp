@@ -92,7 +92,7 @@ void describe(JsonFields fields, BranchRule& rule) {
 namespace {
 
 void describe_state(JsonFields fields, std::string_view name, SceneState& state, const Scene& scene) {
-  if (fields.reads()) state.dampers.resize(scene.dampers.size());
+  if (fields.reads()) state.dampers.resize(listed_dampers(scene));
   fields.object(name, Layout::one_line, [&](JsonFields its) { describe(its, state); });
 }
 
@@ -111,7 +111,7 @@ void describe(JsonFields fields, ImpactCounts& impacts) {
 }
 
 void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& scene) {
-  const std::size_t dampers = scene.dampers.size();
+  const std::size_t dampers = listed_dampers(scene);
   std::vector<std::string_view> ends;
   for (const SteadyState& each : way) ends.push_back(end_of(each));
   if (!fields.words("end", ends, ends_of_simulation({"periodic", "not_periodic"}))) return;
@@ -180,7 +180,7 @@ void describe(JsonFields fields, Attractor& attractor, const Scene& scene) {
                           [&](JsonFields its, std::size_t number) { describe(its, by_damper[number]); });
   };
   if (fields.reads()) {  // the dampers before the state, so their problems come first
-    by_damper.resize(attractor.idle ? 0 : scene.dampers.size());
+    by_damper.resize(attractor.idle ? 0 : listed_dampers(scene));
     ImpactCounts all{};
     const bool is_complete = describe_dampers() && !by_damper.empty();
     for (const auto& [left, right] : by_damper) all = {all[0] + left, all[1] + right};
@@ -248,7 +248,7 @@ void describe(JsonFields fields, BasinResponse& response) {
 }
 
 void describe(JsonFields fields, OrbitBranch& branch, const Scene& scene) {
-  const std::size_t dampers = scene.dampers.size();
+  const std::size_t dampers = listed_dampers(scene);
   fields.field("origin", branch.origin);
   fields.field("from", branch.from, counts);
   fields.index("event", branch.event);
@@ -312,16 +312,17 @@ Scene read_forced_scene(ObjectReader object) {
   Scene scene;
   const bool several = object.has("dampers");
   for (const SceneField& field : scene_fields) {
-    if (!several || !is_of_one_damper(field))
-      object.required(field.name, scene.*field.member, within(field.least, field.most));
+    if (!several || field.number.own)
+      object.required(field.name, field.number.in(scene), within(field.least, field.most));
     else if (object.has(field.name))
       object.reject(field.name, beside_dampers);
   }
   if (!several) return scene;
+  scene.dampers.clear();
   for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
     SceneDamper& its = scene.dampers.emplace_back();
-    for (const SceneDamperField& field : scene_damper_fields)
-      damper.required(field.name, its.*field.member, within(field.least, field.most));
+    for (const SceneField& field : scene_damper_fields)
+      damper.required(field.name, its.*field.number.of_damper, within(field.least, field.most));
   }
   return scene;
 }
@@ -404,11 +405,11 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
   Response asked = response;
   std::visit(
       [&](auto& each) {
-        const bool several = !each.scene.dampers.empty();
+        const bool several = !has_one_damper(each.scene);
         for (const SceneField& field : scene_fields)
-          if (!several || !is_of_one_damper(field))
+          if (!several || field.number.own)
             add("/scene/" + std::string(field.name),
-                [&](JsonWriter& out) { out.field(field.name, each.scene.*field.member); });
+                [&](JsonWriter& out) { out.field(field.name, field.number.in(each.scene)); });
         Scene dampers_alone;
         dampers_alone.dampers = each.scene.dampers;
         if (several) add("/scene/dampers", [&](JsonWriter& out) { write_scene(out, dampers_alone); });

@@ -73,7 +73,8 @@ Expected<VariedRun, StopReason> run_with_variation(const Scene& scene, const Eng
   const System<double> system(scene);  // not with_system(): there is a force
   const auto* const exact = std::get_if<Exact>(&engine);
   VariationObserver observer(
-      scene, exact ? std::optional(zeta_m<double>(scene, exact->calibration)) : std::nullopt, receiver, kept);
+      scene, exact ? std::optional(zeta_m<double>(scene.damper(), exact->calibration)) : std::nullopt,
+      receiver, kept);
   const Outcome outcome = exact ? run_exact(system, scene, *exact, observer)
                                 : run_restitution(system, scene, std::get<Restitution>(engine), observer);
   if (outcome.stop_reason != StopReason::time) return outcome.stop_reason;

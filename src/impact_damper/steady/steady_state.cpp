@@ -21,7 +21,7 @@ constexpr std::int64_t blocks = 10;
 // A function that runs the engine for scenes that differ from `scene` in initial condition and stops only.
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Exact& options) {
   const ForcedSystem system(scene);
-  if (!scene.dampers.empty()) {
+  if (!has_one_damper(scene)) {
     ModesOfDampers<double, Forcing<double>> modes;
     for (std::size_t n = 0; n < scene.dampers.size(); ++n)
       modes.push_back(modes_of_damper<double, Forcing<double>>(scene, n, options));
@@ -29,7 +29,7 @@ std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const
       return run_exact_dampers(system, from, options, recorder, modes);
     };
   }
-  const ContactModes<double> walls(system, zeta_m<double>(scene, options.calibration));
+  const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), options.calibration));
   return [system, walls, options](const Scene& from, Recorder& recorder) {
     return walls.coupled ? run_exact<ContactWithoutModes<double>>(walls, system, from, options, recorder)
                          : run_exact<Contact<double>>(walls, system, from, options, recorder);
@@ -37,7 +37,7 @@ std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const
 }
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Restitution& options) {
   return [system = ForcedSystem(scene), options](const Scene& from, Recorder& recorder) {
-    return from.dampers.empty() ? run_restitution(system, from, options, recorder)
+    return has_one_damper(from) ? run_restitution(system, from, options, recorder)
                                 : run_restitution_dampers(system, from, options, recorder);
   };
 }
@@ -67,7 +67,8 @@ std::vector<Problem> problems_of(const SteadyRule& rule) {
 }
 
 SceneState release_of(const Scene& scene) {
-  SceneState state = State<double>{scene.x0, scene.v0, scene.y0, scene.w0};
+  SceneState state = State<double>{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
+  if (has_one_damper(scene)) return state;
   for (const SceneDamper& damper : scene.dampers) state.dampers.push_back({damper.y0, damper.w0});
   return state;
 }
@@ -76,8 +77,10 @@ Scene released_from(Scene scene, const SceneState& state) {
   const auto allowed = [](double value) { return is_too_small(value) ? 0 : value; };
   scene.x0 = allowed(state.x);
   scene.v0 = allowed(state.v);
-  scene.y0 = allowed(state.y);
-  scene.w0 = allowed(state.w);
+  if (has_one_damper(scene)) {
+    scene.damper().y0 = allowed(state.y);
+    scene.damper().w0 = allowed(state.w);
+  }
   for (std::size_t n = 0; n < state.dampers.size(); ++n) {
     scene.dampers[n].y0 = allowed(state.dampers[n].y);
     scene.dampers[n].w0 = allowed(state.dampers[n].w);
@@ -87,7 +90,7 @@ Scene released_from(Scene scene, const SceneState& state) {
 
 SceneState state_in(const Scene& scene, const History& history, std::size_t row) {
   SceneState state = State<double>{history.x[row], history.v[row], 0, 0};
-  if (scene.dampers.empty()) {
+  if (has_one_damper(scene)) {
     state.y = history.dampers[0].y[row];
     state.w = history.dampers[0].w[row];
     return state;
@@ -181,7 +184,7 @@ std::optional<bool> is_balanced(const SteadyState& steady) {
 }
 
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
-  std::vector<Problem> problems = problems_of(without_stops(scene), DamperList::allowed);
+  std::vector<Problem> problems = problems_of(without_stops(scene));
   for (const Problem& each : problems_of(engine)) problems.push_back(each);
   if (std::holds_alternative<Cem>(engine)) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
@@ -202,7 +205,7 @@ ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
       [&](auto options) {
         options.budget = budget_for(scene_, options.budget);
         options.budget.max_half_cycles =
-            std::min(options.budget.max_half_cycles, most_half_cycles(scene_.dampers.size()));
+            std::min(options.budget.max_half_cycles, most_half_cycles(listed_dampers(scene_)));
         return runner(scene_, options);
       },
       engine);
@@ -220,7 +223,6 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::watch(const SceneState& 
 Scene ForcedScene::released(const SceneState& state, double until) const {
   Scene from = released_from(scene_, state);
   if (rigid_) {
-    from.y0 = std::clamp(from.y0, 0.0, 1.0);
     for (SceneDamper& damper : from.dampers) damper.y0 = std::clamp(damper.y0, 0.0, damper.clearance);
   }
   from.until_time = until;
@@ -235,7 +237,7 @@ Run ForcedScene::record(const SceneState& state, double until) const {
   record.half_cycles = false;
   record.impacts = record.contacts = true;
   record.history = {{0, until, 2}};
-  Recorder recorder(std::move(record), scene_.dampers.size());
+  Recorder recorder(std::move(record), listed_dampers(scene_));
   const Outcome outcome = run_(run.scene, recorder);
   run.stop_reason = outcome.stop_reason;
   run.end_time = outcome.end_time;
@@ -251,7 +253,7 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
   Record record;
   record.half_cycles = record.impacts = record.energy = measures;
   record.history = {{0, end, states + 1}};
-  Recorder recorder(std::move(record), scene_.dampers.size());
+  Recorder recorder(std::move(record), listed_dampers(scene_));
   const StopReason stop_reason = run_(from, recorder).stop_reason;
   if (stop_reason != StopReason::time) return stop_reason;
   Run run;
@@ -263,14 +265,14 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
   if (!measures) return kept;
   for (const double amplitude : run.half_cycles->amplitude)
     kept.amplitude = std::max(kept.amplitude, amplitude);
-  kept.by_damper.resize(scene_.dampers.size());
-  kept.by_damper_until_half_way.resize(scene_.dampers.size());
+  kept.by_damper.resize(listed_dampers(scene_));
+  kept.by_damper_until_half_way.resize(listed_dampers(scene_));
   for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
     const auto side = static_cast<std::size_t>(run.impacts->wall[i]);
     const bool until_half_way = run.impacts->time[i] < end / 2;
     ++kept.impacts[side];
     if (until_half_way) ++kept.impacts_until_half_way[side];
-    if (scene_.dampers.empty()) continue;
+    if (has_one_damper(scene_)) continue;
     const auto damper = static_cast<std::size_t>(run.impacts->damper[i]);
     ++kept.by_damper[damper][side];
     if (until_half_way) ++kept.by_damper_until_half_way[damper][side];

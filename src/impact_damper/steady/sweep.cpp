@@ -19,7 +19,7 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
   const std::vector<NamedSceneNumber> all = numbers_of(scene);
   if (std::ranges::find(all, axis.number, &NamedSceneNumber::number) == all.end())
     throw InvalidArguments(
-        {{axis.number.name(), scene.dampers.empty() ? "is for several dampers: the scene has no list"
+        {{axis.number.name(), has_one_damper(scene) ? "is for several dampers: the scene has no list"
                                                     : "must be of one of the scene's several dampers"}});
   for (std::int64_t i = 0; i < axis.count; ++i) require_none(problems_of(axis.at(scene, i), engine));
 }
@@ -47,7 +47,7 @@ std::vector<SteadyState> steady_states_along(const Scene& scene, const Engine& e
     double& now = number.in(there);
     if (!all.empty()) {
       state.x += start.nudge;
-      if (number.of_damper == &SceneDamper::clearance) state.dampers[number.damper].y *= value / now;
+      if (number.of_damper == &SceneDamper::clearance) state.dampers[*number.damper].y *= value / now;
     }
     now = value;
     all.push_back(ForcedScene(there, engine).settle(state, rule));

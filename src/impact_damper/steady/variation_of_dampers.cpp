@@ -74,9 +74,8 @@ struct Numbers {
     for (const SceneDamper& each : scene.dampers) {
       Damper damper{each.mass_ratio, each.restitution, each.clearance};
       if (const auto* const exact = std::get_if<Exact>(&engine)) {
-        const Scene alone = with_alone(scene, each);
-        damper.stiffness = alone.wall_stiffness / alone.mass_ratio;
-        damper.damping = 2 * zeta_m<double>(alone, exact->calibration) * std::sqrt(damper.stiffness);
+        damper.stiffness = each.wall_stiffness / each.mass_ratio;
+        damper.damping = 2 * zeta_m<double>(each, exact->calibration) * std::sqrt(damper.stiffness);
       }
       dampers.push_back(damper);
     }

@@ -39,8 +39,8 @@ Engine engine_of_sets() {
 
 LossAlone measured_alone(double mass_ratio, double restitution, double from, const Threads& threads) {
   Scene scene;
-  scene.mass_ratio = mass_ratio;
-  scene.restitution = restitution;
+  scene.damper().mass_ratio = mass_ratio;
+  scene.damper().restitution = restitution;
   scene.x0 = from;
   scene.until_amplitude = fold_amplitude(restitution) / 30;  // below its fold a mass still rattles
   scene.until_time = 4e5;

@@ -12,7 +12,7 @@ using Layout = JsonWriter::Layout;
 void write_question(JsonWriter& out, const DesignQuestion& question) {
   out.open_object("question", Layout::lines);
   out.open_object("scene", Layout::one_line);
-  const Design given{*question.scene.secondary_mass, *question.scene.clearance};
+  const Design given{*question.scene.damper().secondary_mass, *question.scene.damper().clearance};
   write_unit_fields(out, *scene_of_design(question, given, longest_followed * question.time).in_units);
   out.close();
   write_engine(out, question.engine);

@@ -42,9 +42,7 @@ class RunFindings {
     const auto best = std::ranges::max_element(eta);
     // Without losses energy only goes to and fro.
     const auto keeps_speed = [](const auto& damper) { return damper.restitution == 1; };
-    const bool is_lossless =
-        scene.damping_ratio == 0 &&
-        (scene.dampers.empty() ? keeps_speed(scene) : std::ranges::all_of(scene.dampers, keeps_speed));
+    const bool is_lossless = scene.damping_ratio == 0 && std::ranges::all_of(scene.dampers, keeps_speed);
     if (is_lossless || best == eta.end() || !(*best > 0)) return std::nullopt;
     return static_cast<std::size_t>(best - eta.begin());
   }
@@ -179,8 +177,8 @@ Number largest_impact_speed(RunFindings& found, double) {
   return largest;
 }
 
-// Of `damper`, one alone, whose impacts have number i if there are several.
-Number largest_wall_force(RunFindings& found, const Scene& damper, std::size_t i) {
+// Of `damper`, whose impacts have number i if there are several.
+Number largest_wall_force(RunFindings& found, const SceneDamper& damper, std::size_t i) {
   if (has_rigid_walls(found.engine) || nominal_contact_time(damper) > longest_short_contact)
     return std::nullopt;
   const Calibration calibration = calibration_of(found.engine);
@@ -191,14 +189,9 @@ Number largest_wall_force(RunFindings& found, const Scene& damper, std::size_t i
   return std::max(short_contact(damper, calibration, speed).force, initial_wall_force(damper, calibration));
 }
 Number largest_wall_force(RunFindings& found, double) {
-  if (found.scene.dampers.empty()) return largest_wall_force(found, found.scene, 0);
   Number largest;
   for (std::size_t i = 0; i < found.scene.dampers.size(); ++i) {
-    const SceneDamper& damper = found.scene.dampers[i];
-    Scene alone = with_alone(found.scene, damper);
-    alone.y0 = damper.y0 > damper.clearance ? 1 + (damper.y0 - damper.clearance) : std::min(damper.y0, 0.0);
-    alone.w0 = damper.w0;
-    const Number force = largest_wall_force(found, alone, i);
+    const Number force = largest_wall_force(found, found.scene.dampers[i], i);
     if (!force) return std::nullopt;
     largest = std::max(largest.value_or(0), *force);
   }

@@ -265,26 +265,28 @@ DesignRange default_clearances(double amplitude, double restitution) {
 
 SceneInUnits with_unit_scales(const Scene& scene) {
   SceneInUnits units;
-  units.mass = units.stiffness = units.clearance = 1;
-  units.secondary_mass = scene.mass_ratio;
+  units.mass = units.stiffness = 1;
+  DamperInUnits& damper = units.damper();
+  damper.clearance = 1;
   const Scales scales = scales_of(units);
-  units.restitution = scene.restitution;
+  damper.secondary_mass = scene.damper().mass_ratio;
+  damper.restitution = scene.damper().restitution;
+  damper.contact_stiffness = scene.damper().wall_stiffness;
+  damper.secondary_displacement = scene.damper().y0;
+  damper.secondary_velocity = scene.damper().w0 * scales.velocity();
   units.damping_ratio = scene.damping_ratio;
-  units.contact_stiffness = scene.wall_stiffness;
   units.initial_displacement = scene.x0;
   units.initial_velocity = scene.v0 * scales.velocity();
-  units.secondary_displacement = scene.y0;
-  units.secondary_velocity = scene.w0 * scales.velocity();
   units.exciting_force = scene.force_amplitude * scales.force();
   return units;
 }
 
 SceneInUnits with_defaults(SceneInUnits scene) {
   const Scene otherwise;
-  if (!scene.restitution) scene.restitution = otherwise.restitution;
+  if (!scene.damper().restitution) scene.damper().restitution = otherwise.damper().restitution;
   if (!scene.damping && !scene.damping_ratio) scene.damping_ratio = otherwise.damping_ratio;
-  if (!scene.contact_stiffness && scene.stiffness)
-    scene.contact_stiffness = otherwise.wall_stiffness * *scene.stiffness;
+  if (!scene.damper().contact_stiffness && scene.stiffness)
+    scene.damper().contact_stiffness = otherwise.damper().wall_stiffness * *scene.stiffness;
   for (auto* number : {&scene.initial_displacement, &scene.initial_velocity})
     if (!*number) *number = 0;
   return scene;
@@ -297,7 +299,7 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
     if (!holds) problems.push_back({field, message});
   };
   demand(scene.exciting_force.value_or(0) == 0, "scene", "must be a free decay, without a force");
-  demand(scene.secondary_displacement.value_or(0) == 0, "scene",
+  demand(scene.damper().secondary_displacement.value_or(0) == 0, "scene",
          "must release the secondary mass at the left wall, because the clearance is to be found");
   const double from = std::abs(scene.initial_displacement.value_or(0));
   demand(question.amplitude > 0 && question.amplitude < from, "amplitude",
@@ -312,7 +314,7 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
   const auto value_of = [&](const Variable& variable) -> DesignRange {
     if (variable.name == "secondary_mass") return question.secondary_mass;
     if (variable.name == "clearance") return question.clearance;
-    const double value = (scene.*variable.number_in_units).value_or(0);
+    const double value = variable.number_in_units.in(scene).value_or(0);
     return {value, value};
   };
   demand(!question.tolerances.empty(), "tolerance", "at least one must be given");
@@ -351,8 +353,8 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
 SceneFile scene_of_design(const DesignQuestion& question, const Design& design, double time) {
   SceneFile file;
   file.in_units = question.scene;
-  file.in_units->secondary_mass = design.secondary_mass;
-  file.in_units->clearance = design.clearance;
+  file.in_units->damper().secondary_mass = design.secondary_mass;
+  file.in_units->damper().clearance = design.clearance;
   file.in_units->until_millimetres = question.amplitude;
   file.in_units->until_seconds = time;
   return file;

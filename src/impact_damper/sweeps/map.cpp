@@ -230,8 +230,8 @@ std::optional<LimitLine> limit_line(const Plan& plan, const MapQuestion& questio
       auto& value = above.emplace_back();
       if (!run.problems.empty()) continue;
       if (run.scene.force_amplitude != 0) return std::nullopt;
-      const auto [known, is_new] = limits.try_emplace(run.scene.restitution);
-      if (is_new) known->second = limit_of(limit, run.scene.restitution);
+      const auto [known, is_new] = limits.try_emplace(run.scene.damper().restitution);
+      if (is_new) known->second = limit_of(limit, run.scene.damper().restitution);
       const double amplitude = compared_amplitude(quantity, run);
       if (known->second && amplitude > 0) value = logarithm(amplitude / *known->second);
     }

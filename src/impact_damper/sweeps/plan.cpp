@@ -32,8 +32,8 @@ bool is_in_grid(const Plan& plan, const Variable& variable) {
 void finish(PlannedRun& run, const SceneFile& changed) {
   if (!changed.in_units) {
     run.scene = changed.scene;
-    run.problems = problems_of(run.scene, DamperList::allowed);
-  } else if (run.problems = problems_of(*changed.in_units, DamperList::allowed); run.problems.empty()) {
+    run.problems = problems_of(run.scene);
+  } else if (run.problems = problems_of(*changed.in_units); run.problems.empty()) {
     run.scene = dimensionless(*changed.in_units);
     run.scales = scales_of(*changed.in_units);
   }
@@ -71,41 +71,30 @@ void append_field(std::string& row, std::string_view text) {
 
 std::optional<double> Variable::of(const SceneFile& scene) const {
   if (!scene.in_units) return number.in(scene.scene);
-  if (number_in_units) return (*scene.in_units).*number_in_units;
-  return scene.in_units->dampers[damper].*number_of_damper_in_units;
+  return number_in_units.in(*scene.in_units);
 }
 
 void Variable::set(SceneFile& scene, double value) const {
-  if (!scene.in_units) {
+  if (scene.in_units)
+    number_in_units.in(*scene.in_units) = value;
+  else
     number.in(scene.scene) = value;
-  } else if (number_in_units) {
-    (*scene.in_units).*number_in_units = value;
-  } else {
-    scene.in_units->dampers[damper].*number_of_damper_in_units = value;
-  }
 }
 
 std::vector<Variable> variables_of(const SceneFile& scene) {
   std::vector<Variable> variables;
-  const std::size_t dampers = scene.scene.dampers.size();
-  const auto numbered = [](std::string_view name, std::size_t damper) {
-    return std::string(name) + "_" + std::to_string(damper + 1);
-  };
   if (scene.in_units) {
+    const std::size_t dampers = scene.in_units->dampers.size();
     for (const UnitField& field : unit_fields) {
       if (field.becomes == "until_time" || field.becomes == "until_amplitude") continue;
       Variable variable{.name = std::string(field.name),
                         .unit = field.unit,
-                        .range = {field.least, field.most, field.least_is_allowed}};
-      const auto* const its = std::ranges::find(damper_unit_fields, field.name, &DamperUnitField::name);
-      if (dampers == 0 || its == damper_unit_fields.end()) {
-        variable.number_in_units = field.member;
-        variables.push_back(variable);
-        continue;
-      }
-      variable.number_of_damper_in_units = its->member;
-      for (variable.damper = 0; variable.damper < dampers; ++variable.damper) {
-        variable.name = numbered(field.name, variable.damper);
+                        .range = {field.least, field.most, field.least_is_allowed},
+                        .number_in_units = field.number};
+      const bool in_list = field.number.of_damper && dampers > 1;
+      for (std::size_t i = 0; i < (in_list ? dampers : 1); ++i) {
+        if (in_list) variable.name = std::string(field.name) + "_" + std::to_string(i + 1);
+        variable.number_in_units.damper = i;
         variables.push_back(variable);
       }
     }

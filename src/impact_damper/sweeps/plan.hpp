@@ -22,12 +22,10 @@ namespace impact_damper {
 // clearance_2. Stops are not among them.
 struct Variable {
   std::string name{};
-  std::string_view unit{};  // "" without one, and in a dimensionless scene
-  NumberRange range{};      // its valid values
-  SceneNumber number{};     // of a dimensionless scene; of one in units one of these
-  std::optional<double> SceneInUnits::*number_in_units = nullptr;
-  std::optional<double> DamperInUnits::*number_of_damper_in_units = nullptr;
-  std::size_t damper = 0;  // index of the damper, from 0
+  std::string_view unit{};          // "" without one, and in a dimensionless scene
+  NumberRange range{};              // its valid values
+  SceneNumber number{};             // of a dimensionless scene
+  NumberInUnits number_in_units{};  // of one in units
 
   // Returns its value; absent where a scene in units leaves it out.
   std::optional<double> of(const SceneFile& scene) const;

@@ -124,14 +124,14 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
     const std::filesystem::path beside = folder / name;
     std::error_code none;
     const auto elsewhere = find && !std::filesystem::exists(beside, none) ? find(name) : std::nullopt;
-    return read_scene_file(elsewhere.value_or(beside.string()), DamperList::allowed);
+    return read_scene_file(elsewhere.value_or(beside.string()));
   }
   if (!object.has("scene")) {
     object.reject("scene", "it or scene_file must be given");
     return {};
   }
   ObjectReader scene = object.required_object("scene");
-  return read_scene_object(scene, DamperList::allowed);
+  return read_scene_object(scene);
 }
 
 Plan finished(JsonDocument document, const std::filesystem::path& folder, const FindFile& find) {

@@ -24,15 +24,15 @@ struct OwnRecorder : Recorder {
 };
 
 Outcome run(const Scene& scene, const Exact& options, OwnRecorder& recorder) {
-  return scene.dampers.empty() ? run_exact<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_exact<double>(scene, options, recorder)
                                : run_exact_dampers<double>(scene, options, recorder);
 }
 Outcome run(const Scene& scene, const Restitution& options, OwnRecorder& recorder) {
-  return scene.dampers.empty() ? run_restitution<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_restitution<double>(scene, options, recorder)
                                : run_restitution_dampers<double>(scene, options, recorder);
 }
 Outcome run(const Scene& scene, const Cem& options, OwnRecorder& recorder) {
-  return scene.dampers.empty() ? run_cem<double>(scene, options, recorder)
+  return has_one_damper(scene) ? run_cem<double>(scene, options, recorder)
                                : run_cem_dampers<double>(scene, options, recorder);
 }
 
@@ -59,8 +59,7 @@ void write(const Scene& scene, Options options) {
 
 int main(int, char** arguments) {
   const std::string_view engine = arguments[1];
-  const impact_damper::Scene scene =
-      impact_damper::read_scene(arguments[2], impact_damper::DamperList::allowed);
+  const impact_damper::Scene scene = impact_damper::read_scene(arguments[2]);
   if (engine == "exact") impact_damper::write(scene, impact_damper::Exact{});
   if (engine == "restitution") impact_damper::write(scene, impact_damper::Restitution{});
   if (engine == "cem") impact_damper::write(scene, impact_damper::Cem{});
