@@ -1154,7 +1154,7 @@ TEST_CASE("several dampers are drawn by their mass, beside the sum of what each 
     change(changed);
     CHECK(rejection(figure, changed).find(why) != std::string::npos);
   };
-  rejected([](FigureRuns& all) { all["set"].run.scene.dampers.clear(); },
+  rejected([](FigureRuns& all) { all["set"].run.scene.dampers = {{}}; },
            "set.json: must be of a scene with a list");
   rejected([&](FigureRuns& all) { all["one"].run.scene.dampers = dampers; },
            "one.json: must be of a single damper");

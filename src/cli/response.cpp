@@ -206,7 +206,7 @@ std::optional<SceneState> parse_state(std::string_view text, const SceneFile& fi
     text = colon == std::string_view::npos ? "" : text.substr(colon + 1);
   }
   SceneState state = State<double>{numbers[0], numbers[1], numbers[2], numbers[3]};
-  state.dampers = release_of(file.scene).dampers;
+  if (count == 2) state.dampers = release_of(file.scene).dampers;
   return state;
 }
 

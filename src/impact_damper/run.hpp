@@ -114,9 +114,9 @@ struct EnergyBalance {
 // default budgets allow beside it, takes less than 200 MB, and its file is short enough to be read
 // (io/run_file.hpp).
 inline constexpr std::int64_t most_rows = 10'000'000, most_samples = 500'000;
-// Largest allowed number of half cycles: each damper of a list has a column. 0 dampers: no list.
+// Largest allowed number of half cycles: each damper has a column. dampers: at least 1.
 constexpr std::int64_t most_half_cycles(std::size_t dampers) {
-  return dampers == 0 ? most_rows : most_rows / static_cast<std::int64_t>(dampers);
+  return most_rows / static_cast<std::int64_t>(dampers);
 }
 
 // `count` >= 2 equally spaced samples of the motion, both ends included; 0 <= begin < end <= 1e12. Samples

@@ -76,11 +76,12 @@ struct SceneNumber {
   std::optional<std::size_t> damper;  // which of several, from 0; absent in a scene of one
 
   constexpr SceneNumber() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor)
-  constexpr SceneNumber(double Scene::*its) : own(its) {}  // cppcheck-suppress noExplicitConstructor
-  // NOLINTNEXTLINE(google-explicit-constructor)
-  constexpr SceneNumber(double SceneDamper::*its)
-      : of_damper(its) {}  // cppcheck-suppress noExplicitConstructor
+  // NOLINTBEGIN(google-explicit-constructor)
+  // cppcheck-suppress noExplicitConstructor
+  constexpr SceneNumber(double Scene::*its) : own(its) {}
+  // cppcheck-suppress noExplicitConstructor
+  constexpr SceneNumber(double SceneDamper::*its) : of_damper(its) {}
+  // NOLINTEND(google-explicit-constructor)
   constexpr SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
   // The name of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
   std::string name() const;

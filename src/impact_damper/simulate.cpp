@@ -97,13 +97,13 @@ Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
   Run result;
   result.scene = scene;
   result.engine = engine;
-  Recorder recorder(record, listed_dampers(scene));
+  Recorder recorder(record, scene.dampers.size());
   const Outcome outcome = std::visit(
       [&](auto& options) {
         options.budget = budget_for(scene, options.budget);
         if (record.half_cycles) {
           options.budget.max_half_cycles =
-              std::min(options.budget.max_half_cycles, most_half_cycles(listed_dampers(scene)));
+              std::min(options.budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
         }
         return run(scene, options, recorder);
       },

@@ -30,7 +30,7 @@ bool is_needed(std::string_view name) {
 
 }  // namespace
 
-const std::array<UnitField, 16> unit_fields{{
+constexpr std::array<UnitField, 16> unit_fields{{
     {"mass", &SceneInUnits::mass, small, true, large, "kg", "", false, "mass M of the primary system"},
     {"stiffness", &SceneInUnits::stiffness, small, true, large, "N/m", "", false,
      "stiffness K of its spring"},

@@ -89,11 +89,13 @@ struct NumberInUnits {
   std::size_t damper = 0;  // which, from 0
 
   constexpr NumberInUnits() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor)
+  // NOLINTBEGIN(google-explicit-constructor)
+  // cppcheck-suppress noExplicitConstructor
   constexpr NumberInUnits(std::optional<double> SceneInUnits::*its) : own(its) {}
-  // NOLINTNEXTLINE(google-explicit-constructor)
-  constexpr NumberInUnits(std::optional<double> DamperInUnits::*its, std::size_t which = 0)
-      : of_damper(its), damper(which) {}
+  // cppcheck-suppress noExplicitConstructor
+  constexpr NumberInUnits(std::optional<double> DamperInUnits::*its) : of_damper(its) {}
+  // NOLINTEND(google-explicit-constructor)
+  // cppcheck-suppress constParameter
   std::optional<double>& in(SceneInUnits& scene) const {
     return of_damper ? scene.dampers[damper].*of_damper : scene.*own;
   }

@@ -17,7 +17,7 @@ namespace impact_damper {
 template <class Real>
 class TestObserver : public Recorder {
  public:
-  explicit TestObserver(Record record = {.half_cycles = false}, std::size_t dampers = 0)
+  explicit TestObserver(Record record = {.half_cycles = false}, std::size_t dampers = 1)
       : Recorder(std::move(record), dampers) {}
   virtual ~TestObserver() = default;
 

@@ -123,7 +123,7 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
     stretch += std::log(size / distance);
     for (std::size_t k = 0; k < 4; ++k) c[k] = a[k] + (b[k] - a[k]) * (distance / size);
     c[2] = std::min(1.0, std::max(0.0, c[2]));
-    other = state_of(c, scene);
+    other = state_of(c);
   }
   const double expected = stretch / (periods * map.duration());
   MESSAGE("largest exponent ", found.exponents[0], ", of two neighbours ", expected);

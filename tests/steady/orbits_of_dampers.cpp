@@ -22,11 +22,7 @@ constexpr auto with_parameters = PoincareMap::Derivatives::by_state_and_paramete
 
 // The same state in half the unit of length, for list_of_one(), and the list's image in the scene's own
 // units.
-SceneState in_half_units(const State<double>& s) {
-  SceneState state(2 * s.x, 2 * s.v, 0, 0);
-  state.dampers = {{2 * s.y, 2 * s.w}};
-  return state;
-}
+SceneState in_half_units(const State<double>& s) { return {2 * s.x, 2 * s.v, 2 * s.y, 2 * s.w}; }
 PoincareImage in_own_units(PoincareImage image) {
   SceneState& state = image.state;
   state.x /= 2, state.v /= 2, state.dampers[0].y /= 2, state.dampers[0].w /= 2;
@@ -354,8 +350,8 @@ TEST_CASE("orbits are for at most a hundred dampers, and states of as many as th
                        "dampers: must be at most 100 for orbits, got 101", InvalidArguments);
   scene.dampers.resize(2);
   CHECK_THROWS_WITH_AS(find_orbit(scene, Restitution{}, 1, State<double>{0.1, 0, 0.5, 0}),
-                       "guess: must be of as many dampers as the scene's list, 2, got 0", InvalidArguments);
+                       "guess: must be of as many dampers as the scene's list, 2, got 1", InvalidArguments);
   CHECK_THROWS_WITH_AS(find_branches(scene, Restitution{}, {Parameter::force_frequency, 0.9, 1}, {},
                                      {State<double>{0.1, 0, 0.5, 0}}, {}, [](std::int64_t) {}),
-                       "starts: must be of as many dampers as the scene's list, 2, got 0", InvalidArguments);
+                       "starts: must be of as many dampers as the scene's list, 2, got 1", InvalidArguments);
 }

@@ -129,14 +129,14 @@ TEST_CASE("the derivative agrees with differences in extended precision, for eve
       same(image.by_frequency[i] / rate, (by_frequency.by[i] + by_time.by[i] * end_by_frequency) / rate);
       same(image.by_amplitude[i], by_amplitude.by[i]);
     }
-    ended_in_contact += image.state.y < 0 || image.state.y > 1;
+    ended_in_contact += image.state.dampers[0].y < 0 || image.state.dampers[0].y > 1;
     ++compared;
     impacts += int(image.impacts.size()) * has_rigid_walls(c.engine);
     compliant += int(image.impacts.size()) * !has_rigid_walls(c.engine);
     sticking += int(image.sticking);
     began_in_contact += c.start.y < 0;
     began_stuck += rests && image.sticking > 0;
-    ended_stuck += has_rigid_walls(c.engine) && image.state.w == 0;
+    ended_stuck += has_rigid_walls(c.engine) && image.state.dampers[0].w == 0;
   }
   MESSAGE("largest difference in units of the largest entry: ", worst);
   CHECK(compared >= 150);
@@ -162,7 +162,7 @@ TEST_CASE("a mass that is pressed against its wall at phase 0 only adds to the m
       CHECK(row[3] == doctest::Approx(share * row[1]).epsilon(1e-9).scale(1e-3));
     }
     ++began;
-    if (!(image.state.w == 0 && (image.state.y == 0 || image.state.y == 1))) continue;
+    if (!(image.state.dampers[0].w == 0 && (image.state.dampers[0].y == 0 || image.state.dampers[0].y == 1))) continue;
     for (const std::size_t row : {2, 3})
       for (const double entry : image.by_state[row]) CHECK(entry == 0);
     ++ended;

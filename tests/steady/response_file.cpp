@@ -232,7 +232,7 @@ TEST_CASE("what is read has the numbers that were found") {
     CHECK(a.means->lag_deg == b.means->lag_deg);
     CHECK(a.means->impact_power == b.means->impact_power);
     CHECK(a.power_scatter == b.power_scatter);
-    CHECK(a.state.w == b.state.w);
+    CHECK(a.state.dampers[0].w == b.state.dampers[0].w);
     periodic += a.period.has_value();
     open += !a.period;
   }
@@ -291,7 +291,7 @@ TEST_CASE("what is asked for differs in each part that is another") {
   other.axis.count = 5;
   CHECK(differences(other) == "/axis ");
   other = asked;
-  other.sweeps[1].start.w = 1;
+  other.sweeps[1].start.dampers[0].w = 1;
   CHECK(differences(other) == "/sweeps/1/start ");
   other = asked;
   other.sweeps[1].start.nudge = 2e-3;

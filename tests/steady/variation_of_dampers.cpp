@@ -260,7 +260,7 @@ TEST_CASE("the exponents of several dampers add up to the mean divergence") {
           loss += (1 + alone.mass_ratio) * damping * (run.contacts->end[i] - run.contacts->begin[i]);
         }
       }
-      period = released_from(scene, state_in(run.scene, *run.history, 1));
+      period = released_from(scene, state_in(*run.history, 1));
     }
     CHECK(sum_of(found.exponents) == doctest::Approx(-loss / duration).epsilon(1e-9));
     for (std::size_t i = 1; i < found.exponents.size(); ++i)
@@ -314,7 +314,7 @@ TEST_CASE("a mass that sticks before the periods that are averaged takes nothing
   for (int n = 0; n < 150; ++n) {
     const Run run = forced.record(release_of(period), forced.period());
     if (n >= 100) impacts += int(run.impacts->time.size());
-    period = released_from(scene, state_in(run.scene, *run.history, 1));
+    period = released_from(scene, state_in(*run.history, 1));
   }
   const double expected = -2 * 0.02 + 2 * impacts * std::log(0.6) / (50 * forced.period());
   CHECK(sum_of(later.exponents) == doctest::Approx(expected).epsilon(1e-9));

@@ -10,7 +10,7 @@ Recorder::Recorder(Record record, std::size_t dampers)
     : wants_(std::move(record)),
       wants_half_cycles_(wants_.half_cycles || wants_.impacts || !wants_.history_below.empty()),
       wants_history_(!wants_.history.empty() || !wants_.history_below.empty()),
-      impacts_in_row_(std::max<std::size_t>(dampers, 1)),
+      impacts_in_row_(dampers),
       windows_(std::move(wants_.history)) {
   half_cycles_.dampers.resize(impacts_in_row_.size());
   history_.dampers.resize(impacts_in_row_.size());

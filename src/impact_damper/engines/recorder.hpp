@@ -15,8 +15,8 @@ namespace impact_damper {
 
 class Recorder {
  public:
-  // dampers: the length of the scene's list of dampers, 0 if it has none, which means one damper.
-  explicit Recorder(Record record, std::size_t dampers = 0);
+  // dampers: how many the scene has.
+  explicit Recorder(Record record, std::size_t dampers = 1);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
   bool wants_contacts() const { return wants_.contacts; }

@@ -36,6 +36,7 @@ struct RunColumnInfo {
 
 template <class Owner, class Value>
 struct RunColumn {
+  using value_type = Value;
   Value Owner::*member;  // a function if the value is a sum of others, which a run file has for its readers
   RunColumnInfo info;
 };
@@ -154,10 +155,10 @@ inline bool has_list(const Run& run) { return !has_one_damper(run.scene); }
 // of_list: whether the run is one of a scene with a list of dampers.
 template <class Owner, class Visit>
 void for_each_column(Owner& owner, bool of_list, Visit&& visit) {
-  const auto visit_one = [&]<class Of, class Value>(const RunColumn<Of, Value>& column) {
+  const auto visit_one = [&](const auto& column) {
     if (of_list || column.info.without_list == WithoutList::same) {
       visit(column.info, std::invoke(column.member, owner));
-    } else if constexpr (PartsOfDampers<Value>) {
+    } else if constexpr (PartsOfDampers<typename std::remove_cvref_t<decltype(column)>::value_type>) {
       if (column.info.without_list == WithoutList::in_section)
         for (auto& damper : owner.*column.member) for_each_column(damper, of_list, visit);
     }
@@ -179,6 +180,7 @@ std::int64_t in_file(const Numbered& value) {
 template <NumberedInFiles Numbered>
 std::vector<std::int64_t> in_file(const std::vector<Numbered>& values) {
   std::vector<std::int64_t> numbers;
+  numbers.reserve(values.size());
   for (const Numbered value : values) numbers.push_back(in_file(value));
   return numbers;
 }

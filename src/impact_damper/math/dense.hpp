@@ -124,7 +124,10 @@ template <class Derive>
 Matrix matrix_exponential(std::size_t n, double t, double rate, Derive&& derive) {
   constexpr int terms = 24;
   int halvings = 0;
-  for (; t * rate > 1; t /= 2) ++halvings;
+  while (t * rate > 1) {
+    t /= 2;
+    ++halvings;
+  }
   Matrix sum(n, Vector(n));
   Vector rates(n);
   for (std::size_t j = 0; j < n; ++j) {

@@ -342,7 +342,7 @@ CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catal
   std::optional<ObjectReader> rule = item.optional_object("rule"), engine = item.optional_object("engine");
   std::vector<SceneState> starts;
   for (ObjectReader& start : item.optional_objects("start", 100))
-    describe(JsonFields(start), starts.emplace_back());
+    describe(JsonFields(start), starts.emplace_back(), Scene{});
   std::visit(
       [&](auto& asked) {
         if constexpr (!std::is_same_v<decltype(asked), LyapunovResponse&>)

@@ -35,7 +35,6 @@ class Idle {
       const double z = s.x + y;
       return std::abs(s.v + w) <= at_rest && reach < z && z < clearance - reach;
     };
-    if (s.dampers.empty()) return is_out_of_reach(s.y, s.w, 1);
     for (std::size_t i = 0; i < dampers_.size(); ++i)
       if (!is_out_of_reach(s.dampers[i].y, s.dampers[i].w, dampers_[i].clearance)) return false;
     return true;
@@ -76,7 +75,7 @@ bool same_kind(const Attractor& a, const Attractor& b) {
 
 // The state with y and w of dampers without impacts reset: where they rest does not distinguish motions.
 SceneState of_struck(SceneState state, const Attractor& attractor) {
-  for (std::size_t i = 0; i < state.dampers.size(); ++i)
+  for (std::size_t i = 0; i < attractor.impacts_by_damper.size(); ++i)
     if (attractor.impacts_by_damper[i] == ImpactCounts{}) state.dampers[i] = {};
   return state;
 }

@@ -45,10 +45,8 @@ class BranchSearch {
       return motion;
     }
     SceneState centred = s;
-    centred.y = 0.5 - s.x;
-    centred.w = -s.v;
     for (std::size_t i = 0; i < s.dampers.size(); ++i)
-      if (watched->by_damper[i] == ImpactCounts{})
+      if (has_one_damper(scene) || watched->by_damper[i] == ImpactCounts{})
         centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
     if (watched->impacts == ImpactCounts{}) {
       motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});
@@ -196,9 +194,9 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
     problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for orbits, got " + std::to_string(scene.dampers.size())});
   for (const SceneState& start : starts)
-    if (start.dampers.size() != listed_dampers(scene))
+    if (start.dampers.size() != scene.dampers.size())
       problems.push_back({"starts", "must be of as many dampers as the scene's list, " +
-                                        std::to_string(listed_dampers(scene)) + ", got " +
+                                        std::to_string(scene.dampers.size()) + ", got " +
                                         std::to_string(start.dampers.size())});
   require_none(problems);
   const BranchSearch search(engine, range, rule);

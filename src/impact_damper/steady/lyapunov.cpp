@@ -106,7 +106,7 @@ class SeveralDampers {
     });
     lost_ = std::max(lost_, carried.lost);
     one_sided_ = one_sided_ || carried.one_sided;
-    state_ = state_in(run.scene, *run.history, 1);
+    state_ = state_in(*run.history, 1);
     return run.stop_reason;
   }
   void begin_to_average() {

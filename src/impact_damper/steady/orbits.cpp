@@ -59,7 +59,7 @@ struct Equation {
   }
   Expected<PoincareImage, StopReason> image_of(
       const Point& p, PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
-    return map(p.back())(state_of(state_at(p), scene), wanted);
+    return map(p.back())(state_of(state_at(p)), wanted);
   }
   // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
   bool allows(const Point& p) const {
@@ -255,7 +255,7 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.symmetric = symmetric;
   const PoincareMap map = equation.map(found.point.back());
   orbit.scene = map.scene();
-  orbit.scene = released_from(orbit.scene, state_of(state_at(found.point), orbit.scene));
+  orbit.scene = released_from(orbit.scene, state_of(state_at(found.point)));
   orbit.impacts = found.image.impacts;
   orbit.sticking = found.image.sticking;
   orbit.idle = found.image.idle;
@@ -694,10 +694,10 @@ double Scene::*member_of(Parameter parameter) {
 
 Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, int periods,
                                     const SceneState& guess, const OrbitOptions& options) {
-  if (guess.dampers.size() != listed_dampers(scene))
-    require_none({{"guess", "must be of as many dampers as the scene's list, " +
-                                std::to_string(listed_dampers(scene)) + ", got " +
-                                std::to_string(guess.dampers.size())}});
+  if (guess.dampers.size() != scene.dampers.size())
+    require_none(
+        {{"guess", "must be of as many dampers as the scene's list, " + std::to_string(scene.dampers.size()) +
+                       ", got " + std::to_string(guess.dampers.size())}});
   Scene guessed = released_from(scene, guess);
   guessed.until_time = 1;
   std::vector<Problem> problems = impact_damper::problems_of(guessed);

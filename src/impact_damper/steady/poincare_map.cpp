@@ -75,13 +75,13 @@ std::optional<double> least_interval(const std::vector<OrbitImpact>& impacts, do
 
 StateVector vector_of(const SceneState& s) {
   StateVector all{s.x, s.v};
-  if (s.dampers.empty()) all.insert(all.end(), {s.y, s.w});
   for (const PlaceInCavity& each : s.dampers) all.insert(all.end(), {each.y, each.w});
   return all;
 }
-SceneState state_of(const StateVector& s, const Scene& scene) {
-  if (has_one_damper(scene)) return {s[0], s[1], s[2], s[3]};
-  SceneState state(s[0], s[1], 0, 0);
+SceneState state_of(const StateVector& s) {
+  SceneState state;
+  state.x = s[0], state.v = s[1];
+  state.dampers.clear();
   for (std::size_t i = 2; i < s.size(); i += 2) state.dampers.push_back({s[i], s[i + 1]});
   return state;
 }
@@ -148,7 +148,7 @@ Expected<PoincareMap::End, StopReason> PoincareMap::of_several(const SceneState&
   const Run run = several_->record(s, duration());
   if (run.stop_reason != StopReason::time) return run.stop_reason;
   PoincareImage image;
-  image.state = state_in(run.scene, *run.history, 1);
+  image.state = state_in(*run.history, 1);
   const std::size_t n = dimensions_of(scene_);
   std::vector<ChangeOfState> columns(n, ChangeOfState(n));
   for (std::size_t j = 0; j < n; ++j) columns[j][j] = 1;

@@ -27,7 +27,7 @@ using StateVector = Vector;
 using StateMatrix = Matrix;
 StateVector vector_of(const SceneState& s);
 // The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
-SceneState state_of(const StateVector& s, const Scene& scene);
+SceneState state_of(const StateVector& s);
 
 struct PoincareImage {
   SceneState state{};    // H^n(s)

@@ -62,7 +62,8 @@ RowColumns<SteadyState> steady_columns(std::size_t dampers) {
       {"contraction", ratio, flag, [](S& s) -> NumberCell { return &s.contraction; }},
       {"measured_periods", ratio, counts,
        [](S& s) -> NumberCell { return s.means ? &s.measured_periods : nullptr; }},
-      {"impacts_left", ratio, counts, [](S& s) -> NumberCell { return s.means ? &s.impacts[0] : nullptr; }},
+      {"impacts_left", ratio, counts,
+       [](S& s) -> NumberCell { return s.means ? s.impacts.data() : nullptr; }},
       {"impacts_right", ratio, counts, [](S& s) -> NumberCell { return s.means ? &s.impacts[1] : nullptr; }},
       {"symmetric", ratio, flag, [](S& s) -> NumberCell { return s.means ? &s.symmetric : nullptr; }},
       {"amplitude", length, at_least(0),
@@ -82,8 +83,8 @@ RowColumns<SteadyState> steady_columns(std::size_t dampers) {
        [](S& s) -> NumberCell { return s.means ? &s.means->impact_power : nullptr; }},
       {"x", length, any, [](S& s) -> NumberCell { return &s.state.x; }},
       {"v", velocity, any, [](S& s) -> NumberCell { return &s.state.v; }},
-      {"y", length, any, [](S& s) -> NumberCell { return &s.state.y; }, Scenes::of_one_damper},
-      {"w", velocity, any, [](S& s) -> NumberCell { return &s.state.w; }, Scenes::of_one_damper},
+      {"y", length, any, [](S& s) -> NumberCell { return &s.state.dampers[0].y; }, Scenes::of_one_damper},
+      {"w", velocity, any, [](S& s) -> NumberCell { return &s.state.dampers[0].w; }, Scenes::of_one_damper},
   };
   return those_of(table, dampers);
 }
@@ -94,7 +95,7 @@ RowColumns<OrbitPoint> orbit_columns(std::size_t dampers) {
       {"period", ratio, periods, [](P& p) -> NumberCell { return &p.period; }},
       {"symmetric", ratio, flag, [](P& p) -> NumberCell { return &p.symmetric; }},
       {"stable", ratio, flag, [](P& p) -> NumberCell { return &p.stable; }},
-      {"impacts_left", ratio, counts, [](P& p) -> NumberCell { return &p.impacts[0]; }},
+      {"impacts_left", ratio, counts, [](P& p) -> NumberCell { return p.impacts.data(); }},
       {"impacts_right", ratio, counts, [](P& p) -> NumberCell { return &p.impacts[1]; }},
       {"sticking", ratio, counts, [](P& p) -> NumberCell { return &p.sticking; }},
       {"amplitude", length, at_least(0), [](P& p) -> NumberCell { return &p.amplitude; }},
@@ -112,8 +113,8 @@ RowColumns<OrbitPoint> orbit_columns(std::size_t dampers) {
        Scenes::of_list},
       {"x", length, any, [](P& p) -> NumberCell { return &p.state.x; }},
       {"v", velocity, any, [](P& p) -> NumberCell { return &p.state.v; }},
-      {"y", length, any, [](P& p) -> NumberCell { return &p.state.y; }, Scenes::of_one_damper},
-      {"w", velocity, any, [](P& p) -> NumberCell { return &p.state.w; }, Scenes::of_one_damper},
+      {"y", length, any, [](P& p) -> NumberCell { return &p.state.dampers[0].y; }, Scenes::of_one_damper},
+      {"w", velocity, any, [](P& p) -> NumberCell { return &p.state.dampers[0].w; }, Scenes::of_one_damper},
   };
   return those_of(table, dampers);
 }

@@ -216,7 +216,7 @@ class JsonFields {
 
 // Records that the catalogue and plans have, too. A state has as many dampers as it has before it is read.
 // Axis and range: false if there are problems.
-void describe(JsonFields fields, SceneState& state);
+void describe(JsonFields fields, SceneState& state, const Scene& scene);
 bool describe(JsonFields fields, Axis& axis, const Scene& scene);
 bool describe(JsonFields fields, ParameterRange& range);
 void describe(JsonFields fields, SteadyRule& rule);

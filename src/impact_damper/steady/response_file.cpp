@@ -34,14 +34,15 @@ void describe_criteria(JsonFields fields, SteadyRule& rule) {
 }
 }  // namespace
 
-void describe(JsonFields fields, SceneState& state) {
+void describe(JsonFields fields, SceneState& state, const Scene& scene) {
+  if (fields.reads()) state.dampers.resize(scene.dampers.size());
   fields.field("x", state.x);
   fields.field("v", state.v);
-  if (state.dampers.empty()) {
-    fields.field("y", state.y);
-    fields.field("w", state.w);
+  if (has_one_damper(scene)) {
+    fields.field("y", state.dampers[0].y);
+    fields.field("w", state.dampers[0].w);
   }
-  fields.dampers(state.dampers.size(), Layout::one_line, [&](JsonFields its, std::size_t number) {
+  fields.dampers(listed_dampers(scene), Layout::one_line, [&](JsonFields its, std::size_t number) {
     its.field("y", state.dampers[number].y);
     its.field("w", state.dampers[number].w);
   });
@@ -92,8 +93,7 @@ void describe(JsonFields fields, BranchRule& rule) {
 namespace {
 
 void describe_state(JsonFields fields, std::string_view name, SceneState& state, const Scene& scene) {
-  if (fields.reads()) state.dampers.resize(listed_dampers(scene));
-  fields.object(name, Layout::one_line, [&](JsonFields its) { describe(its, state); });
+  fields.object(name, Layout::one_line, [&](JsonFields its) { describe(its, state, scene); });
 }
 
 template <class Kind>
@@ -113,6 +113,7 @@ void describe(JsonFields fields, ImpactCounts& impacts) {
 void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& scene) {
   const std::size_t dampers = listed_dampers(scene);
   std::vector<std::string_view> ends;
+  ends.reserve(way.size());
   for (const SteadyState& each : way) ends.push_back(end_of(each));
   if (!fields.words("end", ends, ends_of_simulation({"periodic", "not_periodic"}))) return;
   way.resize(ends.size());
@@ -121,7 +122,7 @@ void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& sce
     for (const StopReason reason : ends_of_run)
       if (ends[i] == name_of(reason)) steady.stop_reason = reason;
     if (ends[i] == "periodic") steady.period = 1;
-    steady.state.dampers.resize(dampers);
+    steady.state.dampers.resize(scene.dampers.size());
     if (steady.stop_reason != StopReason::time) continue;
     steady.means.emplace();
     steady.impacts_by_damper.resize(dampers);
@@ -261,7 +262,7 @@ void describe(JsonFields fields, OrbitBranch& branch, const Scene& scene) {
     OrbitPoint& point = branch.points[i];
     point.value = values[i];
     point.impacts_by_damper.resize(dampers);
-    point.state.dampers.resize(dampers);
+    point.state.dampers.resize(scene.dampers.size());
   }
   fields.columns(orbit_columns(dampers), branch.points);
   fields.columns_of_dampers(dampers, branch.points);
@@ -399,8 +400,8 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
   const auto add_object = [&](const std::string& pointer, const JsonFields::Describe& describe_its) {
     add(pointer, [&](JsonWriter& out) { JsonFields(out).object("part", Layout::one_line, describe_its); });
   };
-  const auto add_state = [&](const std::string& pointer, SceneState& state) {
-    add_object(pointer, [&](JsonFields its) { describe(its, state); });
+  const auto add_state = [&](const std::string& pointer, SceneState& state, const Scene& scene) {
+    add_object(pointer, [&](JsonFields its) { describe(its, state, scene); });
   };
   Response asked = response;
   std::visit(
@@ -422,7 +423,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
     for (std::size_t i = 0; i < sweeps->sweeps.size(); ++i) {
       const std::string sweep = "/sweeps/" + std::to_string(i);
       SweepStart& start = sweeps->sweeps[i].start;
-      add_state(sweep + "/start", start);
+      add_state(sweep + "/start", start, sweeps->scene);
       if (start.nudge != 0) add(sweep + "/nudge", [&](JsonWriter& out) { out.field("nudge", start.nudge); });
     }
   } else if (auto* const basin = std::get_if<BasinResponse>(&asked)) {
@@ -431,7 +432,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
   } else if (auto* const orbits = std::get_if<OrbitsResponse>(&asked)) {
     add_object("/range", [&](JsonFields its) { describe(its, orbits->range); });
     for (std::size_t i = 0; i < orbits->starts.size(); ++i)
-      add_state("/starts/" + std::to_string(i) + "/state", orbits->starts[i].state);
+      add_state("/starts/" + std::to_string(i) + "/state", orbits->starts[i].state, orbits->scene);
   }
   return parts;
 }

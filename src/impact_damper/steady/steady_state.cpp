@@ -67,8 +67,9 @@ std::vector<Problem> problems_of(const SteadyRule& rule) {
 }
 
 SceneState release_of(const Scene& scene) {
-  SceneState state = State<double>{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
-  if (has_one_damper(scene)) return state;
+  SceneState state;
+  state.x = scene.x0, state.v = scene.v0;
+  state.dampers.clear();
   for (const SceneDamper& damper : scene.dampers) state.dampers.push_back({damper.y0, damper.w0});
   return state;
 }
@@ -77,39 +78,32 @@ Scene released_from(Scene scene, const SceneState& state) {
   const auto allowed = [](double value) { return is_too_small(value) ? 0 : value; };
   scene.x0 = allowed(state.x);
   scene.v0 = allowed(state.v);
-  if (has_one_damper(scene)) {
-    scene.damper().y0 = allowed(state.y);
-    scene.damper().w0 = allowed(state.w);
-  }
-  for (std::size_t n = 0; n < state.dampers.size(); ++n) {
+  for (std::size_t n = 0; n < scene.dampers.size(); ++n) {
     scene.dampers[n].y0 = allowed(state.dampers[n].y);
     scene.dampers[n].w0 = allowed(state.dampers[n].w);
   }
   return scene;
 }
 
-SceneState state_in(const Scene& scene, const History& history, std::size_t row) {
-  SceneState state = State<double>{history.x[row], history.v[row], 0, 0};
-  if (has_one_damper(scene)) {
-    state.y = history.dampers[0].y[row];
-    state.w = history.dampers[0].w[row];
-    return state;
-  }
+SceneState state_in(const History& history, std::size_t row) {
+  SceneState state;
+  state.x = history.x[row], state.v = history.v[row];
+  state.dampers.clear();
   for (const History::Damper& damper : history.dampers)
     state.dampers.push_back({damper.y[row], damper.w[row]});
   return state;
 }
 
 SceneState mirrored(const SceneState& s, const Scene& scene) {
-  SceneState image = mirrored<double>(s);
+  SceneState image = s;
+  image.x = -s.x, image.v = -s.v;
   for (std::size_t n = 0; n < s.dampers.size(); ++n)
-    image.dampers.push_back({scene.dampers[n].clearance - s.dampers[n].y, -s.dampers[n].w});
+    image.dampers[n] = {scene.dampers[n].clearance - s.dampers[n].y, -s.dampers[n].w};
   return image;
 }
 
 double distance(const SceneState& a, const SceneState& b) {
   double largest = std::max(std::abs(a.x - b.x), std::abs(a.v - b.v));
-  if (a.dampers.empty()) return std::max({largest, std::abs(a.y - b.y), std::abs(a.w - b.w)});
   for (std::size_t n = 0; n < a.dampers.size(); ++n)
     largest = std::max(
         {largest, std::abs(a.dampers[n].y - b.dampers[n].y), std::abs(a.dampers[n].w - b.dampers[n].w)});
@@ -118,7 +112,6 @@ double distance(const SceneState& a, const SceneState& b) {
 
 double size_of(const SceneState& s) {
   double largest = std::max({1.0, std::abs(s.x), std::abs(s.v)});
-  if (s.dampers.empty()) return std::max({largest, std::abs(s.y), std::abs(s.w)});
   for (const PlaceInCavity& each : s.dampers)
     largest = std::max({largest, std::abs(each.y), std::abs(each.w)});
   return largest;
@@ -205,7 +198,7 @@ ForcedScene::ForcedScene(const Scene& scene, const Engine& engine)
       [&](auto options) {
         options.budget = budget_for(scene_, options.budget);
         options.budget.max_half_cycles =
-            std::min(options.budget.max_half_cycles, most_half_cycles(listed_dampers(scene_)));
+            std::min(options.budget.max_half_cycles, most_half_cycles(scene_.dampers.size()));
         return runner(scene_, options);
       },
       engine);
@@ -237,7 +230,7 @@ Run ForcedScene::record(const SceneState& state, double until) const {
   record.half_cycles = false;
   record.impacts = record.contacts = true;
   record.history = {{0, until, 2}};
-  Recorder recorder(std::move(record), listed_dampers(scene_));
+  Recorder recorder(std::move(record), scene_.dampers.size());
   const Outcome outcome = run_(run.scene, recorder);
   run.stop_reason = outcome.stop_reason;
   run.end_time = outcome.end_time;
@@ -253,7 +246,7 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
   Record record;
   record.half_cycles = record.impacts = record.energy = measures;
   record.history = {{0, end, states + 1}};
-  Recorder recorder(std::move(record), listed_dampers(scene_));
+  Recorder recorder(std::move(record), scene_.dampers.size());
   const StopReason stop_reason = run_(from, recorder).stop_reason;
   if (stop_reason != StopReason::time) return stop_reason;
   Run run;
@@ -261,7 +254,7 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
 
   Watched kept;
   for (std::size_t row = 1; row < run.history->time.size(); ++row)
-    kept.states[row - 1] = state_in(scene_, *run.history, row);
+    kept.states[row - 1] = state_in(*run.history, row);
   if (!measures) return kept;
   for (const double amplitude : run.half_cycles->amplitude)
     kept.amplitude = std::max(kept.amplitude, amplitude);
@@ -323,7 +316,7 @@ void ForcedScene::measure(SteadyState& steady, const SteadyRule& rule) const {
 }
 
 // The power by (M14.3), and the component at the force's frequency by (M14.4).
-SteadyMeans ForcedScene::means_of(const Watched& watched, const State<double>& begin,
+SteadyMeans ForcedScene::means_of(const Watched& watched, const SceneState& begin,
                                   std::int64_t periods) const {
   const double duration = double(periods) * period_, omega = scene_.force_frequency,
                f0 = scene_.force_amplitude;

@@ -21,21 +21,20 @@
 
 namespace impact_damper {
 
-// The state of a scene: x, x', y, y'. With a list of dampers y and y' of each are in `dampers`, by number in
-// the scene, and y and w of State mean nothing.
-struct SceneState : State<double> {
-  SceneState() : SceneState(0, 0, 0, 0) {}
-  // A state of one damper is a state of a scene.
+// The state of a scene: x, x', and y and y' of each damper, by number in the scene.
+struct SceneState {
+  double x = 0, v = 0;
+  std::vector<PlaceInCavity> dampers = {{0, 0}};
+
+  SceneState() = default;
+  SceneState(double of_x, double of_v, double of_y, double of_w)  // of one damper
+      : x(of_x), v(of_v), dampers{{of_y, of_w}} {}
+  // A state of one damper is a state of a scene, and the other way round.
   // NOLINTNEXTLINE(google-explicit-constructor)
   SceneState(const State<double>& one)  // cppcheck-suppress noExplicitConstructor
       : SceneState(one.x, one.v, one.y, one.w) {}
-  SceneState(double of_x, double of_v, double of_y, double of_w) {
-    x = of_x;
-    v = of_v;
-    y = of_y;
-    w = of_w;
-  }
-  std::vector<PlaceInCavity> dampers;
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  operator State<double>() const { return {x, v, dampers[0].y, dampers[0].w}; }
 };
 
 // The criteria by which a motion counts as steady.
@@ -143,7 +142,7 @@ class ForcedScene {
   // end.
   Expected<Watched, StopReason> run_from(const SceneState& state, std::int64_t periods, std::int64_t states,
                                          bool measures) const;
-  SteadyMeans means_of(const Watched& watched, const State<double>& begin, std::int64_t periods) const;
+  SteadyMeans means_of(const Watched& watched, const SceneState& begin, std::int64_t periods) const;
   void measure_periodic(SteadyState& steady, const SteadyRule& rule) const;
   void measure_blocks(SteadyState& steady, const SteadyRule& rule) const;
 
@@ -154,18 +153,13 @@ class ForcedScene {
   std::function<Outcome(const Scene&, Recorder&)> run_;
 };
 
-// The state in a row of a scene's history.
-SceneState state_in(const Scene& scene, const History& history, std::size_t row);
+// The state in a row of a history.
+SceneState state_in(const History& history, std::size_t row);
 // A scene's initial state, and the scene with another one, in which numbers with is_too_small() become 0.
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);
 
-// The mirror image of a state: left and right exchanged.
-template <class Real>
-State<Real> mirrored(const State<Real>& s) {
-  return {-s.x, -s.v, 1 - s.y, -s.w};
-}
-// The mirror image of a state of the scene.
+// The mirror image of a state of the scene: left and right exchanged.
 SceneState mirrored(const SceneState& s, const Scene& scene);
 // The largest difference of two states' components.
 double distance(const SceneState& a, const SceneState& b);
