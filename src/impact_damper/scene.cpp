@@ -35,7 +35,7 @@ constexpr bool is_of_damper(const SceneField& field) { return field.number.of_da
 template <std::size_t size>
 constexpr std::array<SceneField, size> those(bool (*are_wanted)(const SceneField&)) {
   std::array<SceneField, size> fields;
-  std::ranges::copy_if(all_fields, fields.begin(), are_wanted);
+  std::copy_if(all_fields.begin(), all_fields.end(), fields.begin(), are_wanted);
   return fields;
 }
 

@@ -24,8 +24,8 @@ template <class Row>
 RowColumns<Row> those_of(const RowColumns<Row>& table, std::size_t dampers) {
   const Scenes others = dampers > 0 ? Scenes::of_one_damper : Scenes::of_list;
   RowColumns<Row> columns;
-  std::ranges::copy_if(table, std::back_inserter(columns),
-                       [&](const RowColumn<Row>& each) { return each.scenes != others; });
+  std::copy_if(table.begin(), table.end(), std::back_inserter(columns),
+               [&](const RowColumn<Row>& each) { return each.scenes != others; });
   return columns;
 }
 

@@ -93,7 +93,7 @@ class JsonFields {
     const auto text_of = [](const std::optional<double>& number) {
       return number ? number_text(*number) : std::string("null");
     };
-    const auto [wrong, wanted] = std::ranges::mismatch(given, numbers);
+    const auto [wrong, wanted] = std::mismatch(given.begin(), given.end(), numbers.begin());
     if (wrong != given.end())
       in_->reject(name, std::size_t(wrong - given.begin()),
                   "must be " + text_of(*wanted) + ", got " + text_of(*wrong));
