@@ -88,7 +88,8 @@ class SectionReader {
     if constexpr (std::same_as<Element, double>) {
       const bool ascends =
           info.order == Order::ascending || (info.order == Order::ascending_for_each_damper && dampers_ == 0);
-      const auto drop = ascends ? std::is_sorted_until(column.begin(), column.end()) : column.end();
+      if (!ascends) return true;
+      const auto drop = std::is_sorted_until(column.begin(), column.end());
       if (drop == column.end()) return true;
       object_.reject(
           info.name, static_cast<std::size_t>(drop - column.begin()),
