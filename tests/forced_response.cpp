@@ -153,7 +153,7 @@ TEST_CASE(
   const Scene scene = mast(0.0125, 1.01);
   const ForcedResponse response = response_of(scene, Restitution{});
   const std::vector<ResponsePoint>& points = response.points;
-  const auto follows = [&](const ResponsePoint& point, const State<double>& from,
+  const auto follows = [&](const ResponsePoint& point, const SceneState& from,
                            const ArrivedMotion& motion) {
     Scene there = scene;
     there.force_frequency = point.frequency;

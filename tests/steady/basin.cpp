@@ -42,7 +42,7 @@ TEST_CASE("each point ends in the motion to which it settles by itself") {
     CHECK(attractor.period == steady.period);
     CHECK(attractor.impacts == steady.impacts);
     double nearest = 1;
-    for (const State<double>& state : attractor.states)
+    for (const SceneState& state : attractor.states)
       nearest = std::min(nearest, distance(state, steady.state));
     CHECK(nearest < 1e-5);
   }

@@ -12,9 +12,9 @@ using namespace impact_damper;
 
 namespace {
 
-Branches found_from(const Scene& scene, const ParameterRange& range, const std::vector<State<double>>& starts,
+Branches found_from(const Scene& scene, const ParameterRange& range, const std::vector<SceneState>& starts,
                     const BranchRule& rule = {}, const Engine& engine = Restitution{}) {
-  return find_branches(scene, engine, range, rule, {starts.begin(), starts.end()}, {}, [](std::int64_t) {});
+  return find_branches(scene, engine, range, rule, starts, {}, [](std::int64_t) {});
 }
 const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
   const auto at = std::ranges::find(branch.events, kind, &BranchEvent::kind);
@@ -150,7 +150,7 @@ TEST_CASE("a start on a branch that is known begins no other, and starts without
   State<double> start = two_impact_orbits(scene).at(0).state;
   start.w += 1e-3;
   const ParameterRange range{Parameter::force_amplitude, 0.06, 0.061};
-  const State<double> mirror_image = PoincareMap(scene, Restitution{}, 1)(start)->state;
+  const SceneState mirror_image = PoincareMap(scene, Restitution{}, 1)(start)->state;
   const Branches found = found_from(scene, range, {start, mirror_image}, {.max_branches = 1});
   CHECK(end_of(found.starts[0]) == "periodic");
   CHECK(found.starts[0].branch == 0);

@@ -27,11 +27,12 @@ Scene forced(double nu, double zeta, double frequency, double amplitude) {
 // Minus the mean divergence over periods that are each begun at phase 0, as the exponents' are.
 double mean_loss(Scene scene, const Engine& engine, int periods) {
   const PoincareMap map(scene, engine, 2);
-  State<double> s{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
+  SceneState s{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
   double loss = 0;
   for (int i = 0; i < periods; ++i) {
     Scene period = map.scene();
-    period.x0 = s.x, period.v0 = s.v, period.damper().y0 = s.y, period.damper().w0 = s.w;
+    period.x0 = s.x, period.v0 = s.v, period.damper().y0 = s.dampers[0].y,
+    period.damper().w0 = s.dampers[0].w;
     const Run run = simulate(period, engine, {.half_cycles = false, .impacts = true, .contacts = true});
     loss += 2 * scene.damping_ratio * map.duration();
     if (has_rigid_walls(engine)) {
@@ -79,7 +80,7 @@ TEST_CASE("on a stable orbit they are the logarithms of the multipliers divided 
   const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
     const PoincareMap map(scene, engine, 2);
-    State<double> s = two_impact_orbits(scene).at(0).state;
+    SceneState s = two_impact_orbits(scene).at(0).state;
     s.x += 1e-6;  // it is unstable, and rounding alone leads away from it late or early
     for (int i = 0; i < 500; ++i) s = map(s)->state;
     const Orbit orbit = *find_orbit(scene, engine, 1, s);
@@ -109,7 +110,7 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
   REQUIRE(found.stop_reason == StopReason::time);
   const PoincareMap map(scene, Restitution{}, 2);
   const double distance = 1e-9;
-  State<double> one{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0}, other = one;
+  SceneState one{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0}, other = one;
   other.x += distance;
   double stretch = 0;
   for (int i = 0; i < periods; ++i) {
@@ -152,7 +153,7 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
 
   // Of what is the same in each period there is none; of nine periods it is not told.
   const Scene light = forced(0.02, 0.05, 0.9, 0.1);
-  State<double> s = two_impact_orbits(light).at(0).state;
+  SceneState s = two_impact_orbits(light).at(0).state;
   s.x += 1e-6;
   for (int i = 0; i < 500; ++i) s = PoincareMap(light, Restitution{}, 2)(s)->state;
   const Orbit orbit = *find_orbit(light, Restitution{}, 1, s);

@@ -20,14 +20,15 @@ double linear_amplitude(const Scene& scene) {
   const double w = scene.force_frequency;
   return std::fabs(scene.force_amplitude) / std::hypot(1 - w * w, 2 * scene.damping_ratio * w);
 }
-State<double> state_of_scene(const Scene& scene) {
+SceneState state_of_scene(const Scene& scene) {
   return {scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
 }
-double apart(const State<double>& a, const State<double>& b) {
-  return std::max({std::fabs(a.x - b.x), std::fabs(a.v - b.v), std::fabs(a.y - b.y), std::fabs(a.w - b.w)});
+double apart(const SceneState& a, const SceneState& b) {
+  return std::max({std::fabs(a.x - b.x), std::fabs(a.v - b.v), std::fabs(a.dampers[0].y - b.dampers[0].y),
+                   std::fabs(a.dampers[0].w - b.dampers[0].w)});
 }
 // Where a plain simulation is after many periods, each begun at phase 0.
-State<double> settled(const Scene& scene, const Engine& engine, State<double> s, int periods) {
+SceneState settled(const Scene& scene, const Engine& engine, SceneState s, int periods) {
   const PoincareMap map(scene, engine, 2);
   for (int i = 0; i < periods; ++i) s = map(s)->state;
   return s;
@@ -60,10 +61,10 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
                                random.uniform(0.5, 1.6), random.log_uniform(0.05, 1));
     scene.damper().restitution = random.uniform(0.2, 0.9);
     for (const TwoImpactOrbit& expected : two_impact_orbits(scene)) {
-      State<double> guess = expected.state;
-      if (!(guess.y > 0.01 && guess.y < 0.99) || expected.impact_speed < 0.05) continue;
+      SceneState guess = expected.state;
+      if (!(guess.dampers[0].y > 0.01 && guess.dampers[0].y < 0.99) || expected.impact_speed < 0.05) continue;
       guess.x += 1e-5;
-      guess.w -= 1e-5;
+      guess.dampers[0].w -= 1e-5;
       const auto found = find_orbit(scene, Restitution{}, 1, guess);
       if (!found || found->impacts.size() != 2) continue;  // a wall was in the way of the closed form
       const Orbit& orbit = *found;
@@ -104,7 +105,7 @@ TEST_CASE("Newton's iteration converges quadratically") {
   const Scene scene = forced_scene(0.02, 0.05, 0.9, 0.1);
   const TwoImpactOrbit exact = two_impact_orbits(scene).at(0);
   for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{.calibration = Calibration::two_body})}) {
-    State<double> guess = exact.state;
+    SceneState guess = exact.state;
     guess.x += 0.02;
     guess.v -= 0.02;
     const Orbit orbit = *find_orbit(scene, engine, 1, guess);
@@ -285,7 +286,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
   struct Kind {
     Scene scene;
     Engine engine;
-    State<double> guess;
+    SceneState guess;
   };
   const Scene light = forced_scene(0.02, 0.05, 0.9, 0.1);
   Scene strong = forced_scene(0.1, 0.02, 0.95, 0.3);
@@ -313,8 +314,8 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
         kind.engine);
     REQUIRE(run.stop_reason == StopReason::time);
     const std::size_t last = run.history->time.size() - 1;
-    const State<double> then{run.history->x[last], run.history->v[last], run.history->dampers[0].y[last],
-                             run.history->dampers[0].w[last]};
+    const SceneState then{run.history->x[last], run.history->v[last], run.history->dampers[0].y[last],
+                          run.history->dampers[0].w[last]};
     // The force's phase is known to 2^-52 omega_f t, by which all else is late; 1/(1 - |multiplier|) periods
     // of such errors add up.
     const double rate =
@@ -328,7 +329,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
 
 TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds such an orbit as any other") {
   const Scene scene = forced_scene(0.1, 0.02, 0.95, 0.3);
-  const State<double> near = settled(scene, Restitution{}, two_impact_orbits(scene).at(0).state, 40);
+  const SceneState near = settled(scene, Restitution{}, two_impact_orbits(scene).at(0).state, 40);
   const Orbit orbit = *find_orbit(scene, Restitution{}, 1, near);
   REQUIRE(orbit.sticking > 0);
   CHECK(orbit.residual() < 1e-12);
@@ -339,7 +340,7 @@ TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds suc
   const Branch branch = follow(orbit, Parameter::force_amplitude, {.least = 0.25, .most = 0.5});
   CHECK(branch.orbits.size() > 5);
   for (const Orbit& at : branch.orbits) {
-    const State<double> s = state_of_scene(at.scene);
+    const SceneState s = state_of_scene(at.scene);
     CHECK(apart(settled(at.scene, Restitution{}, s, 1), s) < 1e-8);
   }
 }
@@ -349,8 +350,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   const Orbit symmetric = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   CHECK(symmetric.symmetric);
   CHECK(!symmetric.stable());
-  State<double> start = two_impact_orbits(scene).at(0).state;
-  start.w += 1e-3;
+  SceneState start = two_impact_orbits(scene).at(0).state;
+  start.dampers[0].w += 1e-3;
   const Orbit one = *find_orbit(scene, Restitution{}, 1, settled(scene, Restitution{}, start, 3000));
   CHECK(!one.symmetric);
   CHECK(!one.half_multipliers);
@@ -379,8 +380,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   CHECK(beside_it.scene.force_amplitude > left->parameter);
   const Branch off = follow(beside_it, Parameter::force_amplitude, {.least = 0.04, .most = 0.06});
   REQUIRE(off.end == BranchEnd::range);
-  const State<double> there = state_of_scene(off.orbits.back().scene),
-                      mirrored = PoincareMap(scene, Restitution{}, 1)(there)->state;
+  const SceneState there = state_of_scene(off.orbits.back().scene),
+                   mirrored = PoincareMap(scene, Restitution{}, 1)(there)->state;
   CHECK(std::min(apart(there, state_of_scene(one.scene)), apart(mirrored, state_of_scene(one.scene))) < 1e-9);
   CHECK(branching_off(fold_at(scene), Parameter::force_amplitude).failure().end == OrbitEnd::no_convergence);
 
@@ -391,8 +392,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   for (const Multiplier& m : flip->orbit.multipliers) nearest = std::min(nearest, std::hypot(m.re + 1, m.im));
   CHECK(nearest < 1e-8);
   scene.force_amplitude = flip->parameter * (1 + 1e-3);
-  State<double> beside = state_of_scene(flip->orbit.scene);
-  beside.w += 1e-3;
+  SceneState beside = state_of_scene(flip->orbit.scene);
+  beside.dampers[0].w += 1e-3;
   const Orbit doubled = *find_orbit(scene, Restitution{}, 2, settled(scene, Restitution{}, beside, 4000));
   CHECK(doubled.periods == 2);
   CHECK(doubled.stable());
@@ -403,8 +404,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   const Branch off_flip = follow(first, Parameter::force_amplitude,
                                  {.least = 0.05, .most = scene.force_amplitude, .first_step = 1e-3});
   REQUIRE(off_flip.end == BranchEnd::range);
-  const State<double> last = state_of_scene(off_flip.orbits.back().scene),
-                      later = settled(scene, Restitution{}, last, 1);
+  const SceneState last = state_of_scene(off_flip.orbits.back().scene),
+                   later = settled(scene, Restitution{}, last, 1);
   CHECK(std::min(apart(last, state_of_scene(doubled.scene)), apart(later, state_of_scene(doubled.scene))) <
         1e-9);
   const Branch back =

@@ -27,7 +27,7 @@ double period_of(const Scene& scene) { return 2 * pi / scene.force_frequency; }
 
 // The motion from `state` at phase 0 on, at `count` instants of `periods` periods of the force, both ends
 // included.
-History followed(Scene scene, const Engine& engine, const State<double>& state, double periods,
+History followed(Scene scene, const Engine& engine, const SceneState& state, double periods,
                  std::int64_t count) {
   scene = released_from(scene, state);
   scene.until_time = periods * period_of(scene);
@@ -37,7 +37,7 @@ History followed(Scene scene, const Engine& engine, const State<double>& state, 
   return *simulate(scene, engine, record).history;
 }
 
-State<double> state_at(const History& history, std::size_t i) {
+SceneState state_at(const History& history, std::size_t i) {
   return {history.x[i], history.v[i], history.dampers[0].y[i], history.dampers[0].w[i]};
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("a chaotic motion is not taken for a periodic one, and its means are t
   CHECK(steady.transient_periods == 5000);
   CHECK(steady.measured_periods == 2000);
   // Chaos: what begins 1e-10 apart is far apart 100 periods later, and no nearer to any earlier state.
-  State<double> near = steady.state;
+  SceneState near = steady.state;
   near.x += 1e-10;
   const History one = followed(scene, rigid, steady.state, 400, 401),
                 other = followed(scene, rigid, near, 400, 401);
@@ -261,7 +261,7 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
     const SteadyState steady = forced.settle(release_of(scene), {.max_periods = 16, .mean_periods = 14});
     REQUIRE(!steady.period);
     CHECK(steady.measured_periods == 14);  // in blocks of one and of two
-    const State<double> begin =
+    const SceneState begin =
         forced.pass_periods(forced.pass_periods(release_of(scene))->states.back())->states.back();
     constexpr std::int64_t count = 14 * 2000;
     const History history = followed(scene, engine, begin, 14, count + 1);
@@ -392,13 +392,41 @@ TEST_CASE("up and down differ where the mass may lie idle") {
   CHECK(std::abs(down.means->fundamental - up.means->fundamental) > 0.01);
 }
 
+TEST_CASE("a sweep of the clearance of one damper passes over 1, where the scene has no list") {
+  Scene scene = active_scene(0.9);
+  scene.damper().clearance = 1.5;
+  const Axis axis{{&SceneDamper::clearance, 0}, 0.5, 1.5, 3};
+  for (const Engine& engine : {rigid, compliant}) {
+    const SweepResponse found{.scene = scene,
+                              .engine = engine,
+                              .rule = {.max_periods = 500},
+                              .axis = axis,
+                              .sweeps = sweep(scene, engine, axis, {.max_periods = 500}, {release_of(scene)},
+                                              1, [](std::int64_t) {})};
+    const Sweep& both = found.sweeps[0];
+    for (const std::vector<SteadyState>& way : {both.up, both.down}) {
+      CHECK(has_one_damper(axis.at(scene, 1)));
+      for (const SteadyState& each : way) {
+        REQUIRE(each.impacts_by_damper.size() == 1);
+        CHECK(each.impacts_by_damper[0] == each.impacts);
+        CHECK(each.state.dampers.size() == 1);
+      }
+    }
+    CHECK(both.up[1].impacts != ImpactCounts{});
+    const std::string text = response_text(found, std::nullopt);
+    const Response read = parse_response("sweep.json", text);
+    CHECK(response_text(read, std::nullopt) == text);
+    CHECK(inconsistencies_of(read).empty());
+  }
+}
+
 TEST_CASE("the way down begins where the way up ended") {
   const Scene scene = active_scene(1);
   const Axis axis{&Scene::force_frequency, 0.95, 0.97, 2};
   const SceneState from = release_of(scene);
   const auto sweeps =
       sweep(scene, rigid, axis, {.max_periods = 50}, {from, {from, 1e-3}}, 1, [](std::int64_t) {});
-  const auto again = [&](std::int64_t i, State<double> state, double nudge) {
+  const auto again = [&](std::int64_t i, SceneState state, double nudge) {
     state.x += nudge;
     return ForcedScene(axis.at(scene, i), rigid).settle(state, {.max_periods = 50}).state;
   };

@@ -27,7 +27,7 @@ struct Attractor {
   // Its states at phase 0, `period` of them; none where the map varies the scene's parameters: motions with
   // equal periods, impacts and symmetry then count as one.
   std::vector<SceneState> states{};
-  // Impacts of each damper of a list. Motions that differ only in where an idle mass rests are one.
+  // Impacts of each damper. Motions that differ only in where an idle mass rests are one.
   std::vector<ImpactCounts> impacts_by_damper{};
 };
 

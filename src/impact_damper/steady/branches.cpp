@@ -46,7 +46,7 @@ class BranchSearch {
     }
     SceneState centred = s;
     for (std::size_t i = 0; i < s.dampers.size(); ++i)
-      if (has_one_damper(scene) || watched->by_damper[i] == ImpactCounts{})
+      if (watched->by_damper[i] == ImpactCounts{})
         centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
     if (watched->impacts == ImpactCounts{}) {
       motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});

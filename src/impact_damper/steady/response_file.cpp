@@ -125,10 +125,12 @@ void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& sce
     steady.state.dampers.resize(scene.dampers.size());
     if (steady.stop_reason != StopReason::time) continue;
     steady.means.emplace();
-    steady.impacts_by_damper.resize(dampers);
+    steady.impacts_by_damper.resize(scene.dampers.size());
   }
   fields.columns(steady_columns(dampers), way);
   fields.columns_of_dampers(dampers, way);
+  for (SteadyState& each : way)
+    if (fields.reads() && dampers == 0 && each.means) each.impacts_by_damper = {each.impacts};
 }
 
 // Whether the scene is valid at both ends of the axis; reports a problem if it is not.
@@ -177,13 +179,13 @@ void describe(JsonFields fields, Attractor& attractor, const Scene& scene) {
   fields.field("points", attractor.points, counts);
   std::vector<ImpactCounts>& by_damper = attractor.impacts_by_damper;
   const auto describe_dampers = [&] {
-    return fields.dampers(by_damper.size(), Layout::one_line,
+    return fields.dampers(has_one_damper(scene) ? 0 : by_damper.size(), Layout::one_line,
                           [&](JsonFields its, std::size_t number) { describe(its, by_damper[number]); });
   };
   if (fields.reads()) {  // the dampers before the state, so their problems come first
-    by_damper.resize(attractor.idle ? 0 : listed_dampers(scene));
+    if (!attractor.idle) by_damper.assign(scene.dampers.size(), attractor.impacts);
     ImpactCounts all{};
-    const bool is_complete = describe_dampers() && !by_damper.empty();
+    const bool is_complete = describe_dampers() && !has_one_damper(scene) && !by_damper.empty();
     for (const auto& [left, right] : by_damper) all = {all[0] + left, all[1] + right};
     if (is_complete && all != attractor.impacts)
       fields.reject("dampers", "must be hit as often as all, " + number_text(double(attractor.impacts[0])) +
@@ -261,11 +263,13 @@ void describe(JsonFields fields, OrbitBranch& branch, const Scene& scene) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     OrbitPoint& point = branch.points[i];
     point.value = values[i];
-    point.impacts_by_damper.resize(dampers);
+    point.impacts_by_damper.resize(scene.dampers.size());
     point.state.dampers.resize(scene.dampers.size());
   }
   fields.columns(orbit_columns(dampers), branch.points);
   fields.columns_of_dampers(dampers, branch.points);
+  for (OrbitPoint& each : branch.points)
+    if (fields.reads() && dampers == 0) each.impacts_by_damper = {each.impacts};
   fields.array("events", branch.events, most_parts, Layout::one_line, [&](JsonFields its, OrbitEvent& event) {
     its.field("kind", event.kind);
     its.field("value", event.value);

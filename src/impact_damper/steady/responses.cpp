@@ -18,12 +18,12 @@ OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
                    .nearest_miss = orbit.nearest_miss,
                    .least_interval = orbit.least_interval,
                    .state = release_of(orbit.scene),
-                   .impacts_by_damper = std::vector<ImpactCounts>(listed_dampers(orbit.scene))};
+                   .impacts_by_damper = std::vector<ImpactCounts>(orbit.scene.dampers.size())};
   point.multipliers.resize(4);
   for (const OrbitImpact& impact : orbit.impacts) {
     const auto side = std::size_t(impact.wall);
     ++point.impacts[side];
-    if (!has_one_damper(orbit.scene)) ++point.impacts_by_damper[std::size_t(impact.damper)][side];
+    ++point.impacts_by_damper[std::size_t(impact.damper)][side];
   }
   return point;
 }

@@ -45,7 +45,7 @@ struct OrbitPoint {
   Multipliers multipliers = Multipliers(4);  // with a list the four largest
   std::optional<double> slowest_impact, nearest_miss, least_interval;
   SceneState state;                             // at phase 0 of the force
-  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper of a list
+  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper
 };
 // An event, and the orbit at it, of which JSON files have only value and state.
 struct OrbitEvent : OrbitPoint {

@@ -258,14 +258,13 @@ Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneStat
   if (!measures) return kept;
   for (const double amplitude : run.half_cycles->amplitude)
     kept.amplitude = std::max(kept.amplitude, amplitude);
-  kept.by_damper.resize(listed_dampers(scene_));
-  kept.by_damper_until_half_way.resize(listed_dampers(scene_));
+  kept.by_damper.resize(scene_.dampers.size());
+  kept.by_damper_until_half_way.resize(scene_.dampers.size());
   for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
     const auto side = static_cast<std::size_t>(run.impacts->wall[i]);
     const bool until_half_way = run.impacts->time[i] < end / 2;
     ++kept.impacts[side];
     if (until_half_way) ++kept.impacts_until_half_way[side];
-    if (has_one_damper(scene_)) continue;
     const auto damper = static_cast<std::size_t>(run.impacts->damper[i]);
     ++kept.by_damper[damper][side];
     if (until_half_way) ++kept.by_damper_until_half_way[damper][side];

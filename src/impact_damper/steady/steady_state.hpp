@@ -29,12 +29,10 @@ struct SceneState {
   SceneState() = default;
   SceneState(double of_x, double of_v, double of_y, double of_w)  // of one damper
       : x(of_x), v(of_v), dampers{{of_y, of_w}} {}
-  // A state of one damper is a state of a scene, and the other way round.
+  // A state of one damper is a state of a scene.
   // NOLINTNEXTLINE(google-explicit-constructor)
   SceneState(const State<double>& one)  // cppcheck-suppress noExplicitConstructor
       : SceneState(one.x, one.v, one.y, one.w) {}
-  // NOLINTNEXTLINE(google-explicit-constructor)
-  operator State<double>() const { return {x, v, dampers[0].y, dampers[0].w}; }
 };
 
 // The criteria by which a motion counts as steady.
@@ -77,7 +75,7 @@ struct SteadyState {
   std::optional<double> contraction;
   std::int64_t measured_periods = 0;            // m, or SteadyRule::mean_periods
   ImpactCounts impacts{};                       // in the measured periods
-  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper of a list
+  std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper
   bool symmetric = false;  // it is its own mirror image half of an odd number of periods later
   std::optional<SteadyMeans> means;
   // Standard deviation of the ten blocks of a motion that is not periodic.
@@ -122,7 +120,7 @@ class ForcedScene {
   struct Watched {
     std::array<SceneState, periods_at_once> states{};  // after each period, or half way and at the end
     ImpactCounts impacts{}, impacts_until_half_way{};
-    std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // for each damper of a list
+    std::vector<ImpactCounts> by_damper, by_damper_until_half_way;  // for each damper
     double amplitude = 0;                                           // of the half cycles that are complete
     EnergyBalance energy;
   };
