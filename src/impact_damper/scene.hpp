@@ -26,16 +26,16 @@ struct SceneDamper {
   double clearance = 1.0;       // free travel, divided by the scene's epsilon, 1e-6 to 1e6
   double wall_stiffness = 1e4;  // k = K_M/K, 1e-6 to 1e15; the restitution engine's walls are rigid
   // Initial distance of the secondary mass from the left wall, divided by epsilon: 0 at the left wall,
-  // `clearance` at the right one. Outside them it begins by pressing a wall together, which needs compliant
-  // walls.
+  // `clearance` at the right one. A mass with y0 < 0 or y0 > clearance begins pressed into a wall, which the
+  // restitution engine, whose walls are rigid, rejects.
   double y0 = 0.0;
   double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
 
   bool operator==(const SceneDamper&) const = default;
 };
 inline constexpr std::size_t most_dampers = 1000;
-// Least magnitude, except 0, of a number that may be negative: a smaller one would do no more than the
-// rounding errors of the others, and its square may underflow.
+// x0, v0, y0, w0 and force_amplitude are 0 or have at least this magnitude: a smaller one would do no more
+// than the rounding errors of the others, and its square may underflow.
 inline constexpr double least_magnitude = 1e-30;
 constexpr bool is_too_small(double value) {
   return value != 0 && value < least_magnitude && value > -least_magnitude;
@@ -47,11 +47,10 @@ struct Scene {
   double v0 = 0.0;               // its initial velocity x', divided by epsilon Omega_n
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
-  // When to stop, at whichever comes first; one of the two must be given. Both > 0 and <= 1e12. (The
-  // magnitudes of x0, v0, y0, w0 and force_amplitude are 0, or least_magnitude to 1e12.)
+  // When to stop, at whichever comes first; at least one must be given. Both > 0 and <= 1e12.
   std::optional<double> until_time;       // stop at this time
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
-  // 1 to most_dampers. Their order changes no number of a run.
+  // 1 to most_dampers. Another order numbers the dampers of a run anew, and changes no computed number.
   std::vector<SceneDamper> dampers = std::vector<SceneDamper>(1);
 
   // The first damper, which in a scene of one is the only one.
@@ -61,19 +60,20 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
-// Whether the scene has one damper, whose clearance is its epsilon, as the paper's. In files and options the
-// numbers of that damper stand among the scene's own, and it has the fastest engines.
+// Whether the scene has exactly one damper, and its clearance is 1, as in the paper. The numbers of that
+// damper then stand among the scene's own in files and options, and the engines for one damper run it. One
+// damper of another clearance counts as a list of one.
 bool has_one_damper(const Scene& scene);
-// How many dampers its files list: none if it has one.
+// The length of the list of dampers in files of the scene: 0 if has_one_damper(scene), else dampers.size().
 std::size_t listed_dampers(const Scene& scene);
-// The problem of a scene that should have one damper and has not.
+// The problem to report where has_one_damper() is required and false.
 Problem problem_of_several();
 
 // Where a number of a scene is kept: in itself or, if of_damper is not null, in one of its dampers.
 struct SceneNumber {
   double Scene::*own = nullptr;
   double SceneDamper::*of_damper = nullptr;
-  std::optional<std::size_t> damper;  // which of several, from 0; absent in a scene of one
+  std::optional<std::size_t> damper;  // index in a list, from 0; absent: the damper of a scene of one
 
   constexpr SceneNumber() = default;
   // NOLINTBEGIN(google-explicit-constructor)
@@ -83,7 +83,8 @@ struct SceneNumber {
   constexpr SceneNumber(double SceneDamper::*its) : of_damper(its) {}
   // NOLINTEND(google-explicit-constructor)
   constexpr SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
-  // The name of its field; of several dampers with the damper's number behind it, from 1: clearance_2.
+  // The name of its field; in a list with the damper's number behind it, from 1: clearance_2 is that of
+  // dampers[1].
   std::string name() const;
   // cppcheck-suppress constParameter
   double& in(Scene& scene) const {
@@ -92,6 +93,7 @@ struct SceneNumber {
   double in(const Scene& scene) const {
     return of_damper ? scene.dampers[damper.value_or(0)].*of_damper : scene.*own;
   }
+  // Whether it is this field, of whichever damper.
   constexpr bool is(const double Scene::*number) const { return !of_damper && own == number; }
   constexpr bool is(const double SceneDamper::*number) const { return of_damper == number; }
   bool operator==(const SceneNumber&) const = default;
@@ -106,7 +108,8 @@ struct SceneField {
   double least, most;  // smallest and largest allowed value
   std::string_view meaning;
 };
-// Those of a scene of one damper, and those of each damper of a list.
+// The numbers of a scene of one damper, its own and that damper's without the clearance, which is 1; and the
+// numbers of each damper of a list.
 extern const std::array<SceneField, 10> scene_fields;
 extern const std::array<SceneField, 6> scene_damper_fields;
 
@@ -115,8 +118,8 @@ struct NamedSceneNumber {
   SceneNumber number;
   double least, most;  // smallest and largest allowed value
 };
-// All numbers of a scene in the order of the two tables: of one damper those of scene_fields, of a list those
-// of the scene itself and then those of each damper.
+// All numbers of a scene. With one damper: scene_fields. With a list: the scene's own among them, then each
+// number of scene_damper_fields for all dampers.
 std::vector<NamedSceneNumber> numbers_of(const Scene& scene);
 
 // The name of a damper's field in a Problem: "dampers[2].clearance", counted from 0.

@@ -359,7 +359,7 @@ TEST_CASE("the powers of a periodic motion balance, and no other may scatter") {
   periodic->means->amplitude = std::abs(before.state.x) * 0.99;
   CHECK(said().find("must not exceed the amplitude") != std::string::npos);
   periodic->symmetric = true;
-  periodic->impacts[0] = before.impacts[1] + 1;
+  periodic->impacts[0] = periodic->impacts_by_damper[0][0] = before.impacts[1] + 1;
   CHECK(said().find("/symmetric") != std::string::npos);
   periodic->period.reset();
   periodic->measured_periods = response.rule.mean_periods;

@@ -1,6 +1,7 @@
-// The columns of a run as one table, in the order of a run file: run files, CSV and the interface for C
-// follow from it, and with that the Python module and the package for browsers. The schema and the package's
-// types are compared with it (tests/run_columns.cpp).
+// The columns of a run as one table, in the order of a run file. Run files, CSV and the interface for C are
+// made from it; the Python module and the package for browsers use that interface. The schema of run files
+// and the package's types are compared with it (tests/run_columns.cpp). A section is one member of Run:
+// half_cycles, impacts, contacts, energy or history.
 #pragma once
 
 #include <concepts>
@@ -18,18 +19,20 @@
 
 namespace impact_damper {
 
-// What becomes of a column in a run of a scene without a list of dampers: the same as with one, nothing, or
-// the columns of the one damper stand in the section itself.
+// How a column appears in a run whose scene has one damper and no list: unchanged (same), left out (absent),
+// or replaced by that damper's columns, directly in the section (in_section).
 enum class WithoutList { same, absent, in_section };
-// How the numbers of a column are ordered.
+// How the numbers of a column are ordered. Ascending: none is smaller than the one before, in the column or
+// among the rows of one damper.
 enum class Order { any, ascending, ascending_for_each_damper };
 
-// The description of a column, of a number that stands alone or of an object of such, except for the member
-// that holds its value.
+// All that is known of a column, a single number or a nested object, except which member holds its value.
 struct RunColumnInfo {
   std::string_view name{};
-  double SiUnits::*unit = nullptr;  // null: a count, an angle, or what stands for a wall or a damper
-  NumberRange range{};              // of its numbers; those of dampers end with the last of the scene
+  // Null for objects, counts, angles, ratios, and what stands for a wall or a damper.
+  double SiUnits::*unit = nullptr;
+  // Allowed range of its numbers. A damper's must not exceed the number of dampers either.
+  NumberRange range{};
   Order order = Order::any;
   WithoutList without_list = WithoutList::same;
 };
@@ -37,7 +40,7 @@ struct RunColumnInfo {
 template <class Owner, class Value>
 struct RunColumn {
   using value_type = Value;
-  Value Owner::*member;  // a function if the value is a sum of others, which a run file has for its readers
+  Value Owner::*member;  // a function for what files have but the run does not store: a sum of other values
   RunColumnInfo info;
 };
 template <class Owner, class Value>
@@ -63,7 +66,7 @@ constexpr RunColumnInfo dampers(WithoutList without_list) {
 
 }  // namespace detail
 
-// The columns of a section, or of a part of it. No other type has any.
+// The columns of Run, of a section or of a part of one; empty for every other type.
 template <class Owner>
 inline constexpr std::tuple<> run_columns{};
 
@@ -148,11 +151,11 @@ template <class Type>
 concept PartsOfDampers =
     HasRunColumns<typename Type::value_type> && std::same_as<Type, std::vector<typename Type::value_type>>;
 
-// Whether a run has the columns of a list of dampers.
+// Whether the run's scene lists its dampers, so that its sections have columns for each.
 inline bool has_list(const Run& run) { return !has_one_damper(run.scene); }
 
-// Calls visit(info, value) for each entry of the table of `owner`; a sum is a value without an address.
-// of_list: whether the run is one of a scene with a list of dampers.
+// Calls visit(info, value) for each column that `owner` has in a run with a list of dampers (of_list), or
+// without; a sum is passed as a temporary.
 template <class Owner, class Visit>
 void for_each_column(Owner& owner, bool of_list, Visit&& visit) {
   const auto visit_one = [&](const auto& column) {
@@ -167,11 +170,12 @@ void for_each_column(Owner& owner, bool of_list, Visit&& visit) {
              run_columns<std::remove_const_t<Owner>>);
 }
 
-// What files have as numbers: a wall, 0 for the left one, and a damper, from 1.
+// What files have as numbers: a wall, 0 for the left one, and a damper's index, from 1; in a run an int32_t
+// is nothing else.
 template <class Type>
 concept NumberedInFiles = std::same_as<Type, Wall> || std::same_as<Type, std::int32_t>;
 
-// Returns a value as files have it.
+// Returns a wall or a damper's index as files have it, and any other value as it is.
 template <NumberedInFiles Numbered>
 std::int64_t in_file(const Numbered& value) {
   constexpr std::int64_t first = std::same_as<Numbered, std::int32_t> ? 1 : 0;

@@ -1,13 +1,12 @@
-// Linear algebra of small dense matrices. Every sum is written out in one order, so that every compiler gives
-// the same bits.
+// Linear algebra of small dense matrices. Every sum is written out in one order, so that every compiler that
+// contracts no product and sum gives the same bits.
 //
-// Eigen does all this, too, but is used for one thing only, the QR iteration of Hessenberg matrices, and in
-// dense.cpp alone. It promises no order of its sums: the last bits of a solution of 30 equations depend on
-// the vector width for which it is compiled. Its LU and Cholesky factorisations take seconds to compile, and
-// public headers would have to include it.
+// Eigen does all this, too, but is used for one thing only, the QR iteration of Hessenberg matrices, compiled
+// without vectors and in dense.cpp alone. It promises no order of its sums: the last bits of a solution of 30
+// equations depend on the vector width for which it is compiled. Its LU and Cholesky factorisations take
+// seconds to compile.
 //
-// A function that fails for a singular matrix returns a std::optional. The exponential of a contact without
-// modes is a table of its own (motion/contact_exponential.hpp): in any number type, and rounded once.
+// A function that fails for a singular matrix returns a std::optional; the eigenvalues throw.
 #pragma once
 
 #include <array>
@@ -35,7 +34,7 @@ Matrix identity_of(std::size_t n);
 Vector product(const Matrix& a, const Vector& b);
 Matrix product(const Matrix& a, const Matrix& b);
 
-// Returns the solution of a x = b by Gaussian elimination with row pivots; nothing if it is not finite.
+// Returns the solution of a x = b by Gaussian elimination with partial pivoting; nothing if it is not finite.
 std::optional<Vector> solution(Matrix a, Vector b);
 
 // The Cholesky factor L of a symmetric matrix, m = L L^T.
@@ -51,13 +50,14 @@ class Cholesky {
   Matrix factor_;
 };
 
-// The solution x of m x = b and the inverse of m, of n rows.
+// The solution x of m x = b and the inverse of the n x n matrix m.
 template <std::size_t n>
 struct SolutionAndInverse {
   std::array<double, n> x{};
   std::array<std::array<double, n>, n> inverse{};
 };
-// Returns both for a symmetric m by Gauss-Jordan elimination; nothing if a pivot is not above `least_pivot`.
+// Returns both for a symmetric positive definite m by Gauss-Jordan elimination without pivoting; nothing if a
+// pivot is not above `least_pivot`.
 template <std::size_t n>
 std::optional<SolutionAndInverse<n>> solution_and_inverse(std::array<std::array<double, n>, n> m,
                                                           const std::array<double, n>& b,
@@ -82,8 +82,9 @@ std::optional<SolutionAndInverse<n>> solution_and_inverse(std::array<std::array<
 }
 
 // Makes column j orthogonal to those before it, which are orthonormal, by modified Gram-Schmidt, and scales
-// it to length 1. Returns the length that it had once it was orthogonal; nothing if that is 0 and the
-// direction lost. Two passes: of a column nearly along the others one would leave rounding errors.
+// it to length 1. Returns its length before it was scaled; nothing if that is 0. Of a dependent column that
+// length is a rounding error, and the direction means nothing. One pass would be inaccurate for a column that
+// is nearly dependent.
 template <class Columns>
 std::optional<double> orthonormalise(Columns& columns, std::size_t j) {
   auto& column = columns[j];
@@ -99,17 +100,19 @@ std::optional<double> orthonormalise(Columns& columns, std::size_t j) {
   return size;
 }
 
-// Replaces the columns from `first` on by vectors orthonormal to the others and to each other.
+// Replaces the columns from `first` on by vectors orthonormal to the others and to each other. The columns
+// before are orthonormal; there are at most as many columns as rows.
 template <class Columns>
 void complete_basis(Columns& columns, std::size_t first) {
   for (std::size_t j = first; j < columns.size(); ++j) {
     auto& column = columns[j];
     double largest = 0;
-    for (std::size_t k = 0; k < column.size(); ++k) {  // the unit vector that is least along the others
-      double left = 1;
-      for (std::size_t i = 0; i < j; ++i) left -= columns[i][k] * columns[i][k];
-      if (!(left > largest)) continue;
-      largest = left;
+    // The unit vector with the largest part outside their span.
+    for (std::size_t k = 0; k < column.size(); ++k) {
+      double outside = 1;
+      for (std::size_t i = 0; i < j; ++i) outside -= columns[i][k] * columns[i][k];
+      if (!(outside > largest)) continue;
+      largest = outside;
       for (double& entry : column) entry = 0;
       column[k] = 1;
     }
@@ -117,9 +120,9 @@ void complete_basis(Columns& columns, std::size_t first) {
   }
 }
 
-// Returns exp(A t), of n rows, by scaling and squaring: Taylor's series of a time so short that its terms
-// fall from the first on, squared as often as t is halved for that. derive(s, rates) sets `rates` to A s;
-// `rate` is an upper bound of the modulus of every eigenvalue of A.
+// Returns exp(A t), of n rows, by scaling and squaring: t >= 0 is halved until t `rate` <= 1, Taylor's series
+// is summed, and the sum is squared as often as t was halved. derive(s, rates) sets `rates` to A s; `rate` is
+// an upper bound of the modulus of every eigenvalue of A.
 template <class Derive>
 Matrix matrix_exponential(std::size_t n, double t, double rate, Derive&& derive) {
   constexpr int terms = 24;
@@ -146,7 +149,7 @@ Matrix matrix_exponential(std::size_t n, double t, double rate, Derive&& derive)
 // Returns the eigenvalues of a square matrix. Complex ones come in exactly conjugate pairs. Throws
 // NumericalError if they are not found.
 std::vector<std::complex<double>> eigenvalues_of(Matrix a);
-// Returns those of a Hessenberg matrix: all entries below the first subdiagonal are zero.
+// Returns the eigenvalues of a Hessenberg matrix: all entries below the first subdiagonal are zero.
 std::vector<std::complex<double>> eigenvalues_of_hessenberg(const Matrix& matrix);
 
 }  // namespace impact_damper

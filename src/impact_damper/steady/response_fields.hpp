@@ -1,5 +1,4 @@
-// The fields of a JSON object, to be written or to be read: a function that names the fields of a record,
-// each once, serves both.
+// JsonFields lets one function both write and read a record as JSON; the function names each field once.
 //
 //   void describe(JsonFields fields, SteadyRule& rule) {
 //     fields.field("tolerance", rule.tolerance);
@@ -20,7 +19,7 @@
 
 namespace impact_damper {
 
-// A handle, valid as long as the writer or the reader.
+// Refers to one writer or one reader, which must outlive it.
 class JsonFields {
  public:
   using Layout = JsonWriter::Layout;
@@ -32,13 +31,14 @@ class JsonFields {
   };
 
   explicit JsonFields(JsonWriter& out) : out_(&out) {}
-  // may_be_missing: whether a missing key keeps its default. Otherwise it is a problem.
+  // may_be_missing: whether a key of this object that field() does not find keeps its default. Otherwise it
+  // is a problem.
   explicit JsonFields(ObjectReader& in, bool may_be_missing = false)
       : in_(&in), may_be_missing_(may_be_missing) {}
   bool reads() const { return in_ != nullptr; }
 
   // Writes or reads a value, an enumerator by its name, or an array. `allowed` is for reading: a range or
-  // enumerators, as ObjectReader::optional has them. False if the field was read and is not valid.
+  // enumerators, as ObjectReader::optional has them. False if the field was read and has no valid value.
   template <class Value, class... Allowed>
   bool field(std::string_view name, Value& value, const Allowed&... allowed) {
     if (in_) return (may_be_missing_ || in_->require(name)) && in_->optional(name, value, allowed...);
@@ -50,14 +50,16 @@ class JsonFields {
     return true;
   }
 
-  // Writes `word`, or returns the index in `words` of the word that is read; absent if there is none.
+  // Writes `word`, or returns the index in `words` of the word that is read; absent when writing and if it is
+  // missing or unknown.
   std::optional<std::size_t> word(std::string_view name, std::string_view word,
                                   const std::vector<std::string_view>& words) {
     if (in_) return in_->require(name) ? in_->word(name, words) : std::nullopt;
     out_->field(name, word);
     return std::nullopt;
   }
-  // An array of such words. False as for field(); the other fields, which depend on it, are then not read.
+  // Writes an array of words, or appends those that are read. False as for field(); then no other field
+  // counts as unknown, for what the others are depends on the words.
   bool words(std::string_view name, std::vector<std::string_view>& given,
              const std::vector<std::string_view>& words) {
     std::vector<std::size_t> indices;
@@ -71,7 +73,7 @@ class JsonFields {
     return true;
   }
 
-  // An index >= 0, null where it is absent.
+  // Writes or reads an index >= 0; null stands for an absent one.
   void index(std::string_view name, std::optional<std::int64_t>& index) {
     std::optional<double> number;
     if (index) number = double(*index);
@@ -81,7 +83,8 @@ class JsonFields {
     if (*number >= 0 && *number < 1e15) index = std::int64_t(*number);
   }
 
-  // Numbers that follow from other fields. Those that are read must be equal, if the others are valid.
+  // Writes numbers that follow from other fields. Those that are read must be equal; they are not looked at
+  // if the others are not valid.
   void derived(std::string_view name, const std::vector<std::optional<double>>& numbers, bool are_valid) {
     if (!in_) return out_->field(name, numbers);
     std::vector<std::optional<double>> given;
@@ -99,10 +102,11 @@ class JsonFields {
                   "must be " + text_of(*wanted) + ", got " + text_of(*wrong));
   }
 
-  // Whether there is a field that may be left out; when writing: `is_written`.
+  // Whether a field that may be left out is there: when reading, in the object; when writing, `is_written`.
   bool has(std::string_view name, bool is_written) { return in_ ? in_->has(name) : is_written; }
 
-  // Objects, all of which are opened before the first is read.
+  // Writes or reads objects. All are looked for before the first is read, so that missing ones are reported
+  // first.
   void objects(const std::vector<Object>& objects) {
     std::vector<ObjectReader> readers;
     for (const Object& each : objects)
@@ -116,7 +120,7 @@ class JsonFields {
     objects({{name, describe, layout}});
   }
 
-  // An array of records, at most `most` when reading.
+  // Writes or reads an array of records, at most `most` when reading; `layout` is that of each record.
   template <class Record, class Describes>
   void array(std::string_view name, std::vector<Record>& records, std::size_t most, Layout layout,
              const Describes& describe) {
@@ -129,7 +133,8 @@ class JsonFields {
              [&](JsonFields its, std::size_t i) { describe(its, records[i]); });
   }
 
-  // The array "dampers" of a list of so many dampers; nothing for 0. False if fewer were read.
+  // Writes or reads the array "dampers" of so many dampers; for 0 there is none. False if fewer were read;
+  // more are reported.
   bool dampers(std::size_t dampers, Layout layout,
                const std::function<void(JsonFields its, std::size_t number)>& describe) {
     constexpr std::string_view name = "dampers";
@@ -144,7 +149,8 @@ class JsonFields {
     return count == dampers;
   }
 
-  // Arrays with a number for each row. The parts that a row has before it is read determine which are null.
+  // Writes or reads arrays with a number for each row. Before it is read a row has all optional parts that it
+  // will have: null is expected for those that it has not.
   template <class Row>
   void columns(const RowColumns<Row>& table, std::vector<Row>& rows) {
     for (const RowColumn<Row>& each : table) {
@@ -214,8 +220,7 @@ class JsonFields {
   bool may_be_missing_ = false;
 };
 
-// Records that the catalogue and plans have, too. A state has as many dampers as it has before it is read.
-// Axis and range: false if there are problems.
+// The records that responses, the catalogue and plans share. Axis and range: false if there are problems.
 void describe(JsonFields fields, SceneState& state, const Scene& scene);
 bool describe(JsonFields fields, Axis& axis, const Scene& scene);
 bool describe(JsonFields fields, ParameterRange& range);
