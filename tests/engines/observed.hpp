@@ -48,10 +48,7 @@ class TestObserver : public Recorder {
 
   // The end of each motion of a closed-form engine, in the engine's own numbers.
   virtual void ended(const State<Real>&) {}
-  template <class Motion>
-  void passed(const Motion&, const Real&, const Real&, const State<Real>& end) {
-    ended(end);
-  }
+  void passed(const Real&, const Real&, const State<Real>& end) { ended(end); }
 };
 
 // Runs a scene that problems_of finds nothing wrong with.

@@ -90,15 +90,12 @@ std::optional<std::vector<double>> difference(const Scene& scene, const Engine& 
 
 // By each number of the state, by the force's frequency and amplitude, and by the end.
 std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) {
-  const Run run = simulate(
-      scene, engine,
-      {.half_cycles = false, .impacts = true, .contacts = true, .history = {{0, *scene.until_time, 2}}});
+  const RecordedRun run = ForcedScene(scene, engine).record(release_of(scene), *scene.until_time);
   REQUIRE(run.stop_reason == StopReason::time);
   std::vector<ChangeOfState> columns(dimensions_of(scene), ChangeOfState(dimensions_of(scene), 0.0));
   for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
   AlongRun along;
-  carry_changes(
-      run, columns, [] {}, &along);
+  carry_changes(*variational_coefficients(scene, engine), run, columns, {}, &along);
   for (ChangeOfState* each : {&along.by_frequency, &along.by_amplitude, &along.rates_at_end})
     columns.push_back(*each);
   return columns;
@@ -245,22 +242,22 @@ TEST_CASE("the exponents of several dampers add up to the mean divergence") {
     Scene period = scene;
     const ForcedScene forced(scene, engine);
     for (int n = 0; n < periods; ++n) {
-      const Run run = forced.record(release_of(period), forced.period());
+      const RecordedRun run = forced.record(release_of(period), forced.period());
       duration += run.end_time;
       loss += 2 * scene.damping_ratio * run.end_time;
       if (has_rigid_walls(engine)) {
-        CHECK(run.contacts->begin.empty());
-        for (const std::int32_t damper : run.impacts->damper)
-          loss -= 2 * std::log(scene.dampers[std::size_t(damper)].restitution);
+        CHECK(run.chain.contacts.empty());
+        for (const MotionChain::Impact& impact : run.chain.impacts)
+          loss -= 2 * std::log(scene.dampers[std::size_t(impact.damper)].restitution);
       } else {
-        for (std::size_t i = 0; i < run.contacts->begin.size(); ++i) {
-          const SceneDamper& alone = scene.dampers[std::size_t(run.contacts->damper[i])];
+        for (const MotionChain::Contact& contact : run.chain.contacts) {
+          const SceneDamper& alone = scene.dampers[std::size_t(contact.damper)];
           const double damping = 2 * std::sqrt(alone.wall_stiffness / alone.mass_ratio) *
                                  zeta_m<double>(alone, Calibration::fixed_wall);
-          loss += (1 + alone.mass_ratio) * damping * (run.contacts->end[i] - run.contacts->begin[i]);
+          loss += (1 + alone.mass_ratio) * damping * (contact.end - contact.begin);
         }
       }
-      period = released_from(scene, state_in(*run.history, 1));
+      period = released_from(scene, run.end);
     }
     CHECK(sum_of(found.exponents) == doctest::Approx(-loss / duration).epsilon(1e-9));
     for (std::size_t i = 1; i < found.exponents.size(); ++i)
@@ -312,9 +309,9 @@ TEST_CASE("a mass that sticks before the periods that are averaged takes nothing
   Scene period = scene;
   const ForcedScene forced(scene, Restitution{});
   for (int n = 0; n < 150; ++n) {
-    const Run run = forced.record(release_of(period), forced.period());
-    if (n >= 100) impacts += int(run.impacts->time.size());
-    period = released_from(scene, state_in(*run.history, 1));
+    const RecordedRun run = forced.record(release_of(period), forced.period());
+    if (n >= 100) impacts += int(run.chain.impacts.size());
+    period = released_from(scene, run.end);
   }
   const double expected = -2 * 0.02 + 2 * impacts * std::log(0.6) / (50 * forced.period());
   CHECK(sum_of(later.exponents) == doctest::Approx(expected).epsilon(1e-9));
@@ -326,6 +323,36 @@ TEST_CASE("a mass that sticks before the periods that are averaged takes nothing
   CHECK(lyapunov_exponents(alone, Restitution{}, 50).exponents.size() == 2);
   const LyapunovExponents of_one = lyapunov_exponents(alone, Restitution{}, 50, 100);
   REQUIRE(of_one.exponents.size() == 4);
+}
+
+TEST_CASE("a mass whose chattering is complete sticks where the run ends before its accumulation point") {
+  Scene scene = two_dampers();
+  scene.force_frequency = 0.3;
+  scene.force_amplitude = 3;
+  for (SceneDamper& each : scene.dampers) each.restitution = 0.2;
+  Scene alone = scene;
+  alone.dampers.resize(1);
+  for (const Scene& each : {scene, alone}) {
+    const ForcedScene forced(each, Restitution{});
+    const RecordedRun whole = forced.record(release_of(each), forced.period());
+    REQUIRE_FALSE(whole.chain.contacts.empty());
+    const MotionChain::Contact& contact = whole.chain.contacts.front();
+    double last_impact = 0;
+    for (const MotionChain::Impact& impact : whole.chain.impacts)
+      if (impact.time <= contact.begin) last_impact = impact.time;
+    REQUIRE(last_impact < contact.begin);
+    const RecordedRun cut = forced.record(release_of(each), last_impact + (contact.begin - last_impact) / 2);
+    CHECK(cut.chain.contacts.empty());
+    std::vector<ChangeOfState> columns(dimensions_of(each), ChangeOfState(dimensions_of(each), 0.0));
+    for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
+    carry_changes(*variational_coefficients(each, Restitution{}), cut, columns, {});
+    const auto damper = std::size_t(contact.damper);
+    for (const ChangeOfState& column : columns) {
+      CHECK(column[index_of_y(damper)] == 0);
+      CHECK(column[index_of_w(damper)] == 0);
+      CHECK(column[0] != 0);
+    }
+  }
 }
 
 TEST_CASE("that several masses meet walls at one instant is told") {

@@ -14,9 +14,9 @@ namespace impact_damper {
 // time, and an impact before the half cycle and the contact that it belongs to; the order is not fixed
 // otherwise. Impacts are always reported. Observing never changes the motion.
 //
-// An observer of a closed-form engine may also have passed(motion, begin, duration, end), a template over the
-// motion (motion/motion.hpp). It is then called for each motion in turn, in the engine's own numbers: when it
-// began, how long it lasted, and the state in which it ended, before the event at its end changes it.
+// An observer of a closed-form engine may also have passed(begin, duration, end). It is then called for each
+// motion in turn, in the engine's own numbers: when it began, how long it lasted, and the state in which it
+// ended, before the event at its end changes it; with several dampers only x and x' of that state are set.
 template <class T>
 concept RunObserver = requires(T observer, const T asked, double number, Wall wall) {
   { asked.wants_half_cycles() } -> std::same_as<bool>;

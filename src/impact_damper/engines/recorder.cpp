@@ -6,8 +6,9 @@
 
 namespace impact_damper {
 
-Recorder::Recorder(Record record, std::size_t dampers)
+Recorder::Recorder(Record record, std::size_t dampers, MotionChain* chain)
     : wants_(std::move(record)),
+      chain_(chain),
       wants_half_cycles_(wants_.half_cycles || wants_.impacts || !wants_.history_below.empty()),
       wants_history_(!wants_.history.empty() || !wants_.history_below.empty()),
       impacts_in_row_(dampers),
@@ -53,6 +54,7 @@ void Recorder::half_cycle(double begin, double zero_crossing, double peak_time, 
 
 void Recorder::impact(double time, Wall wall, double relative_velocity, double displacement,
                       std::int32_t damper) {
+  if (chain_) chain_->impacts.push_back({chain_->motions.size(), time, wall, relative_velocity, damper});
   ++impacts_in_row_[static_cast<std::size_t>(damper)];
   if (!wants_.impacts) return;
   impacts_.time.push_back(time);
@@ -65,6 +67,8 @@ void Recorder::impact(double time, Wall wall, double relative_velocity, double d
 }
 
 void Recorder::contact(double begin, double end, Wall wall, std::int32_t damper) {
+  if (chain_) chain_->contacts.push_back({chain_->motions.size(), begin, end, wall, damper});
+  if (!wants_.contacts) return;
   contacts_.begin.push_back(begin);
   contacts_.end.push_back(end);
   contacts_.wall.push_back(wall);

@@ -9,17 +9,44 @@
 #include <vector>
 
 #include "impact_damper/engines/observer.hpp"
+#include "impact_damper/motion/state.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
 
+// The motions of a run by a closed-form engine, and the events between them, in the order of time. Each event
+// has the number of motions before it.
+struct MotionChain {
+  struct Motion {
+    double begin, duration;
+    double x, v;  // at its end, before the event there
+  };
+  struct Impact {
+    std::size_t motions;
+    double time;
+    Wall wall;
+    double w;  // y' just before
+    std::int32_t damper;
+  };
+  struct Contact {        // as in Contacts
+    std::size_t motions;  // before its end
+    double begin, end;
+    Wall wall;
+    std::int32_t damper;
+  };
+  std::vector<Motion> motions;
+  std::vector<Impact> impacts;
+  std::vector<Contact> contacts;
+};
+
 class Recorder {
  public:
-  // dampers: how many the scene has.
-  explicit Recorder(Record record, std::size_t dampers = 1);
+  // dampers: how many the scene has. chain: filled in if not null; unlike the impacts of a Record it needs no
+  // half cycles.
+  explicit Recorder(Record record, std::size_t dampers = 1, MotionChain* chain = nullptr);
 
   bool wants_half_cycles() const { return wants_half_cycles_; }  // impact phases and windows need them too
-  bool wants_contacts() const { return wants_.contacts; }
+  bool wants_contacts() const { return wants_.contacts || chain_; }
   bool wants_energy() const { return wants_.energy; }
 
   // Ends a row at `zero_crossing`. Impacts reported since the last row belong to this one.
@@ -27,6 +54,9 @@ class Recorder {
   // An impact on `wall` with y' = relative_velocity just before, while x = displacement.
   void impact(double time, Wall wall, double relative_velocity, double displacement, std::int32_t damper = 0);
   void contact(double begin, double end, Wall wall, std::int32_t damper = 0);
+  void passed(double begin, double duration, const State<double>& end) {
+    if (chain_) chain_->motions.push_back({begin, duration, end.x, end.v});
+  }
 
   // The time of the next history sample; infinity while none is known. A half cycle may open a window that
   // begins at its own zero crossing, so ask again after each.
@@ -43,6 +73,7 @@ class Recorder {
   void advance_window();
 
   Record wants_;
+  MotionChain* chain_;
   bool wants_half_cycles_, wants_history_;
   HalfCycles half_cycles_;
   Impacts impacts_;

@@ -87,8 +87,8 @@ class RunTracker {
     tell_samples(duration, tell_sample);
     const Work<Real> works =
         observer_.wants_energy() ? add_work(motion, duration, wall_damping) : Work<Real>{};
-    if constexpr (requires { observer_.passed(motion, now(), duration, end); })
-      observer_.passed(motion, now(), duration, end);
+    if constexpr (requires { observer_.passed(now(), duration, end); })
+      observer_.passed(now(), duration, end);
     clock_.advance(duration);
     passed_ = duration;
     return works;

@@ -186,6 +186,12 @@ class JointContact {
     set(gap.terms, 1, h_ * u1);
     return gap;
   }
+  // Returns the function that falls through zero where a mass in flight turns back: sign times y', now w.
+  Function relative_velocity(const Real& w, const Real& sign) const {
+    Function speed = function(x_, -sign, 1);
+    set(speed.terms, 0, sign * w);
+    return speed;
+  }
   // A bound on |x''| in the piece.
   Real second_of_x() const { return bound(x_, 2); }
   // Returns the first time in [0, until) at which g falls through zero.
@@ -200,6 +206,17 @@ class JointContact {
         from = begin_by_lead<Real>(order, value, bound(g.terms, order + 1), until);
     }
     return fall(g, from, until, search);
+  }
+  // The same in [from, until).
+  std::optional<Real> fall(const Function& g, const Real& from, const Real& until,
+                           Search<Real>& search) const {
+    if (from == 0 && get(g.terms, 0) >= 0) {
+      const SeriesAt<Real> end = sum<Real>(g.terms, until * over_h_);
+      if (stays_open(get(g.terms, 0), Real(over_h_ * get(g.terms, 1)), end.u, Real(over_h_ * end.u1), until,
+                     bound(g.terms, 4)))
+        return {};
+    }
+    return isolate_fall<Real>([&](const Real& t) { return enclosure(g, t); }, from, until, search, h_);
   }
 
   bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
@@ -351,16 +368,6 @@ class JointContact {
     return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third},
             {},
             std::numeric_limits<Real>::infinity()};
-  }
-  std::optional<Real> fall(const Function& g, const Real& from, const Real& until,
-                           Search<Real>& search) const {
-    if (from == 0 && get(g.terms, 0) >= 0) {
-      const SeriesAt<Real> end = sum<Real>(g.terms, until * over_h_);
-      if (stays_open(get(g.terms, 0), Real(over_h_ * get(g.terms, 1)), end.u, Real(over_h_ * end.u1), until,
-                     bound(g.terms, 4)))
-        return {};
-    }
-    return isolate_fall<Real>([&](const Real& t) { return enclosure(g, t); }, from, until, search, h_);
   }
 
   Real zeta_{0};

@@ -64,10 +64,10 @@ std::optional<Step> across_impact(double zeta, const Cavity& cavity, const State
   const StateVector at_wall = product(jump, moved(s, before, -since));
   const StateVector after = rates(at_wall);
   Step step{jump, moved(at_wall, after, since)};
-  for (std::size_t i = 0; i < s.size(); ++i) {  // (M13.4); kick: row i of F^+ - D F^-
-    double kick = after[i];
-    for (std::size_t k = 0; k < s.size(); ++k) kick -= jump[i][k] * before[k];
-    step.by_state[i][y] += kick / s[w];
+  for (std::size_t i = 0; i < s.size(); ++i) {  // the saltation matrix (M13.4)
+    double jump_of_rate = after[i];             // row i of F^+ - D F^-
+    for (std::size_t k = 0; k < s.size(); ++k) jump_of_rate -= jump[i][k] * before[k];
+    step.by_state[i][y] += jump_of_rate / s[w];
   }
   return step;
 }

@@ -1,112 +1,42 @@
 #include "impact_damper/steady/lyapunov.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
+#include <memory>
 #include <string>
 #include <utility>
 
-#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/steady/poincare_map.hpp"
-#include "impact_damper/steady/run_with_variation.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 #include "impact_damper/steady/variation_of_dampers.hpp"
 
 namespace impact_damper {
 namespace {
 
-using FourNumbers = std::array<double, 4>;
-
-// Makes column j orthonormal to those before it, and adds the logarithm of the length that it had, its
-// stretch (M13.15).
-template <class Columns>
-void take_stretch(Columns& columns, std::size_t j, double& logarithm_of_stretch) {
-  if (const auto stretch = orthonormalise(columns, j)) logarithm_of_stretch += logarithm(*stretch);
-}
-
-// The frame Q of (M13.15): four orthonormal changes of the state, and the logarithms of their stretches.
-class Frame final : public VariationReceiver {
+// A motion period by period, with a frame of orthonormal changes of the state, the Q of (M13.15), and the
+// logarithms of their stretches. Each period is a run of its own, so that the phase of the force does not
+// drift.
+class MotionWithFrame {
  public:
-  Frame() : VariationReceiver(false) {}
-  void joined() override { dimensions_ = 2; }
-  int pieces(double loss) override {
-    if (is_lost(loss)) joined();
-    return pieces_of(loss);
-  }
-  void begin_to_average() {
-    complete_basis(columns_, dimensions_);
-    dimensions_ = 4;
-    logarithms_ = {};
-  }
-  const FourNumbers& logarithms() const { return logarithms_; }
-  std::size_t dimensions() const { return dimensions_; }
-
- private:
-  void take(const RowsOfState<double, 4>& a, const RowsOfState<double, 2>*) override {
-    for (std::size_t j = 0; j < 4; ++j) {
-      FourNumbers carried{};
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t k = 0; k < 4; ++k) carried[i] += a[i][k] * columns_[j][k];
-      columns_[j] = carried;
-      take_stretch(columns_, j, logarithms_[j]);
-    }
-  }
-
-  RowsOfState<double, 4> columns_ = identity<double>();
-  FourNumbers logarithms_{};
-  std::size_t dimensions_ = 4;
-};
-
-// A scene with one damper, period by period. Each period is a run of its own, so that the phase of the force
-// does not drift.
-class OneDamper {
- public:
-  OneDamper(const Scene& scene, const Engine& engine)
-      : engine_(engine), period_(PoincareMap(scene, engine, 2).scene()) {
-    period_ = released_from(std::move(period_), release_of(scene));
-    require_none(incompatibilities_of(period_, engine));
-  }
-  double duration() const { return *period_.until_time; }
-  StopReason pass_period() {
-    const auto run = run_with_variation(period_, engine_, frame_, Kept::end);
-    if (!run) return run.failure();
-    const State<double>& end = run->end;
-    period_.x0 = end.x, period_.v0 = end.v;
-    period_.damper().y0 = end.y, period_.damper().w0 = end.w;
-    return StopReason::time;
-  }
-  void begin_to_average() { frame_.begin_to_average(); }
-  std::span<const double> logarithms() const { return frame_.logarithms(); }
-  std::size_t dimensions() const { return frame_.dimensions(); }
-  static bool one_sided() { return false; }
-
- private:
-  const Engine& engine_;
-  Scene period_;
-  Frame frame_;
-};
-
-// A scene with a list of dampers, in the same way, from the record of each period.
-class SeveralDampers {
- public:
-  SeveralDampers(const Scene& scene, const Engine& engine)
-      : scene_(scene, engine), state_(release_of(scene)) {
-    columns_ = identity_of(dimensions_of(scene));
-    logarithms_.assign(columns_.size(), 0.0);
-  }
+  MotionWithFrame(const Scene& scene, const Engine& engine)
+      : scene_(scene, engine),
+        coefficients_(variational_coefficients(scene, engine)),
+        state_(release_of(scene)),
+        columns_(identity_of(dimensions_of(scene))),
+        logarithms_(columns_.size()) {}
   double duration() const { return scene_.period(); }
   StopReason pass_period() {
-    const Run run = scene_.record(state_, duration());
+    const RecordedRun run = scene_.record(state_, duration());
     if (run.stop_reason != StopReason::time) return run.stop_reason;
-    const Carried carried = carry_changes(run, columns_, [&] {
-      for (std::size_t j = 0; j < columns_.size(); ++j) take_stretch(columns_, j, logarithms_[j]);
+    const Carried carried = carry_changes(*coefficients_, run, columns_, [&] {
+      for (std::size_t j = 0; j < columns_.size(); ++j)
+        if (const auto stretch = orthonormalise(columns_, j)) logarithms_[j] += logarithm(*stretch);
     });
     lost_ = std::max(lost_, carried.lost);
     one_sided_ = one_sided_ || carried.one_sided;
-    state_ = state_in(*run.history, 1);
+    state_ = run.end;
     return run.stop_reason;
   }
   void begin_to_average() {
@@ -115,12 +45,13 @@ class SeveralDampers {
     one_sided_ = false;
     logarithms_.assign(logarithms_.size(), 0.0);
   }
-  std::span<const double> logarithms() const { return logarithms_; }
+  const std::vector<double>& logarithms() const { return logarithms_; }
   std::size_t dimensions() const { return columns_.size() - lost_; }
   bool one_sided() const { return one_sided_; }
 
  private:
   ForcedScene scene_;
+  std::shared_ptr<const VariationalCoefficients> coefficients_;
   SceneState state_;
   std::vector<ChangeOfState> columns_;
   std::vector<double> logarithms_;
@@ -139,9 +70,19 @@ double standard_error(const std::vector<std::vector<double>>& means, std::size_t
   return std::sqrt(squares / (count - 1) / count);
 }
 
-template <class Motion>
-LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64_t skipped,
-                               const std::function<void(std::int64_t done)>& progress) {
+}  // namespace
+
+LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
+                                     std::int64_t skipped,
+                                     const std::function<void(std::int64_t done)>& progress) {
+  std::vector<Problem> problems;
+  if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
+  if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
+  if (scene.dampers.size() > most_dampers_with_changes)
+    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
+                                       " for exponents, got " + std::to_string(scene.dampers.size())});
+  require_none(problems);
+  MotionWithFrame motion(scene, engine);
   LyapunovExponents result;
   std::vector<std::vector<double>> means;                       // of the blocks
   std::vector<double> before(motion.logarithms().size(), 0.0);  // when the block began
@@ -155,12 +96,12 @@ LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64
     // Blocks differ by one period where their number does not divide that of the periods.
     const std::int64_t used = n + 1 - skipped;
     if (used < 1 || used != periods * (std::ssize(means) + 1) / error_blocks) continue;
-    const std::span<const double> now = motion.logarithms();
+    const std::vector<double>& now = motion.logarithms();
     std::vector<double> mean(now.size());
     for (std::size_t j = 0; j < now.size(); ++j)
       mean[j] = (now[j] - before[j]) / (double(used - begun) * motion.duration());
     means.push_back(std::move(mean));
-    before.assign(now.begin(), now.end());
+    before = now;
     begun = used;
   }
   result.periods = periods;
@@ -170,22 +111,6 @@ LyapunovExponents exponents_of(Motion&& motion, std::int64_t periods, std::int64
     if (periods >= error_blocks) result.standard_errors.push_back(standard_error(means, j));
   }
   return result;
-}
-
-}  // namespace
-
-LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, std::int64_t periods,
-                                     std::int64_t skipped,
-                                     const std::function<void(std::int64_t done)>& progress) {
-  std::vector<Problem> problems;
-  if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
-  if (!(skipped >= 0)) problems.push_back({"skipped", "must be >= 0"});
-  if (scene.dampers.size() > most_dampers_with_changes)
-    problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
-                                       " for exponents, got " + std::to_string(scene.dampers.size())});
-  require_none(problems);
-  return has_one_damper(scene) ? exponents_of(OneDamper(scene, engine), periods, skipped, progress)
-                               : exponents_of(SeveralDampers(scene, engine), periods, skipped, progress);
 }
 
 }  // namespace impact_damper

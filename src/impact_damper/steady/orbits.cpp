@@ -54,7 +54,7 @@ struct Equation {
     return {changed, engine, half_periods};
   }
   // The idle dampers to which (M13.28) applies. For odd n there are none: the mirror determines their place.
-  std::vector<std::size_t> resting(const PoincareImage& image) const {
+  std::vector<std::size_t> free_to_rest(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
   Expected<PoincareImage, StopReason> image_of(
@@ -118,7 +118,7 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
     a[i][i] -= 1;
     a[i].push_back(by_parameter(image, equation.parameter)[i]);
   }
-  for (const std::size_t damper : equation.resting(image)) {
+  for (const std::size_t damper : equation.free_to_rest(image)) {
     std::vector<double>& row = a[index_of_w(damper)];
     std::fill(row.begin(), row.end(), 0.0);
     row[0] = row[index_of_y(damper)] = 1;
@@ -128,27 +128,28 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
 }
 
 // The residual of an iterate.
-struct Rest {
-  StateVector state;  // H^n(s) - s
-  double off = 0;     // distance from the plane
-  double size = 0;    // the larger of both, in the units of OrbitOptions::tolerance
+struct Residual {
+  StateVector state;     // H^n(s) - s
+  double off_plane = 0;  // distance from the plane
+  double size = 0;       // the larger of both, in the units of OrbitOptions::tolerance
 };
-Rest rest_of(const Solution& at) {
-  Rest rest;
-  rest.state = vector_of(at.image.state);
-  for (std::size_t k = 0; k < rest.state.size(); ++k) rest.state[k] -= at.point[k];
-  rest.off = dot_product(at.plane.normal, along(at.point, -1, at.plane.through));
-  rest.size = std::max(largest(rest.state), std::fabs(rest.off)) / std::max(1.0, largest(state_at(at.point)));
-  return rest;
+Residual residual_of(const Solution& at) {
+  Residual residual;
+  residual.state = vector_of(at.image.state);
+  for (std::size_t k = 0; k < residual.state.size(); ++k) residual.state[k] -= at.point[k];
+  residual.off_plane = dot_product(at.plane.normal, along(at.point, -1, at.plane.through));
+  residual.size = std::max(largest(residual.state), std::fabs(residual.off_plane)) /
+                  std::max(1.0, largest(state_at(at.point)));
+  return residual;
 }
 
 // The next iterate of Newton's method (M13.10); nothing if the bordered matrix is singular. Written as the
 // image plus A times the change, so that y and w of masses that stick are those of the image, to the bit.
-std::optional<Point> newton_step(const Equation& equation, const Solution& at, const Rest& rest) {
+std::optional<Point> newton_step(const Equation& equation, const Solution& at, const Residual& residual) {
   std::vector<double> missing;
-  for (const double r : rest.state) missing.push_back(-r);
-  missing.push_back(-rest.off);
-  for (const std::size_t damper : equation.resting(at.image)) missing[index_of_w(damper)] = 0;
+  for (const double r : residual.state) missing.push_back(-r);
+  missing.push_back(-residual.off_plane);
+  for (const std::size_t damper : equation.free_to_rest(at.image)) missing[index_of_w(damper)] = 0;
   const auto change = solution(bordered(equation, at.image, at.plane.normal), missing);
   if (!change) return {};
   Point next = point_at(vector_of(at.image.state), at.point.back() + change->back());
@@ -174,21 +175,21 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
     auto image = equation.image_of(now.point, PoincareMap::Derivatives::by_state_and_parameters);
     if (!image) return NoOrbit{OrbitEnd::run_stopped, std::move(residuals)};
     now.image = *std::move(image);
-    const Rest rest = rest_of(now);
-    residuals.push_back(rest.size);
+    const Residual residual = residual_of(now);
+    residuals.push_back(residual.size);
     const bool tolerated = least <= equation.options.tolerance;
-    if (tolerated && !(rest.size < least / 2)) break;  // only rounding errors are left
-    if (i > 0 && !(rest.size < 2 * least) && fraction > 1.0 / 64) {
+    if (tolerated && !(residual.size < least / 2)) break;  // only rounding errors are left
+    if (i > 0 && !(residual.size < 2 * least) && fraction > 1.0 / 64) {
       fraction /= 2;
       now.point = along(best.point, fraction, step);
       now.plane = best.plane;
       continue;
     }
     fraction = 1;
-    least = rest.size;
+    least = residual.size;
     best = now;
     last = now.point;
-    const auto next = least > 0 ? newton_step(equation, now, rest) : std::nullopt;
+    const auto next = least > 0 ? newton_step(equation, now, residual) : std::nullopt;
     if (!next) break;
     step = along(*next, -1, now.point);
     now.point = *next;
@@ -204,33 +205,34 @@ Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 
 
 // The residual H^m(s) - s, m = half_periods, in which idle dampers count as staying where they rest; nothing
 // if a budget ends the run before.
-std::optional<StateVector> rest_after(const Equation& equation, const Point& p, int half_periods) {
+std::optional<StateVector> residual_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
   const auto image = shorter.image_of(p);
   if (!image) return {};
-  StateVector rest = vector_of(image->state);
-  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= p[i];
+  StateVector residual = vector_of(image->state);
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= p[i];
   for (const std::size_t damper : image->idle) {
-    rest[index_of_y(damper)] = -rest[0];
-    rest[index_of_w(damper)] = -rest[1];
+    residual[index_of_y(damper)] = -residual[0];
+    residual[index_of_w(damper)] = -residual[1];
   }
-  return rest;
+  return residual;
 }
 // Whether that residual is at most `gap`, in units of the larger of 1 and |s|.
 bool closes_after(const Equation& equation, const Point& p, int half_periods, double gap) {
-  const auto rest = rest_after(equation, p, half_periods);
-  return rest && largest(*rest) <= gap * std::max(1.0, largest(state_at(p)));
+  const auto residual = residual_after(equation, p, half_periods);
+  return residual && largest(*residual) <= gap * std::max(1.0, largest(state_at(p)));
 }
 
 // Indices of the state's components without those of idle dampers, and A restricted to these. Idle dampers do
 // not act on the others, and each adds two multipliers that are 1, or -1 for odd n.
 std::vector<std::size_t> moving_in(const PoincareImage& image) {
-  std::vector<bool> rests(image.by_state.size(), false);
-  for (const std::size_t damper : image.idle) rests[index_of_y(damper)] = rests[index_of_w(damper)] = true;
+  std::vector<bool> is_idle(image.by_state.size(), false);
+  for (const std::size_t damper : image.idle)
+    is_idle[index_of_y(damper)] = is_idle[index_of_w(damper)] = true;
   std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < rests.size(); ++i)
-    if (!rests[i]) all.push_back(i);
+  for (std::size_t i = 0; i < is_idle.size(); ++i)
+    if (!is_idle[i]) all.push_back(i);
   return all;
 }
 Matrix derivative_of_moving(const PoincareImage& image) {
@@ -283,7 +285,7 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
 
 // The unit eigenvector of A for its eigenvalue next to -1, by inverse iteration; nothing if that fails. Idle
 // dampers stay where they rest.
-std::optional<StateVector> reversed_by(const PoincareImage& image) {
+std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image) {
   StateMatrix a = derivative_of_moving(image);
   constexpr double shift = 1e-9;  // so that the matrix is not singular
   for (std::size_t i = 0; i < a.size(); ++i) a[i][i] += 1 + shift;
@@ -370,10 +372,10 @@ class Follower {
         anchor_tangent_ = *tangent;
       }
       const Solved found = between(now, *tangent, step);
-      const auto turned =
+      const auto next_tangent =
           found && follows(now, *found, step) ? tangent_at(*found, found->plane.normal) : std::nullopt;
-      if (!turned || !(dot_product(*turned, found->plane.normal) > 0.9) ||
-          jumped(now, (*tangent).back(), *found, (*turned).back())) {
+      if (!next_tangent || !(dot_product(*next_tangent, found->plane.normal) > 0.9) ||
+          jumped(now, (*tangent).back(), *found, (*next_tangent).back())) {
         step /= 2;
         if (step >= options_.smallest_step) continue;
         branch.end = BranchEnd::step_too_small;
@@ -394,7 +396,7 @@ class Follower {
       const bool is_back = branch.orbits.size() > 3 && distance(next.point, origin) < step &&
                            dot_product(along(origin, -1, now.point), *tangent) > 0;
       now = next;
-      tangent = turned;
+      tangent = next_tangent;
       if (is_back) {
         branch.end = BranchEnd::closed;
         return branch;
@@ -455,9 +457,9 @@ class Follower {
   // s, which vanishes on the other branch, so that no orbit of that branch lies in the plane.
   Point normal_at(const Solution& now, const Point& tangent) const {
     if (first_.symmetric) return tangent;
-    const auto rest = rest_after(equation_, now.point, equation_.half_periods / 2);
-    if (!rest || !(largest(*rest) > 0) || !(largest(*rest) < 0.1)) return tangent;
-    const Point across = normalized(point_at(*rest, 0));
+    const auto residual = residual_after(equation_, now.point, equation_.half_periods / 2);
+    if (!residual || !(largest(*residual) > 0) || !(largest(*residual) < 0.1)) return tangent;
+    const Point across = normalized(point_at(*residual, 0));
     const double along_tangent = dot_product(across, tangent);
     if (!(std::fabs(along_tangent) > 0.95)) return tangent;
     return along_tangent > 0 ? across : along(Point(across.size()), -1, across);
@@ -522,8 +524,8 @@ class Follower {
   // Whether H^n(s) - s reverses between two orbits of H^(2n): its scalar product is negative.
   bool crosses(const Solution& now, const Solution& next) const {
     if (first_.symmetric) return false;
-    const auto before = rest_after(equation_, now.point, equation_.half_periods / 2),
-               after = rest_after(equation_, next.point, equation_.half_periods / 2);
+    const auto before = residual_after(equation_, now.point, equation_.half_periods / 2),
+               after = residual_after(equation_, next.point, equation_.half_periods / 2);
     if (!before || !after) return false;
     return dot_product(*before, *after) < 0;
   }
@@ -760,7 +762,7 @@ Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter param
   const auto image =
       PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene));
   if (!image) return NoOrbit{OrbitEnd::run_stopped};
-  const std::optional<StateVector> direction = reversed_by(*image);
+  const std::optional<StateVector> direction = eigenvector_of_minus_1(*image);
   if (!direction) return NoOrbit{};
   const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {
@@ -768,8 +770,9 @@ Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter param
     const Solved found = solve(equation, origin, start, {start, normal});
     if (!found) continue;
     // H^n(s) - s is zero on the branch of H^n. On the new one it leads to the other side, by about 2 gap.
-    const auto rest = rest_after(equation, found->point, half_periods);
-    if (rest && largest(*rest) > std::fabs(gap) / 2) return orbit_of(equation, *found, half_periods, false);
+    const auto residual = residual_after(equation, found->point, half_periods);
+    if (residual && largest(*residual) > std::fabs(gap) / 2)
+      return orbit_of(equation, *found, half_periods, false);
   }
   return NoOrbit{};
 }

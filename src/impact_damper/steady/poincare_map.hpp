@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -39,21 +40,21 @@ struct PoincareImage {
   // Rigid walls: how often a secondary mass comes to stick. One that sticks when the run begins does not
   // count.
   std::int64_t sticking = 0;
-  // Lists only: numbers of the dampers with neither impact nor contact while others have impacts.
+  // Numbers of the dampers with neither impact nor contact while others have impacts.
   std::vector<std::size_t> idle;
-  // Lists only: whether several masses met rigid walls at one instant. The derivative is then that of changes
+  // Whether several masses met rigid walls at one instant. The derivative is then that of changes
   // that keep them together.
   bool one_sided = false;
   // How near the motion is to grazing, where the derivative by s has no bound (rigid walls) or jumps
   // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
   std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
-  // Least distance from a wall at which a mass turns back in flight. With a list only for rigid walls and
-  // Derivatives::by_state_and_parameters.
-  std::optional<double> nearest_miss;
-  // Lists with rigid walls: the least time between two successive impacts of different dampers; the first
-  // follows the last, as on an orbit. Where they change their order the map jumps.
+  std::optional<double> nearest_miss;    // least distance from a wall at which a mass turns back in flight
+  // Rigid walls, several dampers: the least time between two successive impacts of different dampers; the
+  // first follows the last, as on an orbit. Where they change their order the map jumps.
   std::optional<double> least_interval;
 };
+
+struct VariationalCoefficients;
 
 // Largest number of dampers for which exponents and branches are computed: the time for a period grows with
 // the fourth power of their number, and takes seconds at this one.
@@ -79,18 +80,11 @@ class PoincareMap {
   double duration() const { return *scene_.until_time; }  // n pi / omega_f
 
  private:
-  // An image before it is mirrored. Its derivatives by the parameters are for a fixed end time.
-  struct End {
-    PoincareImage image;
-    StateVector rates;  // x', x'', then y' and y'' of each damper
-  };
-  Expected<End, StopReason> of_one_damper(const SceneState& s, Derivatives wanted) const;
-  Expected<End, StopReason> of_several(const SceneState& s, Derivatives wanted) const;
-
   Scene scene_;
   Engine engine_;
   int half_periods_;
-  std::optional<ForcedScene> several_;  // the scene, if it has a list of dampers
+  ForcedScene forced_;
+  std::shared_ptr<const VariationalCoefficients> coefficients_;
 };
 
 }  // namespace impact_damper

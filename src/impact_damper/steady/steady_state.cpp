@@ -222,20 +222,22 @@ Scene ForcedScene::released(const SceneState& state, double until) const {
   return from;
 }
 
-Run ForcedScene::record(const SceneState& state, double until) const {
-  Run run;
-  run.scene = released(state, until);
-  run.engine = engine_;
+RecordedRun ForcedScene::record(const SceneState& state, double until) const {
+  const Scene from = released(state, until);
+  RecordedRun all;
   Record record;
   record.half_cycles = false;
-  record.impacts = record.contacts = true;
   record.history = {{0, until, 2}};
-  Recorder recorder(std::move(record), scene_.dampers.size());
-  const Outcome outcome = run_(run.scene, recorder);
-  run.stop_reason = outcome.stop_reason;
-  run.end_time = outcome.end_time;
+  Recorder recorder(std::move(record), scene_.dampers.size(), &all.chain);
+  const Outcome outcome = run_(from, recorder);
+  all.stop_reason = outcome.stop_reason;
+  all.end_time = outcome.end_time;
+  all.begin = release_of(from);
+  if (all.stop_reason != StopReason::time) return all;
+  Run run;
   recorder.finish(run);
-  return run;
+  all.end = state_in(*run.history, 1);
+  return all;
 }
 
 Expected<ForcedScene::Watched, StopReason> ForcedScene::run_from(const SceneState& state,

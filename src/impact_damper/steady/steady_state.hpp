@@ -97,6 +97,14 @@ std::optional<bool> is_balanced(const SteadyState& steady);
 // run.
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 
+// A run in its motions and events, from which its derivative follows (variation.hpp).
+struct RecordedRun {
+  StopReason stop_reason = StopReason::time;
+  double end_time = 0;
+  SceneState begin{}, end{};  // end: before any event at that instant; only if the run ended by its time
+  MotionChain chain;
+};
+
 // A scene and an engine, with all that does not depend on the state computed once. It may be copied, and used
 // by several threads at a time.
 class ForcedScene {
@@ -129,9 +137,8 @@ class ForcedScene {
   Expected<Watched, StopReason> pass_periods(const SceneState& state) const;
   // All of Watched, with the states half way and at the end, after `periods` periods.
   Expected<Watched, StopReason> watch(const SceneState& state, std::int64_t periods) const;
-  // The run from phase 0 until a time, with its impacts and contacts, a sample at its beginning and one at
-  // its end.
-  Run record(const SceneState& state, double until) const;
+  // The run from phase 0 until a time.
+  RecordedRun record(const SceneState& state, double until) const;
   double period() const { return period_; }  // of the force, 2 pi / omega_f
 
  private:

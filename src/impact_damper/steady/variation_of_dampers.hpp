@@ -1,14 +1,17 @@
-// The variational equations along a run with a list of dampers: what small changes of the state become, to
-// first order (docs/mathematics.md, 13.10). They need the run's record alone: between events motions are
-// linear, and events are recorded.
+// The variational equations along a run: what small changes of the state, of omega_f or of f0 become, to
+// first order (docs/mathematics.md, 13.2 to 13.4 and 13.10). They need the record of the run alone: each
+// motion is linear, so that its derivative is its own propagator, and each event adds a saltation matrix
+// (M13.4). Nothing is approximated by differences.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "impact_damper/run.hpp"
+#include "impact_damper/steady/steady_state.hpp"
 
 namespace impact_damper {
 
@@ -18,35 +21,48 @@ constexpr std::size_t index_of_y(std::size_t damper) { return 2 + 2 * damper; }
 constexpr std::size_t index_of_w(std::size_t damper) { return 3 + 2 * damper; }
 inline std::size_t dimensions_of(const Scene& scene) { return 2 + 2 * scene.dampers.size(); }
 
-// The number of pieces for a motion that contracts volumes by exp(-loss): each contracts by e at most, so
-// that orthogonalisation between them keeps the digits of all directions, unless there would be more than
-// most_pieces.
-inline constexpr int most_pieces = 4096;
-inline int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pieces; }
-// Whether even most_pieces pieces contract by more than exp(-36) each, a rounding error: directions are lost.
-inline bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
+// An interval in which a mass sticks to a rigid wall, or is in contact with a compliant one: from the motion
+// `first` of a run's chain to the one before `last`.
+struct ContactInterval {
+  std::size_t damper, first, last;
+  int away;                    // from the wall into the cavity: 1 at a left, -1 at a right wall
+  std::size_t impacts_before;  // of all dampers, in the chain
+  bool from_beginning;         // no event of this run began it
+};
+// All of a run, with those that end with it, in the order of `first`. A mass whose chattering is complete
+// sticks from the impact at which the limit is taken. scene: that of the run, but for initial condition and
+// end.
+std::vector<ContactInterval> contact_intervals(const Scene& scene, const RecordedRun& run, bool rigid);
 
 struct Carried {
-  // Largest number of dimensions lost at one time: two for each mass that sticks, or whose contact is_lost().
+  // Largest number of dimensions lost at one time: two for each mass that sticks, or whose contact is damped
+  // by more than exp(-36) 4096 times.
   std::size_t lost = 0;
   // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
   // them together.
   bool one_sided = false;
-};
-// The derivatives of the final state by omega_f and by f0, its rates, and the nearest miss of the run's
-// flights.
-struct AlongRun {
-  ChangeOfState by_frequency, by_amplitude;
-  ChangeOfState rates_at_end;  // x', x'', then y' and y'' of each damper, before what happens at that instant
-  // Rigid walls: the least distance from a wall at which a mass turns back in flight.
+  // The least distance from a wall at which a mass turns back in flight; absent if none does, and where
+  // after_step() is given.
   std::optional<double> nearest_miss;
 };
+// The derivatives of the final state by omega_f and by f0, and its rates.
+struct AlongRun {
+  ChangeOfState by_frequency, by_amplitude;
+  ChangeOfState rates_at_end;  // x', x'', then y' and y'' of each damper, before any event at that instant
+};
+
+// The coefficients of the variational equations of a scene.
+struct VariationalCoefficients;
+// The engine is exact or restitution, and the scene has a force.
+std::shared_ptr<const VariationalCoefficients> variational_coefficients(const Scene& scene,
+                                                                        const Engine& engine);
+
 // Solves the variational equations: replaces each change of a run's initial state by what it has become at
-// the run's end. after_step() is called after each event and each motion, or piece of one: it may replace the
-// changes by others that span the same directions. `along` is filled in if it is not null. Required of the
-// run: the engine exact or restitution, a scene with a list of dampers and a force, the end at its
-// until_time, impacts and contacts recorded, and with `along` a sample at the end as the last of its history.
-Carried carry_changes(const Run& run, std::vector<ChangeOfState>& changes,
-                      const std::function<void()>& after_step, AlongRun* along = nullptr);
+// the run's end, which its time has come to. after_step(), if given, is called after each event that acts on
+// changes and after each motion; a motion that contracts volumes to less than 1/e is then taken in pieces. It
+// may replace the changes by others that span the same directions. `along` is filled in if it is not null.
+Carried carry_changes(const VariationalCoefficients& of, const RecordedRun& run,
+                      std::vector<ChangeOfState>& changes, const std::function<void()>& after_step,
+                      AlongRun* along = nullptr);
 
 }  // namespace impact_damper
