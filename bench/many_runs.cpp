@@ -6,7 +6,7 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
+#include "application/sweeps/plan_file.hpp"
 
 namespace impact_damper::bench {
 namespace {

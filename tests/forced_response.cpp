@@ -1,6 +1,6 @@
 // The motions over the frequency of the force that a page shows, against closed forms, against runs that know
 // nothing of steady states, and against made-up amplitudes.
-#include "impact_damper/report/forced_response.hpp"
+#include "application/report/forced_response.hpp"
 
 #include <doctest/doctest.h>
 

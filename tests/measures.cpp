@@ -1,4 +1,4 @@
-#include "impact_damper/reproduction/measures.hpp"
+#include "application/reproduction/measures.hpp"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -18,8 +18,8 @@
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/reproduction/measures_parts.hpp"
-#include "impact_damper/reproduction/scene_runs.hpp"
+#include "application/reproduction/measures_parts.hpp"
+#include "application/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sweeps by the scripts of cluster/ on a real Slurm that is started here: a task is killed and requeued, a node drained, another
+"""Sweeps by the scripts of examples/cluster/ on a real Slurm that is started here: a task is killed and requeued, a node drained, another
 one dies, a task nears its time limit, and the table has the bytes that one machine gives. Faulty parts are not merged.
 
     slurm.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
@@ -173,7 +173,7 @@ def wait_for_end(job, state):
 
 
 def submit(table, count, *options):
-    said = call(source / "cluster/slurm", "plan.json", table, count, *options)
+    said = call(source / "examples/cluster/slurm", "plan.json", table, count, *options)
     return re.search(r"Submitted (\d+), .* and (\d+),", said).groups()
 
 
@@ -263,7 +263,7 @@ def faulty_parts():
             of(task).write_text(fault(of(task).read_text()))
         else:
             of(task).unlink()
-        merge = call("sbatch", "--parsable", "--output=faulty.log", source / "cluster/job.slurm", "plan.json", "faulty.csv", parts).strip()
+        merge = call("sbatch", "--parsable", "--output=faulty.log", source / "examples/cluster/job.slurm", "plan.json", "faulty.csv", parts).strip()
         wait_for_end(merge, "FAILED")
         demand(expected in (folder / "faulty.log").read_text(), f"{fault}: {(folder / 'faulty.log').read_text()}")
         demand(not (folder / "faulty.csv").exists(), f"{fault}: a table")

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "impact_damper/analysis/parallel.hpp"
-#include "impact_damper/measured/decay_fit.hpp"
+#include "application/measured/decay_fit.hpp"
 #include "made_records.hpp"
 
 using namespace impact_damper;

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "impact_damper/measured/record.hpp"
+#include "application/measured/record.hpp"
 #include "impact_damper/units.hpp"
 #include "plain_integration.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/measured/record.hpp"
+#include "application/measured/record.hpp"
 
 using namespace impact_damper;
 

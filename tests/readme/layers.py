@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The folders of src/ include only themselves and those above them in the table of docs/design.md.
+"""The folders of src/ include only themselves and those above them in the table of docs/architecture.md.
 
     layers.py SOURCE
 
@@ -23,16 +23,16 @@ def layer_of(path: str, layers: list):
 
 def main() -> int:
     source = Path(sys.argv[1]).resolve()
-    layers = re.findall(r"^\| `([\w/*]+)` \|", (source / "docs/design.md").read_text(encoding="utf-8"), re.M)
+    layers = re.findall(r"^\| `([\w/*]+)` \|", (source / "docs/architecture.md").read_text(encoding="utf-8"), re.M)
     layers = [layer for layer in layers if "/" in layer]
     faults, includes = [], 0
     for file in sorted((source / "src").rglob("*.?pp")):
-        path = str(file.relative_to(source / "src"))
+        path = str(file.relative_to(source / "src")).removeprefix("include/")
         own = layer_of(path, layers)
         if own is None:
-            faults.append(f"src/{path}: docs/design.md does not name its folder")
+            faults.append(f"src/{path}: docs/architecture.md does not name its folder")
             continue
-        for included in re.findall(r'^#include "(impact_damper/[^"]+)"', file.read_text(encoding="utf-8"), re.M):
+        for included in re.findall(r'^#include "((?:impact_damper|application)/[^"]+)"', file.read_text(encoding="utf-8"), re.M):
             includes += 1
             if layer_of(included, layers) is None or layer_of(included, layers) > own:
                 faults.append(f"src/{path}: includes {included}, which stands below it")

@@ -19,7 +19,7 @@
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/responses/response_file.hpp"
 
 namespace {
 

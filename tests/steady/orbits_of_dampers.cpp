@@ -10,7 +10,7 @@
 
 #include "forced_scene.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/branches.hpp"
+#include "impact_damper/orbits/branches.hpp"
 #include "list_of_one.hpp"
 #include "reference.hpp"
 

@@ -1,4 +1,4 @@
-#include "impact_damper/steady/poincare_map.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/kept_quantities.hpp"
+#include "application/sweeps/kept_quantities.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/lyapunov.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
 
 using namespace impact_damper;
 

@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/lightest_design.hpp"
+#include "application/sweeps/lightest_design.hpp"
 
 #include <doctest/doctest.h>
 

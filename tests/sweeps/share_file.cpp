@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/share_file.hpp"
+#include "application/sweeps/share_file.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/syscall.h>
@@ -10,7 +10,7 @@
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
+#include "application/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 namespace fs = std::filesystem;
