@@ -98,7 +98,7 @@ class Module(unittest.TestCase):
 
     @staticmethod
     def first_times(scene: dict):
-        """0 to 5 as the program takes them: in seconds beside a scene in units."""
+        """0 to 5 as the program takes them: in seconds for a scene in units."""
         if "mass" not in scene:
             return 0, 5, 101
         return 0, 5 / math.sqrt(scene["mass"] / scene["stiffness"]), 101

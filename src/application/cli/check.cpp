@@ -123,7 +123,7 @@ Command check_command() {
       "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
       "itself, and a run with the scene that it is named after, if --scenes has one. A sweep is given by\n"
       "its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:\n"
-      "that they are as they were written is told by their digest. data/schema/ holds JSON Schemas.\n\n"
+      "their digest shows whether they are as they were written. data/schema/ holds JSON Schemas.\n\n"
       "Examples:\n"
       "  impact-damper check scene data/scenes/*.json\n"
       "  impact-damper check run mine.json";

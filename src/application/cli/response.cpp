@@ -7,8 +7,8 @@
 
 #include "commands.hpp"
 #include "impact_damper/base/number_text.hpp"
-#include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/responses/response_file.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"
@@ -146,8 +146,9 @@ std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool
     if (const auto axis = axis_of(arguments, text, variables)) axes.push_back(*axis);
   if (axes.size() != needed) return axes;
   if (is_sweep && is_initial_value(axes[0].number)) {
-    arguments.reject("--vary", "must be no initial value in a sweep, which carries the motion along; got " +
-                                   in_quotes(given[0]));
+    arguments.reject("--vary",
+                     "must not vary an initial condition: a sweep goes on from the motion before; got " +
+                         in_quotes(given[0]));
   } else if (!is_sweep && axes[0].number == axes[1].number) {
     arguments.reject("--vary", "must be two different numbers, got " + in_quotes(given[0]) + " and " +
                                    in_quotes(given[1]));
@@ -368,7 +369,7 @@ void warn_of(const LyapunovExponents& found, std::size_t numbers) {
   if (const std::size_t given = found.exponents.size(); 0 < given && given < numbers)
     warn(std::to_string(given) + " of " + std::to_string(numbers) +
          " exponents are given: the others are minus infinity, because masses stick, or too far below to be "
-         "told");
+         "found");
   if (found.one_sided)
     warn("several masses meet walls at one instant: the exponents are of changes that keep them together");
 }

@@ -6,13 +6,13 @@
 #include <sstream>
 #include <vector>
 
+#include "application/reproduction/scene_runs.hpp"
 #include "commands.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "application/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 #include "interruption.hpp"
 #include "output.hpp"
@@ -207,12 +207,12 @@ Options output_options() {
       "what to record, with commas between: half_cycles (default),\n"
       "impacts, contacts, energy, history");
   add("--history", "T0:T1:N",
-      "record the motion at N equally spaced times from T0 to T1, both\nincluded, in seconds beside a scene "
+      "record the motion at N equally spaced times from T0 to T1, both\nincluded, in seconds for a scene "
       "in units; may be repeated, in\norder of time",
       Option::Takes::repeated_value);
   add("--history-below", "A:LENGTH:N",
       "the same over LENGTH, from the end of the first half cycle below\n"
-      "amplitude A on, in seconds and mm beside a scene in units; may be\nrepeated, with descending A",
+      "amplitude A on, in seconds and mm for a scene in units; may be\nrepeated, with descending A",
       Option::Takes::repeated_value);
   add("--format", "NAME",
       "json (default), a run file; or csv, the one section that is\n"

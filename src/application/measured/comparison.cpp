@@ -121,10 +121,11 @@ void remark_on_fit(Comparison& c) {
   for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
     for (std::size_t k = 0; k < j; ++k) {
       if (std::abs(fit.correlation[j][k]) < strong) continue;
-      c.remarks.push_back(std::string(name_of(fit.parameters[k].parameter)) + " and " +
-                          std::string(name_of(fit.parameters[j].parameter)) +
-                          " are hardly told apart: their correlation, in ln(1 - e) and logarithms, is " +
-                          text_of(fit.correlation[j][k]) + ".");
+      c.remarks.push_back(
+          std::string(name_of(fit.parameters[k].parameter)) + " and " +
+          std::string(name_of(fit.parameters[j].parameter)) +
+          " can hardly be distinguished: their correlation, in ln(1 - e) and logarithms, is " +
+          text_of(fit.correlation[j][k]) + ".");
     }
   }
 }
@@ -133,9 +134,9 @@ void remark_on_range(Comparison& c) {
   const SceneInUnits& scene = c.fitted ? c.fitted->scene : c.given.scene;
   const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.damper().clearance;
   if (c.reduction.amplitude.back() > fold)
-    c.remarks.push_back("The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " +
-                        text_of(fold) +
-                        " mm where impacts cease: from there restitution and clearance could be told apart.");
+    c.remarks.push_back(
+        "The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " + text_of(fold) +
+        " mm where impacts cease: from there restitution and clearance could be distinguished.");
 }
 
 void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays& decays) {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "application/report/quantities.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/report/quantities.hpp"
 
 namespace impact_damper {
 namespace {
@@ -323,7 +323,7 @@ std::string prediction_html(const Findings& findings) {
     return paragraph_html(
         "Only one release was simulated (<code>--members 1</code>), so nothing can be said about how far "
         "small differences grow.");
-  if (findings.spread.empty()) return paragraph_html("There is no amplitude whose spread could be told.");
+  if (findings.spread.empty()) return paragraph_html("There is no amplitude of which a spread can be given.");
   const EnsembleOptions shifts;
   const std::string text = count_html(std::ssize(findings.others) + 1) + " releases that differ by at most " +
                            number_html(100 * shifts.step * static_cast<double>(shifts.most_steps)) +
@@ -342,7 +342,7 @@ std::string prediction_html(const Findings& findings) {
   return paragraph_html(
       text + agreement +
       "; then these differences have grown beyond that, as they do where the motion is chaotic, and no "
-      "single run tells the amplitude at a given time any better. The greatest spread is " +
+      "single run gives the amplitude at a given time any better. The greatest spread is " +
       percent_html(greatest) + ", the last " + percent_html(last) + ".");
 }
 

@@ -297,7 +297,7 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
   }
   asked.axis = read_axes(item, 1)[0];
   if (is_initial_value(asked.axis.number))
-    item.reject("vary", "must be no initial value in a sweep, which carries the motion along");
+    item.reject("vary", "must not vary an initial condition: a sweep goes on from the motion before");
   std::vector<SceneState> all{{}};  // first the scene's release, which is not known here
   all.insert(all.end(), starts.begin(), starts.end());
   for (const SweepStart& start : nudged(all, nudge)) asked.sweeps.push_back({start, {}, {}});

@@ -10,8 +10,8 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/simulate.hpp"
 #include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/sweep.hpp"
 
 namespace impact_damper {
@@ -451,7 +451,7 @@ KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, con
       Number number = quantity.value(findings, at);
       if (number) *number *= scale(quantity.dimension);
       if (number && !std::isfinite(*number))
-        throw NumericalError(each.column() + " went astray: it is " + number_text(*number));
+        throw NumericalError(each.column() + " is not finite: " + number_text(*number));
       found.numbers.push_back(number);
     }
     found.end = findings.end();

@@ -60,8 +60,8 @@ class CsvTable {
   }
   static void append(std::string& line, const std::string& name, double value, double scale) {
     if (!std::isfinite(value * scale))
-      throw NumericalError("the run went astray: a number in its \"" + name + "\" is " +
-                           number_text(value * scale));
+      throw NumericalError("a number in \"" + name +
+                           "\" of the run is not finite: " + number_text(value * scale));
     append_number(line, value * scale);
   }
   static void append(std::string& line, const std::string& name, const std::optional<double>& value,
