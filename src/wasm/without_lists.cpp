@@ -3,6 +3,7 @@
 // because recorded.hpp says that they are instantiated elsewhere.
 #include <stdexcept>
 
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/math/scalar.hpp"
@@ -18,22 +19,22 @@ namespace {
 }  // namespace
 
 template <Scalar Real, DampersObserver Observer>
-Outcome run_exact_dampers(const Scene& scene, const Exact& options, Observer& observer);
+Outcome run_exact_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
-Outcome run_restitution_dampers(const Scene& scene, const Restitution& options, Observer& observer);
+Outcome run_restitution_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
-Outcome run_cem_dampers(const Scene& scene, const Cem& options, Observer& observer);
+Outcome run_cem_dampers(const Checked& run, Observer& observer);
 
 template <>
-Outcome run_exact_dampers<double>(const Scene&, const Exact&, Recorder&) {
+Outcome run_exact_dampers<double>(const Checked&, Recorder&) {
   refuse();
 }
 template <>
-Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&) {
+Outcome run_restitution_dampers<double>(const Checked&, Recorder&) {
   refuse();
 }
 template <>
-Outcome run_cem_dampers<double>(const Scene&, const Cem&, Recorder&) {
+Outcome run_cem_dampers<double>(const Checked&, Recorder&) {
   refuse();
 }
 

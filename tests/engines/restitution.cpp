@@ -6,7 +6,7 @@ namespace impact_damper {
 
 template <class Real>
 Outcome observed(const Scene& scene, const Restitution& options, TestObserver<Real>& observer) {
-  return run_restitution<Real>(scene, options, observer);
+  return run_restitution<Real>(checked(scene, options), observer);
 }
 template Outcome observed(const Scene&, const Restitution&, TestObserver<double>&);
 template Outcome observed(const Scene&, const Restitution&, TestObserver<long double>&);

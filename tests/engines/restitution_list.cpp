@@ -4,7 +4,7 @@
 namespace impact_damper {
 
 Outcome observed_list(const Scene& scene, const Restitution& options, TestObserver<long double>& observer) {
-  return run_restitution_dampers<long double>(scene, options, observer);
+  return run_restitution_dampers<long double>(checked(scene, options), observer);
 }
 
 }  // namespace impact_damper

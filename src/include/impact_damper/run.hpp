@@ -139,8 +139,8 @@ struct Record {
   bool energy = false;
   // History by times or by amplitudes, not both in one run; at most most_samples in all, with a list of n
   // dampers most_samples / n.
-  std::vector<HistoryWindow> history;          // ascending, not overlapping
-  std::vector<AmplitudeWindow> history_below;  // of descending amplitudes
+  std::vector<HistoryWindow> history{};          // ascending, not overlapping
+  std::vector<AmplitudeWindow> history_below{};  // of descending amplitudes
 };
 
 // Why and when a run ended. An engine returns this; all else it passes to its observer

@@ -37,6 +37,7 @@
 
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/cem_engine.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/math/scalar.hpp"
 
 namespace impact_damper {
@@ -52,24 +53,19 @@ Cem resolved(const Scene& scene, Cem options);
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 
 // Runs a scene without a list of dampers, or with a list of one, for an observer with the members of
-// Recorder. Checks the options first: throws InvalidArguments with the problems; throws NumericalError where
-// the numbers overflow.
+// Recorder. Throws NumericalError where the numbers overflow.
 template <Scalar Real = double, RunObserver Observer>
-Outcome run_cem(const Scene& scene, const Cem& options, Observer& observer) {
+Outcome run_cem(const Checked& run, Observer& observer) {
   require_arithmetic();
-  const Cem complete = resolved(scene, options);
-  require_none(problems_of(scene, complete));
-  return CemEngine<Real, Observer, ForOne>(scene, complete, observer).run();
+  return CemEngine<Real, Observer, ForOne>(run.scene(), run.options<Cem>(), observer).run();
 }
 
 // Runs a scene with a list of dampers in the same way.
 template <Scalar Real = double, DampersObserver Observer>
-Outcome run_cem_dampers(const Scene& scene, const Cem& options, Observer& observer) {
-  if (scene.dampers.size() == 1) return run_cem<Real>(scene, options, observer);
+Outcome run_cem_dampers(const Checked& run, Observer& observer) {
+  if (run.scene().dampers.size() == 1) return run_cem<Real>(run, observer);
   require_arithmetic();
-  const Cem complete = resolved(scene, options);
-  require_none(problems_of(scene, complete));
-  return CemEngine<Real, Observer, ForSeveral>(scene, complete, observer).run();
+  return CemEngine<Real, Observer, ForSeveral>(run.scene(), run.options<Cem>(), observer).run();
 }
 
 }  // namespace impact_damper

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/math/scalar.hpp"
@@ -19,11 +20,12 @@
 
 namespace impact_damper {
 
-// Runs a scene that problems_of finds nothing wrong with, and reports to `observer` what it asks for.
+// Runs a scene without a list of dampers, and reports to `observer` what it asks for.
 template <Scalar Real, RunObserver Observer>
-Outcome run_exact(const Scene& scene, const Exact& options, Observer& observer) {
-  return with_system<Real>(scene,
-                           [&](const auto& system) { return run_exact(system, scene, options, observer); });
+Outcome run_exact(const Checked& run, Observer& observer) {
+  return with_system<Real>(run.scene(), [&](const auto& system) {
+    return run_exact(system, run.scene(), run.options<Exact>(), observer);
+  });
 }
 
 template <class Real, class Force, class Observer>

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/engines/secondary_masses.hpp"
@@ -512,11 +513,12 @@ class ExactOfDampers {
   Real follow_from_{0};                // walls with this K or more follow in these pieces
 };
 
-// Runs a scene with a list of dampers that problems_of finds nothing wrong with.
+// Runs a scene with a list of dampers.
 template <Scalar Real, DampersObserver Observer>
-Outcome run_exact_dampers(const Scene& scene, const Exact& options, Observer& observer) {
-  return with_system<Real>(
-      scene, [&](const auto& system) { return run_exact_dampers(system, scene, options, observer, {}); });
+Outcome run_exact_dampers(const Checked& run, Observer& observer) {
+  return with_system<Real>(run.scene(), [&](const auto& system) {
+    return run_exact_dampers(system, run.scene(), run.options<Exact>(), observer, {});
+  });
 }
 
 // modes: empty, or those that several runs of one scene share.

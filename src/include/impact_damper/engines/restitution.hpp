@@ -17,6 +17,7 @@
 #pragma once
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/math/scalar.hpp"
@@ -25,11 +26,12 @@
 
 namespace impact_damper {
 
-// Runs a scene that problems_of finds nothing wrong with and that begins between the walls, 0 <= y0 <= 1.
+// Runs a scene without a list of dampers.
 template <Scalar Real, RunObserver Observer>
-Outcome run_restitution(const Scene& scene, const Restitution& options, Observer& observer) {
-  return with_system<Real>(
-      scene, [&](const auto& system) { return run_restitution(system, scene, options, observer); });
+Outcome run_restitution(const Checked& run, Observer& observer) {
+  return with_system<Real>(run.scene(), [&](const auto& system) {
+    return run_restitution(system, run.scene(), run.options<Restitution>(), observer);
+  });
 }
 
 template <class Real, class Force, class Observer>

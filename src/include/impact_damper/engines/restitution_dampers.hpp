@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/engines/secondary_masses.hpp"
@@ -365,8 +366,8 @@ class RestitutionOfDampers {
       if (slowest < per_speed) slowest = per_speed;
     }
     const Real a = on_all / mass_, heavy = (1 + everyone.mass) * (1 + everyone.mass);
-    const bool alone = !some_rest_ && !chattering_.empty() &&
-                       everyone.mass == masses_.nu[chattering_.front().index];
+    const bool alone =
+        !some_rest_ && !chattering_.empty() && everyone.mass == masses_.nu[chattering_.front().index];
     joining_.assign(1, {});
     Real longest{0};
     for (const Chattering& each : chattering_) {
@@ -462,12 +463,12 @@ class RestitutionOfDampers {
   std::vector<char> joins_;
 };
 
-// Runs a scene with a list of dampers that problems_of finds nothing wrong with and in which each secondary
-// mass begins between its walls, 0 <= y0 <= clearance.
+// Runs a scene with a list of dampers.
 template <Scalar Real, DampersObserver Observer>
-Outcome run_restitution_dampers(const Scene& scene, const Restitution& options, Observer& observer) {
-  return with_system<Real>(
-      scene, [&](const auto& system) { return run_restitution_dampers(system, scene, options, observer); });
+Outcome run_restitution_dampers(const Checked& run, Observer& observer) {
+  return with_system<Real>(run.scene(), [&](const auto& system) {
+    return run_restitution_dampers(system, run.scene(), run.options<Restitution>(), observer);
+  });
 }
 
 template <class Real, class Force, class Observer>
