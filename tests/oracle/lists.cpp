@@ -1,4 +1,4 @@
-#include "several_scenes.hpp"
+#include "lists.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 
 #include "reference.hpp"
 
-namespace several {
+namespace oracle {
 
 using impact_damper::Scene, impact_damper::SceneDamper;
 
-Scene random_scene(std::uint64_t seed) {
+Scene random_list(std::uint64_t seed) {
   reference::Random random(seed);
   Scene scene;
   scene.x0 = random.uniform(-5, 5);
@@ -45,7 +45,7 @@ Scene random_scene(std::uint64_t seed) {
   return scene;
 }
 
-Scene round_scene(std::uint64_t seed) {
+Scene round_list(std::uint64_t seed) {
   reference::Random random(seed);
   const auto one_of = [&](std::initializer_list<double> values) {
     return values.begin()[random.bits() % values.size()];
@@ -78,8 +78,8 @@ Scene round_scene(std::uint64_t seed) {
   return scene;
 }
 
-Scene random_compliant_scene(std::uint64_t seed) {
-  Scene scene = random_scene(seed);
+Scene random_compliant_list(std::uint64_t seed) {
+  Scene scene = random_list(seed);
   reference::Random random(seed ^ (std::uint64_t(1) << 40));
   scene.until_time = random.uniform(3, 20);
   if (random.chance(0.2)) {  // as many again
@@ -115,8 +115,8 @@ Scene random_compliant_scene(std::uint64_t seed) {
   return scene;
 }
 
-Scene round_compliant_scene(std::uint64_t seed) {
-  Scene scene = round_scene(seed);
+Scene round_compliant_list(std::uint64_t seed) {
+  Scene scene = round_list(seed);
   reference::Random random(seed ^ (std::uint64_t(1) << 40));
   const auto one_of = [&](std::initializer_list<double> values) {
     return values.begin()[random.bits() % values.size()];
@@ -192,7 +192,7 @@ Scene pressing_scene(reference::Random& random) {
 
 }  // namespace
 
-Scene aimed_scene(std::uint64_t seed) {
+Scene aimed_list(std::uint64_t seed) {
   reference::Random random(seed);
   if (random.chance(0.3)) return quiet_scene(random);
   // Chattering beside those that stick, masses of all sizes.
@@ -209,7 +209,7 @@ Scene aimed_scene(std::uint64_t seed) {
   return scene;
 }
 
-Scene aimed_compliant_scene(std::uint64_t seed) {
+Scene aimed_compliant_list(std::uint64_t seed) {
   reference::Random random(seed);
   if (random.chance(0.3)) return quiet_scene(random);
   Scene scene = pressing_scene(random);
@@ -245,4 +245,4 @@ std::string text_of(const Scene& scene) {
   return text.str() + "]}\n";
 }
 
-}  // namespace several
+}  // namespace oracle

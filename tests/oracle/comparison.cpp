@@ -1,12 +1,12 @@
-// The comparison with the oracle for several dampers, against planted faults.
+// The comparison with the oracle, against planted faults.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 
-#include "several_compare.hpp"
-#include "several_scenes.hpp"
+#include "compare.hpp"
+#include "lists.hpp"
 
-using namespace several;
+using namespace oracle;
 using namespace impact_damper;
 
 TEST_CASE("the comparison finds no difference of the oracle's own run, and every planted fault") {
@@ -14,15 +14,15 @@ TEST_CASE("the comparison finds no difference of the oracle's own run, and every
   const auto found = [](const Program& program, bool all = false) {
     int count = 0;
     for (std::uint64_t seed = 1; seed <= 5; ++seed)
-      for (Scene scene : {random_scene(seed), round_scene(seed)}) {
+      for (Scene scene : {random_list(seed), round_list(seed)}) {
         scene.until_time = std::min(*scene.until_time, 6.0);
         if (!all && count > 0) return count;
-        count += !compare(scene, {}, program).differences.empty();
+        count += !compare(scene, Restitution{}, {.program = program}).differences.empty();
       }
     return count;
   };
   const auto with = [](Fault fault) {
-    return [fault](const Scene& scene) { return run_of_oracle(scene, fault); };
+    return [fault](const Scene& scene) { return run_of_oracle(scene, Walls::rigid, fault); };
   };
   CHECK(found(with(Fault::none), true) == 0);
   for (const Fault fault :
@@ -36,7 +36,7 @@ TEST_CASE("the comparison finds no difference of the oracle's own run, and every
   // Of what is recorded, a little off.
   const auto altered = [&](const std::function<void(Run&)>& alter) {
     return [alter](const Scene& scene) {
-      Run run = run_of_oracle(scene, Fault::none);
+      Run run = run_of_oracle(scene, Walls::rigid);
       alter(run);
       return run;
     };
@@ -58,15 +58,15 @@ TEST_CASE("the comparison finds no difference of the oracle's own run, and every
 
 TEST_CASE(
     "the comparison finds no difference of the oracle's own run, and every fault planted in its walls") {
-  const Tolerances quick{.walls = Walls::compliant, .most_steps = 800};
   const auto found = [&](Fault fault) {
     int count = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed)
-      for (Scene scene : {random_compliant_scene(seed), round_compliant_scene(seed)}) {
+      for (Scene scene : {random_compliant_list(seed), round_compliant_list(seed)}) {
         scene.until_time = std::min(*scene.until_time, 2.0);
-        count += !compare(scene, quick, [fault](const Scene& asked) {
-                    return run_of_oracle(asked, fault, Walls::compliant);
-                  }).differences.empty();
+        const auto planted = [fault](const Scene& asked) {
+          return run_of_oracle(asked, Walls::compliant, fault);
+        };
+        count += !compare(scene, Exact{}, {.program = planted, .most_steps = 800}).differences.empty();
       }
     return count;
   };
