@@ -6,7 +6,7 @@ namespace impact_damper {
 
 template <class Real>
 Outcome observed(const Scene& scene, const Cem& options, TestObserver<Real>& observer) {
-  return run_cem<Real>(checked(scene, options), observer);
+  return CemEngine<Real, TestObserver<Real>, ForOne>(scene, resolved(scene, options), observer).run();
 }
 template Outcome observed(const Scene&, const Cem&, TestObserver<double>&);
 template Outcome observed(const Scene&, const Cem&, TestObserver<long double>&);

@@ -54,7 +54,8 @@ class TestObserver : public Recorder {
   }
 };
 
-// Runs a scene that problems_of finds nothing wrong with.
+// Runs a scene without checked(): differences, and limits, are also taken of scenes just outside of what is
+// allowed.
 template <class Real>
 Outcome observed(const Scene& scene, const Exact& options, TestObserver<Real>& observer);
 template <class Real>
