@@ -184,8 +184,8 @@ epsilon Omega_n, forces by K epsilon.
       "exciting_frequency that of\n"
       "the primary system by itself. The Run is dimensionless, history as well:\n";
   for (const impact_damper::UnitField& field : impact_damper::unit_fields) {
-    const std::string unit = field.unit.empty() ? "" : "; in " + std::string(field.unit);
-    add(field.name, std::string(field.meaning) + unit);
+    const std::string unit(unit_of(field.dimension, true));
+    add(field.name, std::string(field.meaning) + (unit.empty() ? "" : "; in " + unit));
   }
   return text;
 }

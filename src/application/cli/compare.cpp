@@ -81,9 +81,8 @@ std::string summary_of(const Comparison& c) {
   if (c.fit) {
     std::vector<std::vector<std::string>> rows{{"number", "scene", "best", "90 % interval", "searched"}};
     for (const FittedParameter& each : c.fit->parameters) {
-      const std::string of(unit_of(each.parameter));
       const auto range = [&](double low, double high) {
-        return text_of(low) + " to " + text_of(high) + (of.empty() ? "" : " " + of);
+        return with_unit(text_of(low) + " to " + text_of(high), unit_of(each.parameter));
       };
       rows.push_back({std::string(name_of(each.parameter)), text_of(value_of(c.given.scene, each.parameter)),
                       text_of(each.best), range(each.low, each.high),

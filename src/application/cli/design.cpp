@@ -55,9 +55,15 @@ DesignRange range_of(Arguments& arguments, const std::string& option, DesignRang
   return otherwise;
 }
 
+// Returns a number for reading: "0.0532", "1980".
+std::string readable(double value) { return number_text(*parse_number(rounded_text(value, 3))); }
+
 struct Asked {
   DesignQuestion question;
   bool dimensionless = false;
+
+  std::string unit(Dimension each) const { return std::string(unit_of(each, !dimensionless)); }
+  std::string text(double value, Dimension each) const { return with_unit(readable(value), unit(each)); }
 };
 
 // Returns the numbers that may have a tolerance, by their names in a scene in units.
@@ -102,10 +108,6 @@ Asked asked_of(Arguments& arguments) {
   return asked;
 }
 
-// Returns a number for reading: "0.0532", "1980".
-std::string readable(double value) { return number_text(*parse_number(rounded_text(value, 3))); }
-std::string of_unit(double value, std::string_view unit) { return readable(value) + ' ' + std::string(unit); }
-
 std::string percent(double share, int digits) { return rounded_text(100 * share, digits) + " %"; }
 
 std::string tolerances_text(const Asked& asked) {
@@ -113,33 +115,35 @@ std::string tolerances_text(const Asked& asked) {
   for (const SampledNumber& each : asked.question.tolerances) {
     if (!text.empty()) text += ", ";
     text += std::string(each.variable.name) + " +-" +
-            (each.relative ? percent(each.width, 3)
-                           : rounded_text(each.width, 3) + (each.variable.unit.empty() || asked.dimensionless
-                                                                ? ""
-                                                                : ' ' + std::string(each.variable.unit)));
+            (each.relative
+                 ? percent(each.width, 3)
+                 : with_unit(rounded_text(each.width, 3), asked.dimensionless ? "" : each.variable.unit));
   }
   return text;
 }
 
-std::string table_of(const DesignQuestion& question, const DesignAnswer& answer, const DesignUnits& units) {
-  const std::string time(units.time);
+std::string table_of(const Asked& asked, const DesignAnswer& answer) {
+  const DesignQuestion& question = asked.question;
+  const std::string time = asked.unit(Dimension::time);
   std::vector<std::vector<std::string>> rows{
       {"within", "secondary mass", "clearance", "nominal", percent(question.share, 3), "slowest",
        "in time, of " + std::to_string(question.neighbours), "impact speed", "wall force"},
-      {time, std::string(units.mass), std::string(units.length), time, time, time, "and 95 % interval",
-       std::string(units.velocity), std::string(units.force)}};
+      {time, asked.unit(Dimension::mass), asked.unit(Dimension::length), time, time, time,
+       "and 95 % interval", asked.unit(Dimension::velocity), asked.unit(Dimension::force)}};
   for (const FoundDesign& each : answer.designs) {
     const DesignCheck& check = each.check;
     const auto known = [&](const std::optional<double>& number) {
       return number ? readable(*number) : "> " + readable(longest_followed * question.time);
     };
-    rows.push_back(
-        {readable(each.time), number_text(each.design.secondary_mass), number_text(each.design.clearance),
-         known(check.nominal_time), known(check.time_of_share), known(check.slowest),
-         std::to_string(check.in_time) + ", " + rounded_text(100 * check.share.low, 4) + " to " +
-             percent(check.share.high, 4),
-         readable(check.largest_impact_speed),
-         check.largest_wall_force ? readable(*check.largest_wall_force * units.force_scale) : "-"});
+    rows.push_back({readable(each.time), number_text(each.design.secondary_mass),
+                    number_text(each.design.clearance), known(check.nominal_time), known(check.time_of_share),
+                    known(check.slowest),
+                    std::to_string(check.in_time) + ", " + rounded_text(100 * check.share.low, 4) + " to " +
+                        percent(check.share.high, 4),
+                    readable(check.largest_impact_speed),
+                    check.largest_wall_force
+                        ? readable(force_in_unit(*check.largest_wall_force, question, asked.dimensionless))
+                        : "-"});
   }
   return aligned(rows);
 }
@@ -165,7 +169,7 @@ std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
   const double stiffness = *scene.damper().contact_stiffness;
   const std::string text =
       "Wall forces are those of walls of " +
-      (asked.dimensionless ? readable(stiffness / *scene.stiffness) + " K" : of_unit(stiffness, "N/m"));
+      asked.text(asked.dimensionless ? stiffness / *scene.stiffness : stiffness, Dimension::stiffness);
   if (stiffness != ratio * *scene.stiffness) return text + ".\n";
   return text + ", " + readable(ratio) +
          " times the primary stiffness: an assumption, the program's\ndefault. They go as its square root: "
@@ -174,16 +178,17 @@ std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
 }
 
 // Returns a sentence on viscous damping alone, if its decay takes at most 1.5 times the time asked for.
-std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer& answer,
-                             const DesignUnits& units) {
+std::string viscous_in_words(const Asked& asked, const DesignAnswer& answer) {
   constexpr double nearly = 1.5;
   const auto& time = answer.time_of_viscous_damping;
-  if (!time || *time > nearly * question.time) return "";
-  return "Viscous damping alone, without a secondary mass, takes " + of_unit(*time, units.time) + ".\n";
+  if (!time || *time > nearly * asked.question.time) return "";
+  return "Viscous damping alone, without a secondary mass, takes " + asked.text(*time, Dimension::time) +
+         ".\n";
 }
 
 // Returns advice on the bounds that decided the result.
-std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer, const DesignUnits& units) {
+std::string advice_on(const Asked& asked, const DesignAnswer& answer) {
+  const DesignQuestion& question = asked.question;
   const Design& design = answer.designs.front().design;
   std::string text;
   if (!answer.met) text += "A heavier secondary mass, more time or narrower tolerances may do.\n";
@@ -194,8 +199,8 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
   if (design.clearance == question.clearance.most) {
     const auto failing = failing_clearance(question.amplitude, *question.scene.damper().restitution);
     text += "The clearance is the widest of its range: a wider one may do better" +
-            (failing ? "; with " + of_unit(*failing, units.length) + " impacts fail at " +
-                           of_unit(question.amplitude, units.length)
+            (failing ? "; with " + asked.text(*failing, Dimension::length) + " impacts fail at " +
+                           asked.text(question.amplitude, Dimension::length)
                      : std::string()) +
             ".\n";
   }
@@ -204,27 +209,26 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
 
 std::string text_of(const Asked& asked, const DesignAnswer& answer) {
   const DesignQuestion& question = asked.question;
-  const DesignUnits units = units_of(question, asked.dimensionless);
-  const auto range = [&](const DesignRange& each, std::string_view unit) {
-    return readable(each.least) + " to " + of_unit(each.most, unit);
+  const auto range = [&](const DesignRange& each, Dimension dimension) {
+    return readable(each.least) + " to " + asked.text(each.most, dimension);
   };
-  const std::string head = of_unit(std::abs(*question.scene.initial_displacement), units.length) +
-                           " to below " + of_unit(question.amplitude, units.length) + " within " +
-                           of_unit(question.time, units.time) + " in " + percent(question.share, 3) +
+  const std::string head = asked.text(std::abs(*question.scene.initial_displacement), Dimension::length) +
+                           " to below " + asked.text(question.amplitude, Dimension::length) + " within " +
+                           asked.text(question.time, Dimension::time) + " in " + percent(question.share, 3) +
                            " of all cases with " + tolerances_text(asked) + "\nsearched: secondary mass " +
-                           range(question.secondary_mass, units.mass) + ", clearance " +
-                           range(question.clearance, units.length) + "\n\n";
+                           range(question.secondary_mass, Dimension::mass) + ", clearance " +
+                           range(question.clearance, Dimension::length) + "\n\n";
   if (answer.designs.empty())
     return head + "No design was found. The heaviest secondary mass takes longer than " +
-           of_unit(longest_followed * question.time, units.time) + " with each clearance.\n";
-  const std::string table = table_of(question, answer, units) + '\n';
+           asked.text(longest_followed * question.time, Dimension::time) + " with each clearance.\n";
+  const std::string table = table_of(asked, answer) + '\n';
   const std::string verdict =
       answer.met
           ? verdict_on(question, answer.designs.front().check)
           : "No design was found. The heaviest secondary mass is soonest with this clearance, within " +
-                of_unit(answer.designs.front().time, units.time) + ".\n";
-  return head + table + walls_in_words(asked, answer) + verdict + viscous_in_words(question, answer, units) +
-         advice_on(question, answer, units);
+                asked.text(answer.designs.front().time, Dimension::time) + ".\n";
+  return head + table + walls_in_words(asked, answer) + verdict + viscous_in_words(asked, answer) +
+         advice_on(asked, answer);
 }
 
 // Reports problems of the question as those of options.

@@ -55,8 +55,8 @@ Asked asked_of(Arguments& arguments) {
   const Scene& scene = asked.file.scene;
   if (scene.force_amplitude != 0) arguments.reject("--dampers", "needs a free decay: the scene has a force");
   DamperSetQuestion& question = asked.question;
-  const double length = asked.file.scales ? asked.file.scales->length : 1;
-  asked.mass = asked.file.scales ? asked.file.scales->mass : 1;
+  const double length = scale_of(Dimension::length, asked.file.scales);
+  asked.mass = scale_of(Dimension::mass, asked.file.scales);
   question.count = arguments.whole_number("--dampers", within(1, double(most_set_dampers))).value_or(1);
   question.release = arguments.number("--from", above(0)).value_or(std::abs(scene.x0) * length);
   if (question.release == 0 && !arguments.given("--from"))

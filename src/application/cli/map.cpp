@@ -30,11 +30,6 @@ std::string in_symbols(std::string text) {
       text.replace(at, std::string_view(name).size(), symbol);
   return text;
 }
-std::string with_unit(const std::string& number, std::string_view unit) {
-  std::string text = number;
-  if (!unit.empty()) text.append(1, ' ').append(unit);
-  return text;
-}
 
 struct Named {
   const Plan& plan;

@@ -65,32 +65,16 @@ struct Variable {
 };
 using Variables = std::map<std::string, Variable, std::less<>>;
 
-double scale_of(std::string_view unit, const Scales& scales) {
-  if (unit == "kg") return scales.mass;
-  if (unit == "N/m") return scales.stiffness;
-  if (unit == "mm") return scales.length;
-  if (unit == "mm/s") return scales.velocity();
-  if (unit == "N") return scales.force();
-  if (unit == "Hz") return scales.frequency();
-  if (unit == "N s/m") return scales.damping();
-  return 1;
-}
-
 // Returns the numbers of a scene by name; those of a scene in units also by their names in its file.
 Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) {
   Variables variables;
-  for (const NamedSceneNumber& each : numbers_of(scene))
-    variables[each.name] = {each.number, within(each.least, each.most)};
-  if (!scales) return variables;
-  for (const UnitField& field : unit_fields) {
-    const bool in_list = field.number.of_damper && !has_one_damper(scene);
-    for (std::size_t i = 0; i < (in_list ? scene.dampers.size() : 1); ++i) {
-      const std::string number = in_list ? "_" + std::to_string(i + 1) : "";
-      const auto made = variables.find(std::string(field.becomes) + number);
-      if (made != variables.end() && !field.also_dimensionless)
-        variables[std::string(field.name) + number] = {made->second.number, made->second.range,
-                                                       scale_of(field.unit, *scales)};
-    }
+  for (const auto& [name, number, least, most] : numbers_of(scene)) {
+    const std::string_view its = field_of(number).name;
+    variables[name] = {number, within(least, most)};
+    for (const UnitField& field : unit_fields)
+      if (scales && field.becomes == its && field.dimension != Dimension::ratio)
+        variables[std::string(field.name) + name.substr(its.size())] = {number, within(least, most),
+                                                                        scales->of(field.dimension)};
   }
   return variables;
 }
@@ -194,7 +178,6 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
 // Reads X:V:Y:W in the units of the scene's file; with a list of dampers X:V, the dampers starting as in the
 // scene.
 std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file) {
-  const std::optional<Scales>& scales = file.scales;
   const std::size_t count = has_one_damper(file.scene) ? 4 : 2;
   std::array<double, 4> numbers{};
   for (std::size_t i = 0; i < count; ++i) {
@@ -202,8 +185,7 @@ std::optional<SceneState> parse_state(std::string_view text, const SceneFile& fi
     if ((colon == std::string_view::npos) != (i + 1 == count)) return std::nullopt;
     const auto number = parse_number(text.substr(0, colon));
     if (!number) return std::nullopt;
-    const double length = scales ? scales->length : 1, velocity = scales ? scales->velocity() : 1;
-    numbers[i] = *number / (i % 2 == 0 ? length : velocity);
+    numbers[i] = *number / scale_of(i % 2 == 0 ? Dimension::length : Dimension::velocity, file.scales);
     text = colon == std::string_view::npos ? "" : text.substr(colon + 1);
   }
   SceneState state = State<double>{numbers[0], numbers[1], numbers[2], numbers[3]};
@@ -234,7 +216,7 @@ double nudge_of(Arguments& arguments, const SceneFile& file) {
   const auto nudge = arguments.number("--nudge", nudges);
   if (nudge && !arguments.given("--start"))
     arguments.reject("--nudge", "parts the sweeps of several starts: needs --start");
-  return nudge.value_or(0) / (file.scales ? file.scales->length : 1);
+  return nudge.value_or(0) / scale_of(Dimension::length, file.scales);
 }
 
 SteadyRule rule_of(Arguments& arguments, SteadyRule rule) {
@@ -389,7 +371,7 @@ struct Request {
   Averaging averaging;
   Threads threads;
   Format format = Format::json;
-  std::optional<SiUnits> units;  // of the CSV
+  bool in_si = false;  // the CSV
   bool quiet = false;
 };
 
@@ -450,7 +432,7 @@ Response found_for(const Request& asked) {
 
 std::string text_of(const Request& asked) {
   const Response found = found_for(asked);
-  return asked.format == Format::csv ? response_csv(found, asked.units)
+  return asked.format == Format::csv ? response_csv(found, asked.in_si ? asked.file.scales : std::nullopt)
                                      : response_text(found, asked.file.scales);
 }
 
@@ -462,7 +444,7 @@ std::string text_of_valid(const Request& asked) {
     std::vector<Problem> problems = error.problems();
     for (Problem& each : problems)
       for (const Axis& axis : asked.axes)
-        if (each.field == axis.number.name()) each = {"vary", each.field + " " + each.message};
+        if (each.field == name_of(axis.number)) each = {"vary", each.field + " " + each.message};
     throw InvalidArguments(std::move(problems));
   }
 }
@@ -498,18 +480,16 @@ int respond(Arguments& arguments) {
   const auto output = arguments.file("--output");
   arguments.reject_overwriting("--output", output, {arguments.text("--scene").value_or("")});
   asked.format = format_of(arguments, output, {Format::json, Format::csv});
-  const bool in_si = arguments.flag("--si");
-  if (in_si && asked.format != Format::csv)
+  asked.in_si = arguments.flag("--si");
+  if (asked.in_si && asked.format != Format::csv)
     arguments.reject(
         "--si", "is for --format csv; the JSON file is dimensionless, its units say what a unit is in SI");
-  if (in_si && !asked.file.scales) arguments.reject("--si", "needs a scene in units, by --scene");
+  if (asked.in_si && !asked.file.scales) arguments.reject("--si", "needs a scene in units, by --scene");
   asked.threads = threads_of(arguments);
   asked.quiet = arguments.flag("--quiet");
   arguments.finish();
   prepare_output(output);
   if (!asked.quiet) warn_of_cautions(this_command, asked.file.scene, asked.file.scales);
-  if (in_si) asked.units = si_units_of(*asked.file.scales);
-
   write_output(output,
                saying_options([&] { return text_of_valid(asked); }, arguments.text("--scene").value_or("")));
   return 0;

@@ -51,59 +51,51 @@ void read_sections(Arguments& arguments, Record& record) {
   }
 }
 
-// One dimensionless unit of time and of length in the numbers of --history and --history-below: in seconds
-// and millimetres for a scene in units.
-struct Given {
-  double time = 1, length = 1;
-};
-
-Given given_in(const std::optional<Scales>& scales) {
-  return scales ? Given{scales->time(), scales->length} : Given{};
-}
-
 Record record_of(Arguments& arguments, const SceneFile& file) {
   Record record;
   read_sections(arguments, record);
   if (arguments.given("--history") && arguments.given("--history-below")) {
     arguments.reject("--history", "either it or --history-below must be given, got both");
   }
-  const Given unit = given_in(file.scales);
+  // The size of a dimensionless unit in the unit of the given numbers: s and mm for a scene in units, else 1.
+  const double time_unit = scale_of(Dimension::time, file.scales),
+               length_unit = scale_of(Dimension::length, file.scales);
   const std::string seconds = file.scales ? " s" : "", millimetres = file.scales ? " mm" : "";
   double last = 0;
   for (const std::string& text : arguments.texts("--history")) {
     const std::optional<Triple> window = parse_triple(text);
     if (!window ||
-        !(window->first >= last && window->second > window->first && window->second <= 1e12 * unit.time) ||
+        !(window->first >= last && window->second > window->first && window->second <= 1e12 * time_unit) ||
         !(window->count >= 2 && window->count <= most_samples)) {
       arguments.reject("--history", "must be T0:T1:N with " + number_text(last) + " <= T0 < T1 <= " +
-                                        number_text(1e12 * unit.time) + seconds + " and 2 to " +
+                                        number_text(1e12 * time_unit) + seconds + " and 2 to " +
                                         std::to_string(most_samples) + " samples, got " + in_quotes(text));
       continue;
     }
     const std::optional<double> end = file.scene.until_time;
-    if (end && !(window->first / unit.time <= *end)) {
+    if (end && !(window->first / time_unit <= *end)) {
       arguments.reject("--history", "must begin before the end of the run, " +
-                                        (file.scales ? "at " + rounded_text(*end * unit.time, 6) + seconds
+                                        (file.scales ? "at " + rounded_text(*end * time_unit, 6) + seconds
                                                      : "--until-time " + number_text(*end)) +
                                         ", got " + in_quotes(text));
     }
-    record.history.push_back({window->first / unit.time, window->second / unit.time, window->count});
+    record.history.push_back({window->first / time_unit, window->second / time_unit, window->count});
     last = window->second;
   }
-  double above_it = 1e12 * unit.length;
+  double above_it = 1e12 * length_unit;
   for (const std::string& text : arguments.texts("--history-below")) {
     const std::optional<Triple> window = parse_triple(text);
     if (!window ||
         !(window->first > 0 && window->first < above_it && window->second > 0 &&
-          window->second <= 1e12 * unit.time) ||
+          window->second <= 1e12 * time_unit) ||
         !(window->count >= 2 && window->count <= most_samples)) {
       std::string wanted = "must be A:LENGTH:N with 0 < A < " + number_text(above_it) + millimetres;
-      wanted += ", 0 < LENGTH <= " + number_text(1e12 * unit.time) + seconds;
+      wanted += ", 0 < LENGTH <= " + number_text(1e12 * time_unit) + seconds;
       wanted += " and 2 to " + std::to_string(most_samples) + " samples, got " + in_quotes(text);
       arguments.reject("--history-below", wanted);
       continue;
     }
-    record.history_below.push_back({window->first / unit.length, window->second / unit.time, window->count});
+    record.history_below.push_back({window->first / length_unit, window->second / time_unit, window->count});
     above_it = window->first;
   }
   return record;
@@ -191,9 +183,8 @@ int run_scene(Arguments& arguments) {
   warn_of_early_end(program, result, scales);
   warn_of_missing_samples(result, record);
   if (ensemble.members > 1) run_members(*file, result, record, scales, ensemble);
-  std::optional<SiUnits> units;
-  if (in_si) units = si_units_of(*scales);
-  write_output(file, format == Format::csv ? run_csv(result, units) : run_text(result, scales));
+  write_output(file, format == Format::csv ? run_csv(result, in_si ? scales : std::nullopt)
+                                           : run_text(result, scales));
   return 0;
 }
 

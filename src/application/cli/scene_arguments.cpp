@@ -217,7 +217,8 @@ void warn_of_cautions(const std::string& command, const Scene& scene, const std:
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales) {
   const auto warn = [&](const std::string& budget, const std::string& option) {
     std::cerr << command + ": warning: the run ended early, at time " + rounded_text(run.end_time, 6) +
-                     (scales ? " (" + rounded_text(run.end_time * scales->time(), 6) + " s)" : "") +
+                     (scales ? " (" + rounded_text(run.end_time * scales->of(Dimension::time), 6) + " s)"
+                             : "") +
                      ": it had used up its " + budget + "; " + option + " raises that\n";
   };
   const Budget& budget =

@@ -33,8 +33,7 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
     result.decays[std::size_t(i)] =
         simulated_half_cycles(decay_scene(scene, reduction, until, options.fit.seed, i), engine);
   });
-  const Scales scales = scales_of(scene);
-  const double time_unit = scales.time(), length = *scene.damper().clearance;
+  const double time_unit = scales_of(scene).of(Dimension::time), length = *scene.damper().clearance;
   std::vector<std::vector<double>> losses(bins.size());
   for (HalfCycles& rows : result.decays) {
     const std::vector<double> of_bins = log_losses(rows, length, bins);
@@ -71,9 +70,6 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
 }
 
 std::string text_of(double value) { return rounded_text(value, 3); }
-std::string with_unit(double value, std::string_view unit) {
-  return text_of(value) + (unit.empty() ? "" : " " + std::string(unit));
-}
 
 void remark_on_what_is_left_out(Comparison& c) {
   const std::int64_t left_out = c.reduction.clipped + c.reduction.unclear;
@@ -111,10 +107,10 @@ void remark_on_fit(Comparison& c) {
     if (each.open_below && each.open_above) {
       c.remarks.push_back("The record does not tell " + name + ": the whole searched range agrees with it.");
     } else if (each.open_above || (each.open_below && !is_bounded_by_0)) {
-      c.remarks.push_back(
-          "The interval of " + name + " ends where the search did, at " +
-          with_unit(each.open_above ? each.searched_to : each.searched_from, unit_of(each.parameter)) +
-          ": it may be longer on that side.");
+      c.remarks.push_back("The interval of " + name + " ends where the search did, at " +
+                          with_unit(text_of(each.open_above ? each.searched_to : each.searched_from),
+                                    unit_of(each.parameter)) +
+                          ": it may be longer on that side.");
     }
   }
   constexpr double strong = 0.9;
@@ -168,7 +164,7 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   c.reduction = reduced(record_name, record);
   c.loss = loss_of(half_cycles_of(c.reduction, 1, 1), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
-  c.highest_frequency = scales_of(scene).frequency();
+  c.highest_frequency = scales_of(scene).of(Dimension::frequency);
   c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
   tell("simulating the scene");
   c.given = decays_of(scene, engine, c.reduction, c.bins, options);

@@ -387,6 +387,11 @@ std::size_t nodes_for(std::size_t axes) {
   return nodes[axes];
 }
 
+// A parameter has the name of its field.
+const UnitField& field_of(FitParameter parameter) {
+  return *std::ranges::find(unit_fields, name_of(parameter), &UnitField::name);
+}
+
 }  // namespace
 
 // --- Bins -------------------------------------------------------------------------------------------------
@@ -532,39 +537,15 @@ std::vector<double> log_losses(const HalfCycles& rows, double length, const std:
 
 // --- Parameters -------------------------------------------------------------------------------------------
 
-std::string_view unit_of(FitParameter parameter) {
-  return parameter == FitParameter::clearance ? "mm" : parameter == FitParameter::secondary_mass ? "kg" : "";
-}
+std::string_view unit_of(FitParameter parameter) { return unit_of(field_of(parameter).dimension, true); }
 double value_of(const SceneInUnits& scene, FitParameter parameter) {
+  if (const auto& given = field_of(parameter).number.in(scene)) return *given;
   const Scene made = dimensionless(scene);
-  switch (parameter) {
-    case FitParameter::restitution:
-      return made.damper().restitution;
-    case FitParameter::damping_ratio:
-      return made.damping_ratio;
-    case FitParameter::clearance:
-      return *scene.damper().clearance;
-    case FitParameter::secondary_mass:
-      break;
-  }
-  return *scene.damper().secondary_mass;
+  return parameter == FitParameter::restitution ? made.damper().restitution : made.damping_ratio;
 }
 void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
-  switch (parameter) {
-    case FitParameter::restitution:
-      scene.damper().restitution = value;
-      break;
-    case FitParameter::damping_ratio:
-      scene.damping.reset();
-      scene.damping_ratio = value;
-      break;
-    case FitParameter::clearance:
-      scene.damper().clearance = value;
-      break;
-    case FitParameter::secondary_mass:
-      scene.damper().secondary_mass = value;
-      break;
-  }
+  if (parameter == FitParameter::damping_ratio) scene.damping.reset();
+  field_of(parameter).number.in(scene) = value;
 }
 
 Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,

@@ -64,12 +64,12 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
         ", f = " + ratio(subject.scene.force_amplitude) + ", ω = " + ratio(subject.scene.force_frequency);
   if (!std::holds_alternative<Exact>(subject.engine))
     parameters += "; " + std::string(name_of(subject.engine)) + " engine";
-  if (subject.scales) {
+  if (const auto& scales = subject.scales) {
     drawing.table.blocks.push_back(
         {.name = "scales",
-         .columns = {{"time", "1/Omega_n in s", {subject.scales->time()}},
-                     {"length", "unit of length in mm", {subject.scales->length * unit}},
-                     {"frequency", "Omega_n/(2 pi) in Hz", {subject.scales->frequency()}}}});
+         .columns = {{"time", "1/Omega_n in s", {scales->of(Dimension::time)}},
+                     {"length", "unit of length in mm", {scales->length * unit}},
+                     {"frequency", "Omega_n/(2 pi) in Hz", {scales->of(Dimension::frequency)}}}});
   }
   // For several dampers lengths are not divided by a clearance.
   if (findings.several() && !of_one)

@@ -237,7 +237,7 @@ std::string energy_html(const Findings& findings) {
   table.heads.insert(table.heads.end(), {"in units of Kε²", "share"});
   const auto row = [&](const std::string& what, double energy) {
     table.rows.push_back({what});
-    if (scales) table.rows.back().push_back(number_html(energy * scales->energy(), 4));
+    if (scales) table.rows.back().push_back(number_html(energy * scales->of(Dimension::energy), 4));
     table.rows.back().push_back(number_html(energy, 4));
     table.rows.back().push_back(brought > 0 ? percent_html(energy / brought) : "");
   };
@@ -281,7 +281,7 @@ std::string loads_html(const Findings& findings) {
   constexpr double per_hour = 3600;
   const double rate = loads.impacts / loads.time;
   row(findings.forced() ? "Impacts, in the last quarter of the run" : "Impacts, on average over the run",
-      scales ? number_html(rate * per_hour / scales->time()) + " in an hour"
+      scales ? number_html(rate * per_hour / scales->of(Dimension::time)) + " in an hour"
              : number_html(2 * std::numbers::pi * rate) + " in a period 2π/Ω");
   std::string text;
   if (loads.contact) {

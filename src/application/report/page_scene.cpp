@@ -19,17 +19,15 @@ class SceneTable {
  public:
   explicit SceneTable(const Subject& subject) : scales_(subject.scales) {}
 
-  void row(const std::string& what, const std::string& symbol, double value, double scale,
-           const std::string& unit) {
+  void row(const std::string& what, const std::string& symbol, double value, Dimension dimension) {
     std::vector<std::string> cells{what};
-    if (scales_) cells.push_back(unit.empty() ? "" : number_html(value * scale, 4) + ' ' + unit);
+    if (scales_) cells.push_back(dimension == Dimension::ratio ? "" : in_units(value, dimension));
     cells.push_back((symbol.empty() ? "" : "<i>" + symbol + "</i> = ") + number_html(value, 4));
     table_.rows.push_back(std::move(cells));
   }
   // Adds a quantity that only scales, which a dimensionless scene does not have.
-  void scale(const std::string& what, const std::string& symbol, double value, const std::string& unit) {
-    if (scales_)
-      table_.rows.push_back({what, number_html(value, 4) + ' ' + unit, "<i>" + symbol + "</i>, a scale"});
+  void scale(const std::string& what, const std::string& symbol, Dimension dimension) {
+    if (scales_) table_.rows.push_back({what, in_units(1, dimension), "<i>" + symbol + "</i>, a scale"});
   }
   std::string html(const std::string& caption) {
     table_.caption = caption;
@@ -40,71 +38,71 @@ class SceneTable {
   }
 
  private:
+  std::string in_units(double value, Dimension dimension) const {
+    return with_unit(number_html(value * scales_->of(dimension), 4), unit_of(dimension, true));
+  }
   std::optional<Scales> scales_;
   HtmlTable table_;
 };
 
 std::string scene_table(const Subject& subject) {
   const Scene& scene = subject.scene;
-  const Scales scales = subject.scales.value_or(Scales{});
-  const bool rigid = has_rigid_walls(subject.engine);
+  using enum Dimension;
+  const bool rigid = has_rigid_walls(subject.engine), several = !has_one_damper(scene);
   SceneTable table(subject);
-  table.scale("Primary mass", "M", scales.mass, "kg");
-  table.scale("Stiffness", "K", scales.stiffness, "N/m");
-  table.scale("Natural frequency, Ω/2π", "Ω", scales.frequency(), "Hz");
-  const bool several = !has_one_damper(scene);
-  table.scale(several ? "Clearance of the first damper" : "Clearance of the secondary mass", "ε",
-              scales.length, "mm");
+  table.scale("Primary mass", "M", mass);
+  table.scale("Stiffness", "K", stiffness);
+  table.scale("Natural frequency, Ω/2π", "Ω", frequency);
+  table.scale(several ? "Clearance of the first damper" : "Clearance of the secondary mass", "ε", length);
+  const SceneDamper& damper = scene.damper();
   if (!several) {
-    table.row("Secondary mass", "ν", scene.damper().mass_ratio, scales.mass, "kg");
-    table.row("Restitution", "e", scene.damper().restitution, 1, "");
+    table.row("Secondary mass", "ν", damper.mass_ratio, mass);
+    table.row("Restitution", "e", damper.restitution, ratio);
   }
-  table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, scales.damping(), "N s/m");
-  if (!several && !rigid)
-    table.row("Stiffness of the walls", "k", scene.damper().wall_stiffness, scales.stiffness, "N/m");
-  table.row("Initial displacement", "x", scene.x0, scales.length, "mm");
-  table.row("Initial velocity", "x′", scene.v0, scales.velocity(), "mm/s");
+  table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, damping);
+  if (!several && !rigid) table.row("Stiffness of the walls", "k", damper.wall_stiffness, stiffness);
+  table.row("Initial displacement", "x", scene.x0, length);
+  table.row("Initial velocity", "x′", scene.v0, velocity);
   if (!several) {
-    table.row("Secondary mass, from the left wall", "y", scene.damper().y0, scales.length, "mm");
-    table.row("Its velocity in the cavity", "y′", scene.damper().w0, scales.velocity(), "mm/s");
+    table.row("Secondary mass, from the left wall", "y", damper.y0, length);
+    table.row("Its velocity in the cavity", "y′", damper.w0, velocity);
   }
   if (scene.force_amplitude != 0) {
-    table.row("Exciting force, amplitude", "f", scene.force_amplitude, scales.force(), "N");
-    table.row("Its frequency", "ω", scene.force_frequency, scales.frequency(), "Hz");
+    table.row("Exciting force, amplitude", "f", scene.force_amplitude, force);
+    table.row("Its frequency", "ω", scene.force_frequency, frequency);
   }
-  if (scene.until_time) table.row("Ends at this time", "t", *scene.until_time, scales.time(), "s");
-  if (scene.until_amplitude)
-    table.row("Ends below this amplitude", "A", *scene.until_amplitude, scales.length, "mm");
+  if (scene.until_time) table.row("Ends at this time", "t", *scene.until_time, time);
+  if (scene.until_amplitude) table.row("Ends below this amplitude", "A", *scene.until_amplitude, length);
   return table.html(subject.scales ? "The scene, as it was given and as it is computed"
                                    : "The scene, as it is computed");
 }
 
 // Returns the table of several dampers, in units if they are known.
 std::string dampers_table(const Subject& subject) {
-  const bool rigid = has_rigid_walls(subject.engine), in_units = subject.scales.has_value();
-  const Scales scales = subject.scales.value_or(Scales{});
+  struct Column {
+    std::string what, symbol;
+    double SceneDamper::*number;
+    Dimension dimension;
+  };
+  using enum Dimension;
+  std::vector<Column> columns{{"secondary mass", "ν", &SceneDamper::mass_ratio, mass},
+                              {"clearance", "c", &SceneDamper::clearance, length},
+                              {"restitution", "e", &SceneDamper::restitution, ratio},
+                              {"stiffness of the walls", "k", &SceneDamper::wall_stiffness, stiffness},
+                              {"place at first", "y", &SceneDamper::y0, length},
+                              {"velocity at first", "y′", &SceneDamper::w0, velocity}};
+  if (has_rigid_walls(subject.engine)) columns.erase(columns.begin() + 3);
+  const bool in_units = subject.scales.has_value();
   HtmlTable table{
       .caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}, .rows = {}};
-  const auto head = [&](const std::string& what, const std::string& symbol, const std::string& unit) {
-    table.heads.push_back(in_units && !unit.empty() ? what + ", " + unit : what + ", <i>" + symbol + "</i>");
-  };
-  head("secondary mass", "ν", "kg");
-  head("clearance", "c", "mm");
-  head("restitution", "e", "");
-  if (!rigid) head("stiffness of the walls", "k", "N/m");
-  head("place at first", "y", "mm");
-  head("velocity at first", "y′", "mm/s");
-  for (std::size_t n = 0; n < subject.scene.dampers.size(); ++n) {
-    const SceneDamper& damper = subject.scene.dampers[n];
-    const auto number = [&](double value, double scale) {
-      return number_html(in_units ? value * scale : value, 4);
-    };
-    table.rows.push_back({std::to_string(n + 1), number(damper.mass_ratio, scales.mass),
-                          number(damper.clearance, scales.length), number(damper.restitution, 1)});
-    std::vector<std::string>& row = table.rows.back();
-    if (!rigid) row.push_back(number(damper.wall_stiffness, scales.stiffness));
-    row.push_back(number(damper.y0, scales.length));
-    row.push_back(number(damper.w0, scales.velocity()));
+  for (const Column& each : columns) {
+    const std::string unit(in_units ? unit_of(each.dimension, true) : "");
+    table.heads.push_back(each.what + ", " + (unit.empty() ? "<i>" + each.symbol + "</i>" : unit));
+  }
+  for (const SceneDamper& damper : subject.scene.dampers) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, std::to_string(table.rows.size() + 1));
+    for (const Column& each : columns)
+      row.push_back(number_html(damper.*each.number * scale_of(each.dimension, subject.scales), 4));
   }
   return table_html(table);
 }

@@ -87,36 +87,15 @@ std::string Quantities::both(double value, double scale, std::string_view unit, 
 
 std::string Quantities::length(double value) const {
   constexpr double small = 0.1;  // mm
-  const double scale = scales_ ? scales_->length : 1;
-  if (value != 0 && std::abs(value * scale) < small) return both(value, 1e3 * scale, "µm", "ε");
-  return both(value, scale, "mm", "ε");
+  const double its = scale(Dimension::length);
+  if (value != 0 && std::abs(value * its) < small) return both(value, 1e3 * its, "µm", "ε");
+  return both(value, its, "mm", "ε");
 }
 
 std::string Quantities::time(double value) const {
   const std::string periods = number_html(value / (2 * std::numbers::pi)) + " periods";
   if (!scales_) return periods + " (<i>t</i> = " + number_html(value) + ')';
-  return number_html(value * scales_->time()) + no_break + "s (" + periods + ')';
-}
-
-std::string Quantities::velocity(double value) const {
-  return both(value, scales_ ? scales_->velocity() / 1000 : 1, "m/s", "εΩ");
-}
-
-std::string Quantities::force(double value) const {
-  return both(value, scales_ ? scales_->force() : 1, "N", "Kε");
-}
-
-std::string Quantities::frequency(double value) const {
-  constexpr int digits = 4;  // resonances are narrow
-  return both(value, scales_ ? scales_->frequency() : 1, "Hz", "Ω", digits);
-}
-
-std::string Quantities::duration(double value) const {
-  return both(value, scales_ ? 1000 * scales_->time() : 1, "ms", "/Ω");
-}
-
-std::string Quantities::energy(double value) const {
-  return both(value, scales_ ? scales_->energy() : 1, "J", "Kε²");
+  return number_html(value * scale(Dimension::time)) + no_break + "s (" + periods + ')';
 }
 
 std::string paragraph_html(const std::string& text) { return "<p>" + text + "</p>\n"; }

@@ -27,20 +27,26 @@ class Quantities {
   explicit Quantities(const std::optional<Scales>& scales) : scales_(scales) {}
 
   bool in_units() const { return scales_.has_value(); }
-  const Scales& scales() const { return *scales_; }
 
   // Return a dimensionless number as text. In units these come first, the dimensionless number in brackets:
-  std::string length(double value) const;    // "60 mm (6 ε)", or "6 ε"; below 0.1 mm "4.94 µm (0.0236 ε)"
-  std::string time(double value) const;      // "12.3 s (39.2 periods)", or "39.2 periods (t = 246)"
-  std::string velocity(double value) const;  // "0.05 m/s (0.25 εΩ)"
-  std::string force(double value) const;     // "28.8 N (0.18 Kε)"
-  std::string energy(double value) const;    // "28.8 J (18 Kε²)"
-  std::string frequency(double value) const;  // "3.12 Hz (0.98 Ω)"
-  std::string duration(double value) const;   // of a contact: "0.32 ms (0.0064 /Ω)"
+  std::string length(double value) const;  // "60 mm (6 ε)", or "6 ε"; below 0.1 mm "4.94 µm (0.0236 ε)"
+  std::string time(double value) const;    // "12.3 s (39.2 periods)", or "39.2 periods (t = 246)"
+  std::string velocity(double value) const {  // "0.05 m/s (0.25 εΩ)"
+    return both(value, scale(Dimension::velocity) / 1000, "m/s", "εΩ");
+  }
+  std::string force(double value) const { return both(value, scale(Dimension::force), "N", "Kε"); }
+  std::string energy(double value) const { return both(value, scale(Dimension::energy), "J", "Kε²"); }
+  std::string frequency(double value) const {  // with four digits: resonances are narrow
+    return both(value, scale(Dimension::frequency), "Hz", "Ω", 4);
+  }
+  std::string duration(double value) const {  // of a contact: "0.32 ms (0.0064 /Ω)"
+    return both(value, 1000 * scale(Dimension::time), "ms", "/Ω");
+  }
 
  private:
   std::string both(double value, double scale, std::string_view unit, std::string_view by,
                    int digits = 3) const;
+  double scale(Dimension dimension) const { return scale_of(dimension, scales_); }
   std::optional<Scales> scales_;
 };
 

@@ -32,7 +32,8 @@ void write_question(JsonWriter& out, const DesignQuestion& question) {
   out.close();
 }
 
-void write_design(JsonWriter& out, const FoundDesign& found, const DesignUnits& units) {
+void write_design(JsonWriter& out, const FoundDesign& found, const DesignQuestion& question,
+                  bool dimensionless) {
   const DesignCheck& check = found.check;
   out.open_object(Layout::one_line);
   out.fields("time", found.time, "widest_clearance", found.widest, "secondary_mass",
@@ -40,32 +41,33 @@ void write_design(JsonWriter& out, const FoundDesign& found, const DesignUnits& 
              check.nominal_time, "time_of_share", check.time_of_share, "slowest", check.slowest, "in_time",
              check.in_time, "share_low", check.share.low, "share_high", check.share.high, "confirmed",
              check.confirmed, "largest_impact_speed", check.largest_impact_speed);
-  out.field("largest_wall_force", check.largest_wall_force
-                                      ? std::optional(*check.largest_wall_force * units.force_scale)
-                                      : std::nullopt);
+  std::optional<double> force = check.largest_wall_force;
+  if (force) force = force_in_unit(*force, question, dimensionless);
+  out.field("largest_wall_force", force);
   out.close();
 }
 
 }  // namespace
 
-DesignUnits units_of(const DesignQuestion& question, bool dimensionless) {
-  if (!dimensionless) return {"kg", "mm", "s", "mm/s", "N"};
-  return {"M", "epsilon", "1/Omega_n", "epsilon Omega_n", "K epsilon", 1 / scales_of(question.scene).force()};
+double force_in_unit(double force, const DesignQuestion& question, bool dimensionless) {
+  return dimensionless ? force * (1 / scales_of(question.scene).of(Dimension::force)) : force;
 }
 
 std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless) {
-  const DesignUnits units = units_of(question, dimensionless);
   JsonWriter out("design");
   out.open_object(Layout::lines);
   out.field("schema", "impact-damper/design/1");
   write_question(out, question);
-  out.object("units", Layout::one_line, "mass", units.mass, "length", units.length, "time", units.time,
-             "velocity", units.velocity, "force", units.force);
+  out.open_object("units", Layout::one_line);
+  using enum Dimension;
+  for (const Dimension each : {mass, length, time, velocity, force})
+    out.field(name_of(each), unit_of(each, !dimensionless));
+  out.close();
   out.object("search", Layout::one_line, "draws", answer.draws, "late_allowed", answer.late_allowed, "runs",
              answer.runs);
   out.field("met", answer.met);
   out.open_array("designs", Layout::lines);
-  for (const FoundDesign& each : answer.designs) write_design(out, each, units);
+  for (const FoundDesign& each : answer.designs) write_design(out, each, question, dimensionless);
   out.close();
   write_provenance(out);
   return sealed(out.finish());

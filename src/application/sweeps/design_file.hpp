@@ -11,13 +11,9 @@ namespace impact_damper {
 // secondary_mass and clearance.
 std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless);
 
-// The units of an answer's numbers.
-struct DesignUnits {
-  std::string_view mass, length, time, velocity, force;
-  double force_scale = 1;  // force in `force`, divided by the answer's
-};
-// `dimensionless` as above; the question's scene must then have a clearance.
-DesignUnits units_of(const DesignQuestion& question, bool dimensionless);
+// Returns a force of an answer in unit_of(Dimension::force, !dimensionless). `dimensionless` as above; the
+// question's scene must then have a clearance.
+double force_in_unit(double force, const DesignQuestion& question, bool dimensionless);
 
 // Returns the file text of a plan, with which `sweep` makes the neighbours of a design.
 std::string plan_text(const Plan& plan);

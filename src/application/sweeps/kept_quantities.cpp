@@ -88,7 +88,7 @@ class RunFindings {
   }
   void find_worst() {
     const FrequencyRange range = rules_.frequencies.value_or(FrequencyRange{});
-    const double unit = scales_ ? scale_of(Dimension::frequency, *scales_) : 1;
+    const double unit = scale_of(Dimension::frequency, scales_);
     const Axis axis{&Scene::force_frequency, range.from / unit, range.to / unit, range.count};
     const auto sweeps =
         sweep(scene, engine, axis, rules_.steady, {release_of(scene)}, Threads{1}, [](std::int64_t) {});
@@ -351,48 +351,6 @@ Record record_for(std::span<const KeptQuantity> kept) {
 
 std::span<const Quantity> all_quantities() { return quantities; }
 
-std::string_view unit_of(Dimension dimension, bool in_units) {
-  switch (dimension) {
-    case ratio:
-    case count:
-      return "";
-    case time:
-      return in_units ? "s" : "1/Omega_n";
-    case length:
-      return in_units ? "mm" : "epsilon";
-    case velocity:
-      return in_units ? "mm/s" : "epsilon Omega_n";
-    case force:
-      return in_units ? "N" : "K epsilon";
-    case frequency:
-      return in_units ? "Hz" : "Omega_n";
-    case rate:
-      return in_units ? "1/s" : "Omega_n";
-  }
-  return "";
-}
-
-double scale_of(Dimension dimension, const Scales& scales) {
-  switch (dimension) {
-    case ratio:
-    case count:
-      return 1;
-    case time:
-      return scales.time();
-    case length:
-      return scales.length;
-    case velocity:
-      return scales.velocity();
-    case force:
-      return scales.force();
-    case frequency:
-      return scales.frequency();
-    case rate:
-      return 1 / scales.time();
-  }
-  return 1;
-}
-
 std::string KeptQuantity::text() const {
   std::string text(quantity->name);
   if (at) text.append(1, '=').append(number_text(*at));
@@ -441,15 +399,14 @@ KeptNumbers kept_of(const Scene& scene, const std::optional<Scales>& scales, con
                     std::span<const KeptQuantity> kept, const ForcedRules& rules) {
   const Record record = record_for(kept);
   RunFindings findings(scene, engine, rules, scales, record);
-  const auto scale = [&](Dimension dimension) { return scales ? scale_of(dimension, *scales) : 1; };
   KeptNumbers found;
   found.numbers.reserve(kept.size());
   try {
     for (const KeptQuantity& each : kept) {
       const Quantity& quantity = *each.quantity;
-      const double at = each.at ? *each.at / scale(*quantity.at) : 0;
+      const double at = each.at ? *each.at / scale_of(*quantity.at, scales) : 0;
       Number number = quantity.value(findings, at);
-      if (number) *number *= scale(quantity.dimension);
+      if (number) *number *= scale_of(quantity.dimension, scales);
       if (number && !std::isfinite(*number))
         throw NumericalError(each.column() + " is not finite: " + number_text(*number));
       found.numbers.push_back(number);

@@ -15,13 +15,6 @@
 
 namespace impact_damper {
 
-// What a number measures.
-enum class Dimension { ratio, count, time, length, velocity, force, frequency, rate };
-// Returns its unit: that of a scene in units if it is one, "" for pure numbers.
-std::string_view unit_of(Dimension dimension, bool in_units);
-// Returns the value of one dimensionless unit in that unit.
-double scale_of(Dimension dimension, const Scales& scales);
-
 // Frequencies of the force, equally spaced, both ends included; in the scene's unit.
 struct FrequencyRange {
   double from = 0, to = 0;

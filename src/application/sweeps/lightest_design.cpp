@@ -268,16 +268,15 @@ SceneInUnits with_unit_scales(const Scene& scene) {
   units.mass = units.stiffness = 1;
   DamperInUnits& damper = units.damper();
   damper.clearance = 1;
-  const Scales scales = scales_of(units);
   damper.secondary_mass = scene.damper().mass_ratio;
   damper.restitution = scene.damper().restitution;
   damper.contact_stiffness = scene.damper().wall_stiffness;
   damper.secondary_displacement = scene.damper().y0;
-  damper.secondary_velocity = scene.damper().w0 * scales.velocity();
+  damper.secondary_velocity = scene.damper().w0;
   units.damping_ratio = scene.damping_ratio;
   units.initial_displacement = scene.x0;
-  units.initial_velocity = scene.v0 * scales.velocity();
-  units.exciting_force = scene.force_amplitude * scales.force();
+  units.initial_velocity = scene.v0;
+  units.exciting_force = scene.force_amplitude * scales_of(units).of(Dimension::force);
   return units;
 }
 

@@ -77,7 +77,7 @@ std::optional<BestPoint> best_of(const Map& map, Better better) {
 // Returns the amplitude that a limit is compared with, in units of the clearance (M15.8).
 double compared_amplitude(const KeptQuantity& quantity, const PlannedRun& run) {
   if (quantity.at && *quantity.quantity->at == Dimension::length)
-    return *quantity.at / (run.scales ? run.scales->length : 1);
+    return *quantity.at / scale_of(Dimension::length, run.scales);
   return std::sqrt(run.scene.x0 * run.scene.x0 + run.scene.v0 * run.scene.v0);
 }
 

@@ -87,16 +87,12 @@ std::vector<Variable> variables_of(const SceneFile& scene) {
     const std::size_t dampers = scene.in_units->dampers.size();
     for (const UnitField& field : unit_fields) {
       if (field.becomes == "until_time" || field.becomes == "until_amplitude") continue;
-      Variable variable{.name = std::string(field.name),
-                        .unit = field.unit,
-                        .range = {field.least, field.most, field.least_is_allowed},
-                        .number_in_units = field.number};
       const bool in_list = field.number.of_damper && dampers > 1;
-      for (std::size_t i = 0; i < (in_list ? dampers : 1); ++i) {
-        if (in_list) variable.name = std::string(field.name) + "_" + std::to_string(i + 1);
-        variable.number_in_units.damper = i;
-        variables.push_back(variable);
-      }
+      for (std::size_t i = 0; i < (in_list ? dampers : 1); ++i)
+        variables.push_back({.name = std::string(field.name) + (in_list ? "_" + std::to_string(i + 1) : ""),
+                             .unit = unit_of(field.dimension, true),
+                             .range = field.range,
+                             .number_in_units = {field.number, i}});
     }
     return variables;
   }

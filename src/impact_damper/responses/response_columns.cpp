@@ -5,19 +5,11 @@
 #include <iterator>
 
 #include "impact_damper/analysis/design.hpp"
-#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {
 
-constexpr UnitInSi ratio{"", [](const SiUnits&) { return 1.0; }};
-constexpr UnitInSi length{"_m", [](const SiUnits& u) { return u.length; }};
-constexpr UnitInSi velocity{"_m_per_s", [](const SiUnits& u) { return u.velocity; }};
-constexpr UnitInSi force{"_N", [](const SiUnits& u) { return u.force; }};
-constexpr UnitInSi time{"_s", [](const SiUnits& u) { return u.time; }};
-constexpr UnitInSi power{"_W", [](const SiUnits& u) { return u.energy / u.time; }};
-constexpr UnitInSi frequency{"_Hz", [](const SiUnits& u) { return 1 / (2 * half_turn<double>() * u.time); }};
-
+using enum Dimension;
 constexpr NumberRange any{}, counts = within(0, 9e15), flag = within(0, 1), periods = within(1, 64);
 
 template <class Row>
@@ -30,18 +22,6 @@ RowColumns<Row> those_of(const RowColumns<Row>& table, std::size_t dampers) {
 }
 
 }  // namespace
-
-UnitInSi unit_in_si_of(const SceneNumber& number) {
-  if (const auto its = number.of_damper) {
-    if (its == &SceneDamper::y0 || its == &SceneDamper::clearance) return length;
-    return its == &SceneDamper::w0 ? velocity : ratio;
-  }
-  if (number.is(&Scene::x0) || number.is(&SceneDamper::y0)) return length;
-  if (number.is(&Scene::v0) || number.is(&SceneDamper::w0)) return velocity;
-  if (number.is(&Scene::force_amplitude)) return force;
-  if (number.is(&Scene::force_frequency)) return frequency;
-  return ratio;
-}
 
 std::optional<double> number_in(const NumberCell& cell) {
   return std::visit(

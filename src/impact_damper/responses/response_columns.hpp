@@ -15,13 +15,6 @@
 
 namespace impact_damper {
 
-// The SI unit of a column: its suffix, and the size in it of one dimensionless unit.
-struct UnitInSi {
-  std::string_view suffix;
-  double (*size)(const SiUnits&);
-};
-UnitInSi unit_in_si_of(const SceneNumber& number);
-
 // Where a row has a number of a column; null if the number belongs to a part of the row that is absent, such
 // as its period or means. An optional number may itself be absent. Integers and flags are whole numbers in a
 // file.
@@ -32,7 +25,7 @@ enum class Scenes { all, of_one_damper, of_list };
 template <class Row>
 struct RowColumn {
   std::string_view name;
-  UnitInSi unit;
+  Dimension dimension;
   NumberRange range;  // of what a file may hold
   NumberCell (*cell_in)(Row&);
   Scenes scenes = Scenes::all;  // that have the column
@@ -62,7 +55,7 @@ const RowColumns<DamperOfRow>& damper_columns();
 // A column whose numbers follow from the scene and the axis.
 struct Column {
   std::string_view name;
-  UnitInSi unit;
+  Dimension dimension;
   std::vector<std::optional<double>> numbers;
 };
 // The amplitude without dampers and with their masses locked in, (M12.6), at each value of the axis. Absent

@@ -9,28 +9,26 @@
 namespace impact_damper {
 namespace {
 
-constexpr UnitInSi rate{"_per_s", [](const SiUnits& u) { return 1 / u.time; }};
-
 using Words = std::vector<std::string>;
 using Numbers = std::vector<std::optional<double>>;
 
 // A table, column by column. The first column has all rows; a shorter one is repeated.
 class CsvTable {
  public:
-  explicit CsvTable(const std::optional<SiUnits>& units) : units_(units) {}
+  explicit CsvTable(const std::optional<Scales>& scales) : scales_(scales) {}
 
   void add(const std::string& name, Words words) { columns_.push_back({name, std::move(words), {}}); }
-  void add(const std::string& name, const UnitInSi& unit, Numbers numbers) {
+  void add(const std::string& name, Dimension dimension, Numbers numbers) {
     for (std::optional<double>& number : numbers)
-      if (number && units_) number = *number * unit.size(*units_);
-    columns_.push_back({name + std::string(units_ ? unit.suffix : ""), {}, std::move(numbers)});
+      if (number && scales_) number = *number * scales_->in_si(dimension);
+    columns_.push_back({name + std::string(scales_ ? suffix_of(dimension) : ""), {}, std::move(numbers)});
   }
   template <class Row>
   void add(const RowColumns<Row>& columns, std::vector<Row> rows, const std::string& after_name = {}) {
     for (const RowColumn<Row>& each : columns) {
       Numbers numbers;
       for (Row& row : rows) numbers.push_back(number_in(each.cell_in(row)));
-      add(std::string(each.name) + after_name, each.unit, std::move(numbers));
+      add(std::string(each.name) + after_name, each.dimension, std::move(numbers));
     }
   }
   // The columns of each damper of a list.
@@ -63,7 +61,7 @@ class CsvTable {
     Numbers numbers;  // where there are no words
     std::size_t size() const { return words.empty() ? numbers.size() : words.size(); }
   };
-  const std::optional<SiUnits>& units_;
+  const std::optional<Scales>& scales_;
   std::vector<CsvColumn> columns_;
 };
 
@@ -87,12 +85,12 @@ void add(CsvTable& table, const SweepResponse& response) {
   const std::size_t dampers = listed_dampers(response.scene);
   table.add("sweep", numbers);
   table.add("way", ways);
-  table.add(axis.number.name(), unit_in_si_of(axis.number), numbers_of(axis.values()));
+  table.add(name_of(axis.number), field_of(axis.number).dimension, numbers_of(axis.values()));
   table.add("end", ends);
   table.add(steady_columns(dampers), states);
   table.add_dampers(dampers, states);
   for (const Column& column : linear_columns(response.scene, axis))
-    table.add(std::string(column.name), column.unit, column.numbers);
+    table.add(std::string(column.name), column.dimension, column.numbers);
 }
 
 void add(CsvTable& table, const BasinResponse& response) {
@@ -105,8 +103,8 @@ void add(CsvTable& table, const BasinResponse& response) {
     of_second.emplace_back(second.value(std::int64_t(n) / first.count));
     attractors.push_back(std::to_string(attractor[n]));
   }
-  table.add(first.number.name(), unit_in_si_of(first.number), of_first);
-  table.add(second.number.name(), unit_in_si_of(second.number), of_second);
+  table.add(name_of(first.number), field_of(first.number).dimension, of_first);
+  table.add(name_of(second.number), field_of(second.number).dimension, of_second);
   table.add("attractor", attractors);
 }
 
@@ -132,7 +130,7 @@ void add(CsvTable& table, const OrbitsResponse& response) {
   const std::size_t dampers = listed_dampers(response.scene);
   table.add("branch", numbers);
   table.add("event", events);
-  table.add(std::string(name_of(parameter)), unit_in_si_of(member_of(parameter)), values);
+  table.add(std::string(name_of(parameter)), field_of(member_of(parameter)).dimension, values);
   table.add(orbit_columns(dampers), points);
   table.add_dampers(dampers, points);
 }
@@ -141,14 +139,14 @@ void add(CsvTable& table, const LyapunovResponse& response) {
   const LyapunovExponents& found = response.found;
   Numbers errors = numbers_of(found.standard_errors);
   errors.resize(found.exponents.size());  // there are none for less than ten periods
-  table.add("exponent", rate, numbers_of(found.exponents));
-  table.add("standard_error", rate, errors);
+  table.add("exponent", Dimension::rate, numbers_of(found.exponents));
+  table.add("standard_error", Dimension::rate, errors);
 }
 
 }  // namespace
 
-std::string response_csv(const Response& response, const std::optional<SiUnits>& units) {
-  CsvTable table(units);
+std::string response_csv(const Response& response, const std::optional<Scales>& scales) {
+  CsvTable table(scales);
   std::visit([&](const auto& each) { add(table, each); }, response);
   return table.text();
 }

@@ -51,7 +51,7 @@ bool describe(JsonFields fields, Axis& axis, const Scene& scene) {
   const std::vector<NamedSceneNumber> numbers = numbers_of(scene);
   std::vector<std::string_view> names(numbers.size());
   std::ranges::transform(numbers, names.begin(), &NamedSceneNumber::name);
-  const auto number = fields.word("number", axis.number.name(), names);
+  const auto number = fields.word("number", name_of(axis.number), names);
   if (number) axis.number = numbers[*number].number;
   bool is_valid = number || !fields.reads();
   is_valid = fields.field("from", axis.from) && is_valid;
@@ -137,7 +137,7 @@ void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& sce
 bool is_valid_along(JsonFields fields, const Scene& scene, const Engine& engine, const Axis& axis) {
   for (const std::int64_t i : {std::int64_t(0), axis.count - 1}) {
     for (const Problem& problem : problems_of(axis.at(scene, i), engine)) {
-      fields.reject("scene", "with " + axis.number.name() + " = " + number_text(axis.value(i)) + ": " +
+      fields.reject("scene", "with " + name_of(axis.number) + " = " + number_text(axis.value(i)) + ": " +
                                  problem.field + " " + problem.message);
       return false;
     }
@@ -315,20 +315,10 @@ void write_scene(JsonWriter& out, const Scene& scene) {
 // Reads the numbers of a scene. All must be there, except the stops, which a response does not have.
 Scene read_forced_scene(ObjectReader object) {
   Scene scene;
-  const bool several = object.has("dampers");
-  for (const SceneField& field : scene_fields) {
-    if (!several || field.number.own)
-      object.required(field.name, field.number.in(scene), within(field.least, field.most));
-    else if (object.has(field.name))
-      object.reject(field.name, beside_dampers);
-  }
-  if (!several) return scene;
-  scene.dampers.clear();
-  for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
-    SceneDamper& its = scene.dampers.emplace_back();
-    for (const SceneField& field : scene_damper_fields)
-      damper.required(field.name, its.*field.number.of_damper, within(field.least, field.most));
-  }
+  read_numbers(object, scene, scene_fields, scene_damper_fields,
+               [](ObjectReader& from, const SceneField& field, double& number, const std::string&) {
+                 from.required(field.name, number, within(field.least, field.most));
+               });
   return scene;
 }
 
@@ -382,7 +372,7 @@ std::string response_text(const Response& response, const std::optional<Scales>&
         out.fields("schema", response_schema, "kind", each.kind);
         write_scene(out, each.scene);
         write_engine(out, each.engine);
-        if (scales) write_units(out, si_units_of(*scales));
+        if (scales) write_units(out, *scales);
         describe(JsonFields(out), each);
         write_provenance(out);
         return sealed(out.finish());

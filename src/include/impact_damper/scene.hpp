@@ -70,34 +70,36 @@ std::size_t listed_dampers(const Scene& scene);
 Problem problem_of_several();
 
 // Where a number of a scene is kept: in itself or, if of_damper is not null, in one of its dampers.
-struct SceneNumber {
-  double Scene::*own = nullptr;
-  double SceneDamper::*of_damper = nullptr;
+template <class Whole, class Damper, class Value>
+struct NumberOf {
+  Value Whole::*own = nullptr;
+  Value Damper::*of_damper = nullptr;
   std::optional<std::size_t> damper;  // index in a list, from 0; absent: the damper of a scene of one
 
-  constexpr SceneNumber() = default;
+  constexpr NumberOf() = default;
   // NOLINTBEGIN(google-explicit-constructor)
   // cppcheck-suppress noExplicitConstructor
-  constexpr SceneNumber(double Scene::*its) : own(its) {}
+  constexpr NumberOf(Value Whole::*its) : own(its) {}
   // cppcheck-suppress noExplicitConstructor
-  constexpr SceneNumber(double SceneDamper::*its) : of_damper(its) {}
+  constexpr NumberOf(Value Damper::*its) : of_damper(its) {}
   // NOLINTEND(google-explicit-constructor)
-  constexpr SceneNumber(double SceneDamper::*its, std::size_t which) : of_damper(its), damper(which) {}
-  // The name of its field; in a list with the damper's number behind it, from 1: clearance_2 is that of
-  // dampers[1].
-  std::string name() const;
+  constexpr NumberOf(const NumberOf& its, std::size_t which)
+      : own(its.own), of_damper(its.of_damper), damper(which) {}
   // cppcheck-suppress constParameter
-  double& in(Scene& scene) const {
+  Value& in(Whole& scene) const {
     return of_damper ? scene.dampers[damper.value_or(0)].*of_damper : scene.*own;
   }
-  double in(const Scene& scene) const {
+  const Value& in(const Whole& scene) const {
     return of_damper ? scene.dampers[damper.value_or(0)].*of_damper : scene.*own;
   }
   // Whether it is this field, of whichever damper.
-  constexpr bool is(const double Scene::*number) const { return !of_damper && own == number; }
-  constexpr bool is(const double SceneDamper::*number) const { return of_damper == number; }
-  bool operator==(const SceneNumber&) const = default;
+  constexpr bool is(const Value Whole::*number) const { return !of_damper && own == number; }
+  constexpr bool is(const Value Damper::*number) const { return of_damper == number; }
+  bool operator==(const NumberOf&) const = default;
 };
+using SceneNumber = NumberOf<Scene, SceneDamper, double>;
+
+enum class Dimension;  // units.hpp
 
 // One number of a scene: its name (as JSON key; as option of the command line, with '-' for '_'), where it
 // is kept (of a damper, in the first), and which values it allows. Readers, writers and checks all go through
@@ -106,12 +108,17 @@ struct SceneField {
   std::string_view name;
   SceneNumber number;
   double least, most;  // smallest and largest allowed value
+  Dimension dimension;
   std::string_view meaning;
 };
 // The numbers of a scene of one damper, its own and that damper's without the clearance, which is 1; and the
 // numbers of each damper of a list.
 extern const std::array<SceneField, 10> scene_fields;
 extern const std::array<SceneField, 6> scene_damper_fields;
+const SceneField& field_of(const SceneNumber& number);
+// Returns the name of its field; in a list with the damper's number behind it, from 1: clearance_2 is that of
+// dampers[1].
+std::string name_of(const SceneNumber& number);
 
 struct NamedSceneNumber {
   std::string name;

@@ -9,52 +9,59 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper {
 
-// The size of one dimensionless unit in engineers' units: a dimensionless number times the scale is the
-// quantity.
+// What a number measures; a ratio has no unit, like angles and all other numbers without one.
+enum class Dimension {
+  ratio,
+  count,
+  length,
+  time,
+  velocity,
+  mass,
+  force,
+  energy,
+  power,
+  frequency,
+  rate,
+  stiffness,
+  damping
+};
+// Returns the name of its unit, "" without one: "mm/s" in a scene in units, else "epsilon Omega_n".
+std::string_view unit_of(Dimension dimension, bool in_units);
+std::string with_unit(const std::string& number, std::string_view unit);  // "12 mm", or "12" if unit is ""
+// Returns the name of its SI unit as the end of another name, "" without one: "_m_per_s".
+std::string_view suffix_of(Dimension dimension);
+
+// What fixes the size of each dimensionless unit: a dimensionless number times that size is the quantity.
 struct Scales {
   double mass = 1;       // M, kg
   double stiffness = 1;  // K, N/m
   double length = 1;     // epsilon, mm
 
-  double time() const;       // 1/Omega_n, s
-  double frequency() const;  // Omega_n / (2 pi), Hz: that of omega_f = 1
-  double velocity() const;   // epsilon Omega_n, mm/s
-  double force() const;      // K epsilon, N
-  double energy() const;     // K epsilon^2, J
-  double damping() const;    // 2 sqrt(K M), critical damping, N s/m: that of zeta = 1
+  // Return the size of a dimensionless unit, in engineers' units and in SI; 1 if there is none. Of
+  // frequencies it is Omega_n / (2 pi), that of omega_f = 1; of damping 2 sqrt(K M), critical damping.
+  double of(Dimension dimension) const;
+  double in_si(Dimension dimension) const;
 
   bool operator==(const Scales&) const = default;
 };
+// Returns scales->of(dimension); 1 for a dimensionless scene, which has no scales.
+double scale_of(Dimension dimension, const std::optional<Scales>& scales);
 
-// The same in SI: the object "units" in the run file of a scene in units.
-struct SiUnits {
-  double length;    // epsilon, m
-  double time;      // 1/Omega_n, s
-  double velocity;  // epsilon Omega_n, m/s
-  double mass;      // M, kg
-  double force;     // K epsilon, N
-  double energy;    // K epsilon^2, J
-};
-SiUnits si_units_of(const Scales& scales);
-
-// One field of SiUnits, and its key in a run file.
-struct SiUnit {
-  std::string_view name;
-  double SiUnits::*member;
-};
-inline constexpr std::array<SiUnit, 6> si_units{{{"length_m", &SiUnits::length},
-                                                 {"time_s", &SiUnits::time},
-                                                 {"velocity_m_per_s", &SiUnits::velocity},
-                                                 {"mass_kg", &SiUnits::mass},
-                                                 {"force_N", &SiUnits::force},
-                                                 {"energy_J", &SiUnits::energy}}};
+// The object "units" in the run file of a scene in units has the size in SI of these, by key_of().
+inline constexpr std::array<Dimension, 6> dimensions_in_files{Dimension::length,   Dimension::time,
+                                                              Dimension::velocity, Dimension::mass,
+                                                              Dimension::force,    Dimension::energy};
+std::string key_of(Dimension dimension);  // "velocity_m_per_s"
 
 // A damper in units; an absent number has the default that its comment names.
 struct DamperInUnits {
@@ -82,39 +89,16 @@ struct SceneInUnits {
   const DamperInUnits& damper() const { return dampers.front(); }
 };
 
-// Where a number of a scene in units is kept: in itself or, if of_damper is not null, in one of its dampers.
-struct NumberInUnits {
-  std::optional<double> SceneInUnits::*own = nullptr;
-  std::optional<double> DamperInUnits::*of_damper = nullptr;
-  std::size_t damper = 0;  // which, from 0
-
-  constexpr NumberInUnits() = default;
-  // NOLINTBEGIN(google-explicit-constructor)
-  // cppcheck-suppress noExplicitConstructor
-  constexpr NumberInUnits(std::optional<double> SceneInUnits::*its) : own(its) {}
-  // cppcheck-suppress noExplicitConstructor
-  constexpr NumberInUnits(std::optional<double> DamperInUnits::*its) : of_damper(its) {}
-  // NOLINTEND(google-explicit-constructor)
-  // cppcheck-suppress constParameter
-  std::optional<double>& in(SceneInUnits& scene) const {
-    return of_damper ? scene.dampers[damper].*of_damper : scene.*own;
-  }
-  const std::optional<double>& in(const SceneInUnits& scene) const {
-    return of_damper ? scene.dampers[damper].*of_damper : scene.*own;
-  }
-};
+using NumberInUnits = NumberOf<SceneInUnits, DamperInUnits, std::optional<double>>;
 
 // One number of a scene in units: its name, which is its JSON key, where it is kept (of a damper, in the
 // first), which values it allows and what it is. The limits are such that no scale overflows or underflows.
 struct UnitField {
   std::string_view name;
   NumberInUnits number;
-  double least;              // smallest allowed value
-  bool least_is_allowed;     // false: strictly above
-  double most;               // largest allowed value
-  std::string_view unit;     // "" for a ratio
+  NumberRange range;
+  Dimension dimension;       // a ratio has the same name and meaning in a dimensionless scene
   std::string_view becomes;  // the dimensionless field that is made of it; "" where it only scales
-  bool also_dimensionless;   // has the same name and meaning in a dimensionless scene
   std::string_view meaning;
 };
 extern const std::array<UnitField, 16> unit_fields;

@@ -47,7 +47,7 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales = {});
 // of several dampers end in the damper's number: "impacts_1", "y_2_m". With `units` they are in SI, as the
 // names show: "time_s", "amplitude_m", "v_m_per_s". An absent number is an empty cell. Throws what run_text()
 // throws; std::invalid_argument if the run has none of these sections.
-std::string run_csv(const Run& run, const std::optional<SiUnits>& units = {});
+std::string run_csv(const Run& run, const std::optional<Scales>& scales = {});
 
 // Reads a run from a file or a text. The check is strict: every key is known and none missing, the columns of
 // a section are equally long, times ascend, sums are equal to their parts, units agree with each other, and

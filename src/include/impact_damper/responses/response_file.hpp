@@ -54,6 +54,6 @@ std::vector<Problem> inconsistencies_of(const Response& response);
 //   orbits: each point of each branch and, in its place among these, each event, which "event" names, with
 //     the index of the branch, the parameter's value, and the columns of the JSON file;
 //   lyapunov: each exponent.
-std::string response_csv(const Response& response, const std::optional<SiUnits>& units = {});
+std::string response_csv(const Response& response, const std::optional<Scales>& scales = {});
 
 }  // namespace impact_damper
