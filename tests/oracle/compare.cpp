@@ -541,6 +541,13 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
       if (each.damper == contact.damper && each.time == contact.begin) return each.relative_velocity;
     return Quad(0);
   };
+  // The speed of another damper's impact that throws one off its rigid wall.
+  const auto thrown_off = [&](const Held& contact) {
+    for (const Impact& each : a.impacts)
+      if (setting.nested && each.damper != contact.damper && each.time == contact.end)
+        return each.relative_velocity;
+    return Quad(0);
+  };
   // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
   const auto jump = [&](const Held& contact) {
     Quad rest = 0;
@@ -566,8 +573,10 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
               return units.met(begin, units.place(), speed) + jumped;
             }});
     if (beyond(end)) continue;
-    take({"contact end" + which, time_, end, end, q.end, [=, speed = p.end_speed](const Units& units) {
-            return units.met(end, units.release(end), speed);
+    take({"contact end" + which, time_, end, end, q.end,
+          [=, speed = p.end_speed, struck = thrown_off(p)](const Units& units) {
+            return struck != 0 ? units.met(end, units.place(), struck)
+                               : units.met(end, units.release(end), speed);
           }});
   }
   for (std::size_t n = 0; n < std::min(both.my_rows.size(), both.its_rows.size()); ++n) {

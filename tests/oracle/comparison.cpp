@@ -17,7 +17,7 @@ TEST_CASE("the comparison finds no difference of the oracle's own run, and every
       for (Scene scene : {random_list(seed), round_list(seed)}) {
         scene.until_time = std::min(*scene.until_time, 6.0);
         if (!all && count > 0) return count;
-        count += !compare(scene, Restitution{}, {.program = program}).differences.empty();
+        count += !compare(scene, Restitution{}, {.as_list = true, .program = program}).differences.empty();
       }
     return count;
   };
@@ -66,7 +66,8 @@ TEST_CASE(
         const auto planted = [fault](const Scene& asked) {
           return run_of_oracle(asked, Walls::compliant, fault);
         };
-        count += !compare(scene, Exact{}, {.program = planted, .most_steps = 800}).differences.empty();
+        count += !compare(scene, Exact{}, {.as_list = true, .program = planted, .most_steps = 800})
+                      .differences.empty();
       }
     return count;
   };
