@@ -1089,17 +1089,9 @@ Setting setting_of(const Scene& scene, const Engine& engine, const Comparing& ho
   return setting;
 }
 
-}  // namespace
-
-Run simulated(const Scene& scene, const Engine& engine, bool as_list) {
-  return simulated(scene, engine, everything(*scene.until_time), as_list);
-}
-
-Comparison compare(const Scene& asked, const Engine& engine, const Comparing& how) {
-  Comparison result;
-  Setting setting = setting_of(asked, engine, how);
-  const Prediction prediction = predict_what_can_be(setting, result);
-  if (result.until == 0) return result;
+// The run of the program or, if there is none, of the engine.
+void compare_with(const Setting& setting, const Prediction& prediction, const Engine& engine,
+                  const Comparing& how, const Program& program, Comparison& result) {
   const Answer& answer = prediction.answer;
   for (std::size_t i = 0; i + 1 < answer.impacts.size(); ++i)
     result.joint_impacts += answer.impacts[i].time == answer.impacts[i + 1].time;
@@ -1123,14 +1115,35 @@ Comparison compare(const Scene& asked, const Engine& engine, const Comparing& ho
     if (const Cem* const cem = std::get_if<Cem>(&engine)) {
       compare_by_order(setting, prediction, *cem, result);
     } else {
-      judge_run(how.program ? how.program(setting.scene()) : simulated(setting.scene(), engine, how.as_list),
-                setting, prediction, judge, result);
-      if (!how.program) compare_stops(setting, engine, how.as_list, prediction, judge);
+      const Scene& scene = setting.scene();
+      judge_run(program ? program(scene) : oracle::simulated(scene, engine, how.as_list), setting, prediction,
+                judge, result);
+      if (!program) compare_stops(setting, engine, how.as_list, prediction, judge);
     }
   } catch (const std::exception& error) {
     judge.differ(std::string("throws: ") + error.what());
   }
-  return result;
+}
+
+}  // namespace
+
+Run simulated(const Scene& scene, const Engine& engine, bool as_list) {
+  return simulated(scene, engine, everything(*scene.until_time), as_list);
+}
+
+std::vector<Comparison> compare(const Scene& asked, const Engine& engine, const Comparing& how,
+                                const std::vector<Program>& programs) {
+  Comparison result;
+  Setting setting = setting_of(asked, engine, how);
+  const Prediction prediction = predict_what_can_be(setting, result);
+  std::vector<Comparison> all(programs.size(), result);
+  if (result.until == 0) return all;
+  for (std::size_t i = 0; i < programs.size(); ++i)
+    compare_with(setting, prediction, engine, how, programs[i], all[i]);
+  return all;
+}
+Comparison compare(const Scene& scene, const Engine& engine, const Comparing& how) {
+  return compare(scene, engine, how, {Program()}).front();
 }
 
 Run run_of_oracle(const Scene& scene, Walls walls, Fault fault, int samples) {
