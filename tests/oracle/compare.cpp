@@ -297,11 +297,16 @@ class Walker {
       // How near is judged by the numbers' comparison.
       if (have_mine && have_its && mine[i].wall == its[j].wall) {
         const auto &p = mine[i], &q = its[j];
-        const bool alike = magnitude(p.relative_velocity - q.relative_velocity) <=
-                           magnitude(p.relative_velocity) / 2 + below_.speed(p.time);
-        const bool other_is_nearer =
-            next_is_nearer(mine, i, q) || (setting_.nested && omitted(its, j) && next_is_nearer(its, j, p));
-        if (magnitude(p.time - q.time) <= window(p.time) && alike && !other_is_nearer) {
+        // In a chattering within another one alike impacts are nearer to each other.
+        const Quad w = magnitude(p.relative_velocity),
+                   off = magnitude(p.relative_velocity - q.relative_velocity);
+        const bool nested = setting_.nested;
+        const bool alike =
+            off <= (nested ? std::max(w * Quad(1e-3L), Quad(1e-14L)) : w / 2 + below_.speed(p.time));
+        const bool other_is_nearer = ((!nested || omitted(mine, i)) && next_is_nearer(mine, i, q)) ||
+                                     (nested && omitted(its, j) && next_is_nearer(its, j, p));
+        const Quad near = nested ? Quad(1e-6L) * (1 + p.time) : window(p.time);
+        if (magnitude(p.time - q.time) <= near && alike && !other_is_nearer) {
           both_.rough.push_back(setting_.nested && omitted(mine, i) && omitted(its, j));
           both_.impacts.push_back({my_numbers[i++], its_numbers[j++]});
           continue;
@@ -318,7 +323,7 @@ class Walker {
       // The rest of a complete chattering, that the other one jumps over.
       const auto rest_of = [&](const Impacts& in, std::size_t n, const Impacts& other, std::size_t m) {
         std::size_t end = n;
-        if (n == in.size() || !in[n].accumulation) return end;
+        if (setting_.nested || n == in.size() || !in[n].accumulation) return end;
         const Quad last = *in[n].accumulation;
         if (m < other.size() && other[m].time <= last - below_.duration(last)) return end;
         while (end < in.size() && in[end].accumulation && *in[end].accumulation == last) ++end;
