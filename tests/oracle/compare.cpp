@@ -297,11 +297,16 @@ class Walker {
       // How near is judged by the numbers' comparison.
       if (have_mine && have_its && mine[i].wall == its[j].wall) {
         const auto &p = mine[i], &q = its[j];
-        const bool alike = magnitude(p.relative_velocity - q.relative_velocity) <=
-                           magnitude(p.relative_velocity) / 2 + below_.speed(p.time);
-        const bool other_is_nearer =
-            next_is_nearer(mine, i, q) || (setting_.nested && omitted(its, j) && next_is_nearer(its, j, p));
-        if (magnitude(p.time - q.time) <= window(p.time) && alike && !other_is_nearer) {
+        // In a chattering within another one alike impacts are nearer to each other.
+        const Quad w = magnitude(p.relative_velocity),
+                   off = magnitude(p.relative_velocity - q.relative_velocity);
+        const bool nested = setting_.nested;
+        const bool alike =
+            off <= (nested ? std::max(w * Quad(1e-3L), Quad(1e-14L)) : w / 2 + below_.speed(p.time));
+        const bool other_is_nearer = ((!nested || omitted(mine, i)) && next_is_nearer(mine, i, q)) ||
+                                     (nested && omitted(its, j) && next_is_nearer(its, j, p));
+        const Quad near = nested ? Quad(1e-6L) * (1 + p.time) : window(p.time);
+        if (magnitude(p.time - q.time) <= near && alike && !other_is_nearer) {
           both_.rough.push_back(setting_.nested && omitted(mine, i) && omitted(its, j));
           both_.impacts.push_back({my_numbers[i++], its_numbers[j++]});
           continue;
@@ -318,7 +323,7 @@ class Walker {
       // The rest of a complete chattering, that the other one jumps over.
       const auto rest_of = [&](const Impacts& in, std::size_t n, const Impacts& other, std::size_t m) {
         std::size_t end = n;
-        if (n == in.size() || !in[n].accumulation) return end;
+        if (setting_.nested || n == in.size() || !in[n].accumulation) return end;
         const Quad last = *in[n].accumulation;
         if (m < other.size() && other[m].time <= last - below_.duration(last)) return end;
         while (end < in.size() && in[end].accumulation && *in[end].accumulation == last) ++end;
@@ -541,6 +546,13 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
       if (each.damper == contact.damper && each.time == contact.begin) return each.relative_velocity;
     return Quad(0);
   };
+  // The speed of another damper's impact that throws one off its rigid wall.
+  const auto thrown_off = [&](const Held& contact) {
+    for (const Impact& each : a.impacts)
+      if (setting.nested && each.damper != contact.damper && each.time == contact.end)
+        return each.relative_velocity;
+    return Quad(0);
+  };
   // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
   const auto jump = [&](const Held& contact) {
     Quad rest = 0;
@@ -566,8 +578,10 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
               return units.met(begin, units.place(), speed) + jumped;
             }});
     if (beyond(end)) continue;
-    take({"contact end" + which, time_, end, end, q.end, [=, speed = p.end_speed](const Units& units) {
-            return units.met(end, units.release(end), speed);
+    take({"contact end" + which, time_, end, end, q.end,
+          [=, speed = p.end_speed, struck = thrown_off(p)](const Units& units) {
+            return struck != 0 ? units.met(end, units.place(), struck)
+                               : units.met(end, units.release(end), speed);
           }});
   }
   for (std::size_t n = 0; n < std::min(both.my_rows.size(), both.its_rows.size()); ++n) {
@@ -1080,17 +1094,9 @@ Setting setting_of(const Scene& scene, const Engine& engine, const Comparing& ho
   return setting;
 }
 
-}  // namespace
-
-Run simulated(const Scene& scene, const Engine& engine, bool as_list) {
-  return simulated(scene, engine, everything(*scene.until_time), as_list);
-}
-
-Comparison compare(const Scene& asked, const Engine& engine, const Comparing& how) {
-  Comparison result;
-  Setting setting = setting_of(asked, engine, how);
-  const Prediction prediction = predict_what_can_be(setting, result);
-  if (result.until == 0) return result;
+// The run of the program or, if there is none, of the engine.
+void compare_with(const Setting& setting, const Prediction& prediction, const Engine& engine,
+                  const Comparing& how, const Program& program, Comparison& result) {
   const Answer& answer = prediction.answer;
   for (std::size_t i = 0; i + 1 < answer.impacts.size(); ++i)
     result.joint_impacts += answer.impacts[i].time == answer.impacts[i + 1].time;
@@ -1114,14 +1120,35 @@ Comparison compare(const Scene& asked, const Engine& engine, const Comparing& ho
     if (const Cem* const cem = std::get_if<Cem>(&engine)) {
       compare_by_order(setting, prediction, *cem, result);
     } else {
-      judge_run(how.program ? how.program(setting.scene()) : simulated(setting.scene(), engine, how.as_list),
-                setting, prediction, judge, result);
-      if (!how.program) compare_stops(setting, engine, how.as_list, prediction, judge);
+      const Scene& scene = setting.scene();
+      judge_run(program ? program(scene) : oracle::simulated(scene, engine, how.as_list), setting, prediction,
+                judge, result);
+      if (!program) compare_stops(setting, engine, how.as_list, prediction, judge);
     }
   } catch (const std::exception& error) {
     judge.differ(std::string("throws: ") + error.what());
   }
-  return result;
+}
+
+}  // namespace
+
+Run simulated(const Scene& scene, const Engine& engine, bool as_list) {
+  return simulated(scene, engine, everything(*scene.until_time), as_list);
+}
+
+std::vector<Comparison> compare(const Scene& asked, const Engine& engine, const Comparing& how,
+                                const std::vector<Program>& programs) {
+  Comparison result;
+  Setting setting = setting_of(asked, engine, how);
+  const Prediction prediction = predict_what_can_be(setting, result);
+  std::vector<Comparison> all(programs.size(), result);
+  if (result.until == 0) return all;
+  for (std::size_t i = 0; i < programs.size(); ++i)
+    compare_with(setting, prediction, engine, how, programs[i], all[i]);
+  return all;
+}
+Comparison compare(const Scene& scene, const Engine& engine, const Comparing& how) {
+  return compare(scene, engine, how, {Program()}).front();
 }
 
 Run run_of_oracle(const Scene& scene, Walls walls, Fault fault, int samples) {

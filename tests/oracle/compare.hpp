@@ -35,7 +35,6 @@ struct Comparison {
 using Program = std::function<impact_damper::Run(const impact_damper::Scene&)>;
 struct Comparing {
   bool as_list = false;         // a scene of one damper is run as a list
-  Program program = {};         // whose run is compared in place of the engine's
   std::int64_t most_steps = 0;  // of the oracle; 0: as many as are usual
   double allowed = operations;  // of exact and restitution
 };
@@ -43,6 +42,10 @@ struct Comparing {
 // The scene must have until_time; cem: of one damper.
 Comparison compare(const impact_damper::Scene& scene, const impact_damper::Engine& engine,
                    const Comparing& how = {});
+
+// The same of runs of exact's or restitution's that programs have made in place of the engine.
+std::vector<Comparison> compare(const impact_damper::Scene& scene, const impact_damper::Engine& engine,
+                                const Comparing& how, const std::vector<Program>& programs);
 
 // At how many times, equally spaced from 0 to the scene's end, the motion is recorded.
 inline constexpr int sample_count = 65;

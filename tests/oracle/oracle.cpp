@@ -44,7 +44,7 @@ struct Damper {
   Quad d = 0, s = 0;  // distance from it, velocity away from it
   bool stuck = false;
   std::size_t contact = 0;              // while stuck or in contact: its own
-  Polynomial path;  // d in this step
+  Polynomial path;                      // d in this step
   std::vector<std::size_t> chattering;  // impacts on this wall since it was met or left
   Quad rest = 0;  // how long the rest of the chattering takes that has been taken at once
   // Compliant walls: their force on the damper, away from them, is -nu (damping s + stiffness d) in contact.
@@ -632,7 +632,7 @@ class Integrator {
     if (question_.fault == Fault::chattering_cut_short)
       return each.s <= Quad(1e-4L) && each.s <= a * Quad(1e-8L);
     const Quad rest = 2 * each.s / (a * (1 - e));
-    if (rest > (alone() ? Quad(1e-15L) : Quad(1e-13L)) * (1 + t_)) return false;
+    if (rest > Quad(1e-15L) * (1 + t_)) return false;
     expand(step_by_rate / rate());
     Quad change = 2 * zeta_ * each.nu * (1 + e) * each.s / ((1 + each.nu) * (1 - e)), power = rest / h_;
     for (int n = 1; n <= 6; ++n, power *= rest / h_) change += magnitude(pa_.at[n]) / (h_ * h_) * power;
