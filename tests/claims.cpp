@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/base/errors.hpp"
 #include "application/reproduction/measure_numbers.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/printed.hpp"
 #include "application/reproduction/words.hpp"
+#include "impact_damper/base/errors.hpp"
 
 using namespace impact_damper;
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/simulate.hpp"
-#include "application/sweeps/sampling.hpp"
 
 using namespace impact_damper;
 

@@ -375,7 +375,6 @@ TEST_CASE("what is written reads back, on the lines that were asked for") {
     JsonWriter writer("thing");
     writer.open_object(Layout::lines);
     CHECK_THROWS_WITH_AS(writer.field("x", value),
-                         doctest::Contains("a number in \"x\" of the thing is not finite: "),
-                         NumericalError);
+                         doctest::Contains("a number in \"x\" of the thing is not finite: "), NumericalError);
   }
 }

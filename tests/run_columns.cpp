@@ -148,7 +148,8 @@ TEST_CASE("the schema of run files has the columns of the table, in its order, w
 }
 
 TEST_CASE("the package for browsers and node declares the columns that every run has") {
-  const std::string types = std::regex_replace(source("src/wasm/package/index.d.ts"), std::regex("\\s+"), " ");
+  const std::string types =
+      std::regex_replace(source("src/wasm/package/index.d.ts"), std::regex("\\s+"), " ");
   for_each_section([&]<class Section>(const std::string& name, const Section&) {
     const std::string expected = name + "?: " + type_of<Section>();
     CAPTURE(expected);

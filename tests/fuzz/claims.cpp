@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "fuzz.hpp"
 #include "application/reproduction/measures.hpp"
+#include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

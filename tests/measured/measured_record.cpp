@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "impact_damper/base/errors.hpp"
 #include "application/measured/record.hpp"
+#include "impact_damper/base/errors.hpp"
 
 using namespace impact_damper;
 

@@ -8,9 +8,9 @@
 
 #include "forced_scene.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/simulate.hpp"
 #include "impact_damper/orbits/orbits.hpp"
 #include "impact_damper/orbits/two_impact_orbit.hpp"
+#include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "forced_scene.hpp"
-#include "impact_damper/simulate.hpp"
 #include "impact_damper/orbits/two_impact_orbit.hpp"
+#include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

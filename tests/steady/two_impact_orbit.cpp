@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/simulate.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

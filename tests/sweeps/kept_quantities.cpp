@@ -9,8 +9,8 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/simulate.hpp"
 #include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "impact_damper/io/json_writer.hpp"
 #include "application/sweeps/plan_file.hpp"
+#include "impact_damper/io/json_writer.hpp"
 
 using namespace impact_damper;
 

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "application/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 namespace fs = std::filesystem;

@@ -2,6 +2,12 @@
 #include <array>
 #include <filesystem>
 
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/claims.hpp"
+#include "application/reproduction/manifest.hpp"
+#include "application/reproduction/scene_runs.hpp"
+#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/sweep_table.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/errors.hpp"
@@ -10,13 +16,7 @@
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "application/reproduction/catalogue.hpp"
-#include "application/reproduction/claims.hpp"
-#include "application/reproduction/manifest.hpp"
-#include "application/reproduction/scene_runs.hpp"
 #include "impact_damper/responses/response_file.hpp"
-#include "application/sweeps/plan_file.hpp"
-#include "application/sweeps/sweep_table.hpp"
 #include "project_files.hpp"
 #include "scene_arguments.hpp"
 

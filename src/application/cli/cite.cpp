@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "application/reproduction/manifest.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "embedded.hpp"
@@ -9,7 +10,6 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "application/reproduction/manifest.hpp"
 #include "project_files.hpp"
 
 namespace impact_damper::cli {

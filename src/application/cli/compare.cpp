@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <iostream>
 
+#include "application/measured/comparison.hpp"
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/measured/comparison.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "application/sweeps/damper_set_design.hpp"
+#include "application/sweeps/design_file.hpp"
+#include "application/sweeps/lightest_design.hpp"
 #include "commands.hpp"
 #include "design_dampers.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/sweeps/damper_set_design.hpp"
-#include "application/sweeps/design_file.hpp"
-#include "application/sweeps/lightest_design.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"

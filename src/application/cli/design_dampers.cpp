@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "application/sweeps/damper_set_design.hpp"
+#include "application/sweeps/lightest_design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "application/sweeps/damper_set_design.hpp"
-#include "application/sweeps/lightest_design.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"

@@ -1,10 +1,10 @@
 // `figures`: lists the figures of the catalogue as an aligned table.
 #include <algorithm>
 
+#include "application/reproduction/catalogue.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/reproduction/catalogue.hpp"
 #include "project_files.hpp"
 #include "text_table.hpp"
 

@@ -7,11 +7,11 @@
 #include <limits>
 #include <tuple>
 
+#include "application/sweeps/sweep_table.hpp"
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/sweeps/sweep_table.hpp"
 #include "output.hpp"
 
 namespace impact_damper::cli {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "application/sweeps/hdf5_table.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/sweeps/hdf5_table.hpp"
 #include "interruption.hpp"
 
 namespace impact_damper::cli {

@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <map>
 
+#include "application/report/page.hpp"
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "embedded.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/report/page.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/scene_runs.hpp"
+#include "application/sweeps/plan_file.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "application/reproduction/catalogue.hpp"
-#include "application/reproduction/scene_runs.hpp"
-#include "application/sweeps/plan_file.hpp"
 #include "interruption.hpp"
 #include "output.hpp"
 #include "project_files.hpp"

@@ -6,15 +6,15 @@
 #include <filesystem>
 #include <iostream>
 
+#include "application/sweeps/hdf5_table.hpp"
+#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/share_file.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "application/sweeps/hdf5_table.hpp"
-#include "application/sweeps/plan_file.hpp"
-#include "application/sweeps/share_file.hpp"
 #include "interruption.hpp"
 #include "output.hpp"
 #include "progress.hpp"

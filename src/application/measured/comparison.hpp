@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/analysis/loss_factor.hpp"
 #include "application/measured/decay_fit.hpp"
 #include "application/measured/record.hpp"
 #include "application/measured/reduction.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
 
 namespace impact_damper {
 

@@ -9,11 +9,11 @@
 #include <span>
 #include <utility>
 
+#include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/sweeps/sampling.hpp"
 
 namespace impact_damper {
 namespace {

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "application/measured/reduction.hpp"
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/engine.hpp"
-#include "application/measured/reduction.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/units.hpp"
 

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <utility>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "application/report/forced_response.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
-#include "application/report/forced_response.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/units.hpp"
 

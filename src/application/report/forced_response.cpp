@@ -81,8 +81,7 @@ std::vector<double> other_frequencies(const Scene& scene, const Engine& engine) 
   for (const double each : all) {
     const bool near_given = std::abs(each / given - 1) < distinct;
     const bool near_last = !kept.empty() && each < kept.back() * (1 + distinct);
-    if (problems_of(at_frequency(scene, each), engine).empty() && !near_given &&
-        !near_last)
+    if (problems_of(at_frequency(scene, each), engine).empty() && !near_given && !near_last)
       kept.push_back(each);
   }
   return kept;

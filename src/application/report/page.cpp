@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "impact_damper/io/provenance.hpp"
-#include "impact_damper/io/scene_file.hpp"
 #include "application/report/page_parts.hpp"
 #include "application/report/quantities.hpp"
+#include "impact_damper/io/provenance.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 namespace impact_damper {
 namespace {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "impact_damper/analysis/theory.hpp"
 #include "application/report/page_parts.hpp"
 #include "application/report/quantities.hpp"
+#include "impact_damper/analysis/theory.hpp"
 
 namespace impact_damper {
 namespace {

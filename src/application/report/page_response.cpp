@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "impact_damper/analysis/design.hpp"
 #include "application/report/page_parts.hpp"
 #include "application/report/quantities.hpp"
+#include "impact_damper/analysis/design.hpp"
 
 namespace impact_damper {
 namespace {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "impact_damper/analysis/cautions.hpp"
-#include "impact_damper/io/scene_file.hpp"
 #include "application/report/page_parts.hpp"
 #include "application/report/quantities.hpp"
+#include "impact_damper/analysis/cautions.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 namespace impact_damper {
 namespace {

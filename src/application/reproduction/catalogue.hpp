@@ -29,8 +29,8 @@
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "impact_damper/run.hpp"
 #include "impact_damper/responses/response_file.hpp"
+#include "impact_damper/run.hpp"
 
 namespace impact_damper {
 

@@ -3,12 +3,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/engine.hpp"
-#include "impact_damper/io/json_reader.hpp"
 #include "application/reproduction/measure_numbers.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/words.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine.hpp"
+#include "impact_damper/io/json_reader.hpp"
 
 namespace impact_damper {
 namespace {

@@ -39,9 +39,9 @@
 #include <string_view>
 #include <vector>
 
+#include "application/reproduction/printed.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "application/reproduction/printed.hpp"
 
 namespace impact_damper {
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "impact_damper/io/run_file.hpp"
 #include "application/reproduction/scene_runs.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {

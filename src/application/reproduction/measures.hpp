@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/claims.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
-#include "application/reproduction/catalogue.hpp"
-#include "application/reproduction/claims.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {

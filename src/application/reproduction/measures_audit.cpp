@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "application/reproduction/measures.hpp"
-#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {

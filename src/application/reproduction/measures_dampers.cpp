@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "impact_damper/analysis/damper_sets.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
+#include "impact_damper/analysis/damper_sets.hpp"
 
 namespace impact_damper {
 namespace {

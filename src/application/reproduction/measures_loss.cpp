@@ -4,12 +4,12 @@
 #include <iterator>
 #include <limits>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/reproduction/measures.hpp"
-#include "application/reproduction/measures_parts.hpp"
 
 namespace impact_damper {
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "application/reproduction/measures.hpp"
-#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "impact_damper/analysis/loss_factor.hpp"
 #include "application/reproduction/claims.hpp"
 #include "application/reproduction/measures.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {

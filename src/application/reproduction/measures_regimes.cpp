@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/reproduction/measures.hpp"
-#include "application/reproduction/measures_parts.hpp"
 
 namespace impact_damper {
 namespace {

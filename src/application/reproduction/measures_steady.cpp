@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "impact_damper/math/elementary.hpp"
 #include "application/reproduction/largest_amplitude.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
-#include "impact_damper/responses/response_file.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/two_impact_orbit.hpp"
+#include "impact_damper/responses/response_file.hpp"
 
 namespace impact_damper {
 namespace {

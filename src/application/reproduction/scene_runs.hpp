@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/analysis/ensemble.hpp"
 #include "application/reproduction/catalogue.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {

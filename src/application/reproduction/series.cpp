@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <variant>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "application/reproduction/catalogue.hpp"
 #include "application/reproduction/table.hpp"
-#include "impact_damper/run.hpp"
 #include "application/sweeps/sweep_table.hpp"
+#include "impact_damper/run.hpp"
 
 namespace impact_damper {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "impact_damper/base/errors.hpp"
 #include "application/reproduction/series.hpp"
+#include "impact_damper/base/errors.hpp"
 
 namespace impact_damper {
 

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/damper_sets.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

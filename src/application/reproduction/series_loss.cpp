@@ -6,13 +6,13 @@
 #include <optional>
 #include <span>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

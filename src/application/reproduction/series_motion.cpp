@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/number_text.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

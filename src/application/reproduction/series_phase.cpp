@@ -3,9 +3,9 @@
 #include <iterator>
 #include <numbers>
 
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

@@ -4,11 +4,11 @@
 #include <limits>
 #include <map>
 
+#include "application/reproduction/largest_amplitude.hpp"
+#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/reproduction/largest_amplitude.hpp"
-#include "application/reproduction/series_blocks.hpp"
 
 namespace impact_damper {
 namespace {

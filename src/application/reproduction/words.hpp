@@ -18,8 +18,8 @@
 #include <string>
 #include <string_view>
 
-#include "impact_damper/analysis/ensemble.hpp"
 #include "application/reproduction/printed.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
 
 namespace impact_damper {
 

@@ -9,12 +9,12 @@
 #include <optional>
 #include <stdexcept>
 
+#include "application/sweeps/sampling.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/sweeps/sampling.hpp"
 
 namespace impact_damper {
 namespace {

@@ -1,8 +1,8 @@
 #include "application/sweeps/design_file.hpp"
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "application/sweeps/plan_file.hpp"
 
 namespace impact_damper {
 namespace {

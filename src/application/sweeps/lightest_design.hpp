@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/analysis/parallel.hpp"
 #include "application/sweeps/plan.hpp"
+#include "impact_damper/analysis/parallel.hpp"
 
 namespace impact_damper {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "impact_damper/base/enumeration.hpp"
 #include "application/sweeps/plan.hpp"
+#include "impact_damper/base/enumeration.hpp"
 
 namespace impact_damper {
 

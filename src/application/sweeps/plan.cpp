@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "application/sweeps/sampling.hpp"
 
 namespace impact_damper {
 namespace {

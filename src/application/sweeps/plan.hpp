@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "application/sweeps/kept_quantities.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/steady/steady_state.hpp"
-#include "application/sweeps/kept_quantities.hpp"
 
 namespace impact_damper {
 

@@ -8,14 +8,14 @@
 #include <cstring>
 #include <fstream>
 
+#include "application/sweeps/hdf5_table.hpp"
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "application/sweeps/hdf5_table.hpp"
-#include "application/sweeps/plan_file.hpp"
 
 namespace impact_damper {
 namespace {

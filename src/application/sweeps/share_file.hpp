@@ -19,8 +19,8 @@
 #include <string_view>
 #include <vector>
 
-#include "impact_damper/base/sha256.hpp"
 #include "application/sweeps/plan.hpp"
+#include "impact_damper/base/sha256.hpp"
 
 namespace impact_damper {
 

@@ -5,12 +5,12 @@
 #include <cstring>
 #include <fstream>
 
+#include "application/sweeps/hdf5_table.hpp"
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "application/sweeps/hdf5_table.hpp"
-#include "application/sweeps/plan_file.hpp"
 
 namespace impact_damper {
 namespace {

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "impact_damper/io/file_kind.hpp"
 #include "application/sweeps/plan.hpp"
+#include "impact_damper/io/file_kind.hpp"
 
 namespace impact_damper {
 

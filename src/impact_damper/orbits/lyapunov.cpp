@@ -12,8 +12,8 @@
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
 #include "impact_damper/orbits/run_with_variation.hpp"
-#include "impact_damper/steady/steady_state.hpp"
 #include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/steady/steady_state.hpp"
 
 namespace impact_damper {
 namespace {

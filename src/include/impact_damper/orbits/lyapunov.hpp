@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "impact_damper/run.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/run.hpp"
 
 namespace impact_damper {
 

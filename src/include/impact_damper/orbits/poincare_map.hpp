@@ -16,8 +16,8 @@
 #include "impact_damper/base/expected.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/state.hpp"
-#include "impact_damper/run.hpp"
 #include "impact_damper/orbits/orbit_impact.hpp"
+#include "impact_damper/run.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
 namespace impact_damper {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "impact_damper/motion/state.hpp"
-#include "impact_damper/scene.hpp"
 #include "impact_damper/orbits/multipliers.hpp"
+#include "impact_damper/scene.hpp"
 
 namespace impact_damper {
 

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "impact_damper/steady/basin.hpp"
 #include "impact_damper/orbits/branches.hpp"
 #include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/steady/basin.hpp"
 
 namespace impact_damper {
 
