@@ -294,6 +294,16 @@ class Walker {
     };
     while (i < mine.size() || j < its.size()) {
       const bool have_mine = i < mine.size(), have_its = j < its.size();
+      if (setting_.nested && have_mine && have_its) {
+        if (omitted(mine, i) && next_is_nearer(mine, i, its[j])) {
+          ++i;
+          continue;
+        }
+        if (omitted(its, j) && next_is_nearer(its, j, mine[i])) {
+          ++j;
+          continue;
+        }
+      }
       // How near is judged by the numbers' comparison.
       if (have_mine && have_its && mine[i].wall == its[j].wall) {
         const auto &p = mine[i], &q = its[j];
@@ -303,8 +313,7 @@ class Walker {
         const bool nested = setting_.nested;
         const bool alike =
             off <= (nested ? std::max(w * Quad(1e-3L), Quad(1e-14L)) : w / 2 + below_.speed(p.time));
-        const bool other_is_nearer = ((!nested || omitted(mine, i)) && next_is_nearer(mine, i, q)) ||
-                                     (nested && omitted(its, j) && next_is_nearer(its, j, p));
+        const bool other_is_nearer = !nested && next_is_nearer(mine, i, q);
         const Quad near = nested ? Quad(1e-6L) * (1 + p.time) : window(p.time);
         if (magnitude(p.time - q.time) <= near && alike && !other_is_nearer) {
           both_.rough.push_back(setting_.nested && omitted(mine, i) && omitted(its, j));
