@@ -10,26 +10,22 @@
 namespace impact_damper {
 namespace {
 
-// Returns the engine with what depends on the scene filled in.
-Engine completed(const Scene& scene, Engine engine, const Record& record) {
-  std::visit(
-      [&](auto& options) {
-        options.budget = budget_for(scene, options.budget);
-        if (record.half_cycles) {
-          options.budget.max_half_cycles =
-              std::min(options.budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
-        }
-      },
-      engine);
+Budget& budget_of(Engine& engine) {
+  return std::visit([](auto& options) -> Budget& { return options.budget; }, engine);
+}
+
+// Fills in what depends on the scene.
+void complete(Engine& engine, const Scene& scene, const Record& record) {
+  Budget& budget = budget_of(engine);
+  budget = budget_for(scene, budget);
+  if (record.half_cycles)
+    budget.max_half_cycles = std::min(budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
   if (Cem* const cem = std::get_if<Cem>(&engine)) *cem = resolved(scene, *cem);
-  return engine;
 }
 
 // Returns what is wrong with the record, and with an engine's budget where it is recorded.
-std::vector<Problem> problems_of(const Record& record, const Scene& scene, const Engine& engine) {
+std::vector<Problem> problems_of(const Record& record, const Scene& scene, const Budget& budget) {
   std::vector<Problem> problems;
-  const Budget& budget =
-      std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
 
   // Rejects budgets whose records would not fit into memory.
   const auto dampers = std::int64_t(std::max<std::size_t>(1, scene.dampers.size()));
@@ -91,14 +87,15 @@ Checked checked(const Scene& scene, const Engine& engine, const Record& record) 
     problems.insert(problems.end(), more.begin(), more.end());
   };
   add_all(problems_of(engine));
-  Engine complete = engine;
+  Checked valid(scene, engine);
+  const Budget asked = budget_of(valid.engine_);
   if (problems.empty()) {
-    complete = completed(scene, engine, record);
-    add_all(incompatibilities_of(scene, complete));
+    complete(valid.engine_, scene, record);
+    add_all(incompatibilities_of(scene, valid.engine_));
   }
-  add_all(problems_of(record, scene, engine));
+  add_all(problems_of(record, scene, asked));
   require_none(problems);
-  return {scene, complete};
+  return valid;
 }
 
 }  // namespace impact_damper

@@ -1,7 +1,6 @@
 // The one place that decides whether a scene can be run.
 #pragma once
 
-#include <utility>
 #include <variant>
 
 #include "impact_damper/run.hpp"
@@ -22,7 +21,7 @@ class Checked {
 
  private:
   friend Checked checked(const Scene& scene, const Engine& engine, const Record& record);
-  Checked(Scene scene, Engine engine) : scene_(std::move(scene)), engine_(std::move(engine)) {}
+  Checked(const Scene& scene, const Engine& engine) : scene_(scene), engine_(engine) {}
 
   Scene scene_;
   Engine engine_;
